@@ -1,0 +1,14 @@
+# Packages of Debian 12 (12 = bookworm). OpenImageIO is only for the module in modules/: no tool links it.
+set(CMAKE_MESSAGE_LOG_LEVEL_SAVED ${CMAKE_MESSAGE_LOG_LEVEL})
+set(CMAKE_MESSAGE_LOG_LEVEL WARNING)       # Debian's Imath prints nine lines about Python bindings
+find_package(embree 3 CONFIG REQUIRED)
+find_package(Imath CONFIG REQUIRED)
+find_package(OpenEXR CONFIG REQUIRED)
+set(CMAKE_MESSAGE_LOG_LEVEL ${CMAKE_MESSAGE_LOG_LEVEL_SAVED})
+find_package(TinyGLTF CONFIG REQUIRED)
+find_package(CLI11 CONFIG REQUIRED)
+find_package(TBB CONFIG REQUIRED)
+find_package(nlohmann_json CONFIG REQUIRED)
+find_package(PNG REQUIRED)
+find_package(Threads REQUIRED)
+find_library(XXHASH_LIBRARY NAMES xxhash REQUIRED)

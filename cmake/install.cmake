@@ -1,0 +1,11 @@
+# make install: tools, modules, format pages.
+include(GNUInstallDirs)
+get_property(tools GLOBAL PROPERTY TEMPOLUX_TOOLS)
+if(tools)
+  install(TARGETS ${tools} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+if(TARGET tempolux-oiio)
+  install(TARGETS tempolux-oiio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
+endif()
+install(DIRECTORY formats/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/formats FILES_MATCHING PATTERN "*.md")
+install(FILES LICENSE README.md Makefile.example DESTINATION ${CMAKE_INSTALL_DOCDIR})

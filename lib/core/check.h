@@ -1,0 +1,14 @@
+// lib/core/check.h -- our own mistakes stop the program, saying where; the world's mistakes are exceptions.
+#pragma once
+
+#include <cstdio>
+#include <cstdlib>
+
+/// Aborts with file, line and the condition. Never for input: input errors are InputError.
+#define TEMPOLUX_CHECK(condition)                                                                 \
+  do {                                                                                            \
+    if (!(condition)) {                                                                           \
+      std::fprintf(stderr, "%s:%d: broken promise: %s\n", __FILE__, __LINE__, #condition);        \
+      std::abort();                                                                               \
+    }                                                                                             \
+  } while (false)

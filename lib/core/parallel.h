@@ -1,0 +1,42 @@
+// lib/core/parallel.h -- deterministic parallel loops; the only user of TBB.
+//
+// Work is cut into chunks by count alone, never by the number of threads, and results are joined in chunk
+// order: the same numbers come out for any --threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+namespace tempolux {
+
+/// While it lives, at most `threads` threads work in parallel loops (also in Embree's and OpenEXR's).
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Processors this process may use (its CPU set, not the machine's count); at least 1.
+int usable_processor_count();
+
+/// Calls body(first, last) for each chunk [first, last) of [0, count); chunks start at multiples of
+/// chunk_size. Exceptions reach the caller. chunk_size > 0.
+void parallel_chunks(std::size_t count, std::size_t chunk_size,
+                     const std::function<void(std::size_t first, std::size_t last)>& body);
+
+/// Streams chunk indices 0 .. chunk_count-1 through make (in parallel, any order) and take (one at a time,
+/// in index order). At most `in_flight` results exist at once, so memory does not grow with the count.
+/// make returns an owning pointer; take consumes it.
+void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
+                      const std::function<std::shared_ptr<void>(std::size_t)>& make,
+                      const std::function<void(std::size_t, void*)>& take);
+
+}  // namespace tempolux

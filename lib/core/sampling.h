@@ -1,0 +1,67 @@
+// lib/core/sampling.h -- warps of the unit square, each sample_ beside its pdf_.
+#pragma once
+
+#include <algorithm>
+#include <numbers>
+
+#include "lib/core/vec.h"
+
+namespace tempolux {
+
+inline constexpr float kPi = std::numbers::pi_v<float>;
+inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
+inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;  ///< the largest float below 1
+
+/// Uniform point of the unit disc. Shirley & Chiu's concentric map, JGT 2(3), 1997.
+inline Vec2 sample_disc_concentric(Vec2 u) {
+  const float a = 2 * u.x - 1, b = 2 * u.y - 1;
+  if (a == 0 && b == 0) return {0, 0};
+  float r, phi;
+  if (std::abs(a) > std::abs(b)) {
+    r = a;
+    phi = (kPi / 4) * (b / a);
+  } else {
+    r = b;
+    phi = kPi / 2 - (kPi / 4) * (a / b);
+  }
+  return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+/// Direction about +z, density cos(theta)/pi per solid angle; z > 0 always.
+inline Vec3 sample_hemisphere_cos(Vec2 u) {
+  const Vec2 d = sample_disc_concentric(u);
+  return {d.x, d.y, std::sqrt(std::max(1e-12f, 1 - d.x * d.x - d.y * d.y))};
+}
+inline float pdf_hemisphere_cos(float cos_theta) { return std::max(0.0f, cos_theta) * kInvPi; }
+
+/// Uniform direction on the sphere; pdf_solid_angle is 1/(4 pi).
+inline Vec3 sample_sphere(Vec2 u) {
+  const float z = 1 - 2 * u.x, r = std::sqrt(std::max(0.0f, 1 - z * z)), phi = 2 * kPi * u.y;
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+/// Uniform direction within the cone of half angle acos(cos_max) about +z; pdf 1/(2 pi (1 - cos_max)).
+/// one_minus_cos_max is passed instead of cos_max so that narrow cones keep their digits.
+inline Vec3 sample_cone(Vec2 u, float one_minus_cos_max) {
+  const float omc = u.x * one_minus_cos_max, phi = 2 * kPi * u.y;
+  const float r = std::sqrt(std::max(0.0f, omc * (2 - omc)));
+  return {r * std::cos(phi), r * std::sin(phi), 1 - omc};
+}
+
+/// Barycentric (b1, b2) of a uniform point in a triangle; b0 = 1 - b1 - b2.
+/// Low-distortion map of Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
+inline Vec2 sample_triangle(Vec2 u) {
+  float b1 = u.x, b2 = u.y;
+  if (b2 > b1) { b1 *= 0.5f; b2 -= b1; } else { b2 *= 0.5f; b1 -= b2; }
+  return {b1, b2};
+}
+
+/// Power heuristic with exponent 2 for one sample of each of two techniques. Veach 1997 (9.2).
+/// Both pdfs in the same measure; scaled against overflow; 0 if pdf_a is 0.
+inline float mis_power(float pdf_a, float pdf_b) {
+  if (!(pdf_a > 0)) return 0;
+  const float r = pdf_b / pdf_a;  // infinite r gives 0, as it should
+  return 1 / (1 + r * r);
+}
+
+}  // namespace tempolux

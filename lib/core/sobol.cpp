@@ -1,0 +1,55 @@
+#include "lib/core/sobol.h"
+
+#include "lib/core/random.h"
+
+namespace tempolux {
+namespace {
+
+std::uint32_t reverse_bits(std::uint32_t x) {
+  x = __builtin_bswap32(x);
+  x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
+  x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+  return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+}
+
+/// Laine-Karras style hash on reversed bits: each bit depends on itself and lower ones only.
+/// Constants: Vegdahl, "Owen scrambling based hash functions", 2021.
+std::uint32_t permute_low_to_high(std::uint32_t x, std::uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
+  return reverse_bits(permute_low_to_high(reverse_bits(x), seed));
+}
+
+/// Second Sobol dimension: the generator matrix of x + 1, Pascal's triangle modulo 2, applied by shifts.
+/// Input and output are bit-reversed indices (binary fractions).
+std::uint32_t sobol_second(std::uint32_t index) {
+  std::uint32_t result = 0;
+  for (std::uint32_t v = 1u << 31; index; index >>= 1, v ^= v >> 1)
+    if (index & 1) result ^= v;
+  return result;
+}
+
+}  // namespace
+
+Vec2 sobol_owen_2d(std::uint32_t index, std::uint64_t key) {
+  const std::uint64_t a = mix64(key), b = mix64(key ^ 0x5851f42d4c957f2dull);
+  // Nested uniform shuffle: the first 2^k indices map onto one aligned block of 2^k.
+  const std::uint32_t shuffled = owen_scramble(index, std::uint32_t(a));
+  const std::uint32_t x = reverse_bits(shuffled), y = sobol_second(shuffled);
+  return {unit_float(owen_scramble(x, std::uint32_t(a >> 32))), unit_float(owen_scramble(y, std::uint32_t(b)))};
+}
+
+float sobol_owen_1d(std::uint32_t index, std::uint64_t key) {
+  const std::uint64_t a = mix64(key);
+  const std::uint32_t shuffled = owen_scramble(index, std::uint32_t(a));
+  return unit_float(owen_scramble(reverse_bits(shuffled), std::uint32_t(a >> 32)));
+}
+
+}  // namespace tempolux

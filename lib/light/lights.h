@@ -1,0 +1,86 @@
+// lib/light/lights.h -- all lights of a frame behind one sampling interface.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "lib/core/vec.h"
+#include "lib/scene/at_frame.h"
+
+namespace tempolux {
+
+/// One slot of the emission table: an emissive triangle (one side counts once, both sides twice the flux) or
+/// a punctual light. Slots and probabilities are frozen over a segment: a lamp that dims or moves keeps its
+/// slot and changes the photon's weight.
+struct EmissionSlot {
+  enum class Kind : std::uint8_t { triangle, point, spot, directional };
+  Kind kind = Kind::triangle;
+  std::uint32_t surface = kNone, triangle = 0;   ///< of a triangle
+  std::uint32_t light = kNone;                   ///< index into SceneFrame::lights
+  double probability = 0;                        ///< of being chosen for a photon; sums to 1 over the table
+};
+
+/// The frozen probabilities of a segment: one per slot, from the maximum flux over the segment's frames
+/// (luminance; a directional light's flux is its irradiance times the area pi R^2 of the scene sphere's disc).
+struct EmissionTable {
+  std::vector<double> probability;               ///< by slot; empty if the scene has no light
+  Vec3d sphere_centre{};                         ///< scene sphere over the segment, scene space, m
+  double sphere_radius = 0;
+};
+
+/// Evaluates the segment's frames as needed (only lights; a scene whose lights do not move costs one frame).
+EmissionTable build_emission_table(const Scene& scene, const Segment& segment, const TimeOptions& options);
+
+struct LightSample {
+  Vec3 wi{};                    ///< unit, from the point towards the light
+  Vec3 position{};              ///< on the light; for directional lights beyond the scene
+  float position_offset = 0;    ///< m: the shadow ray ends this far before position
+  Rgb radiance{0.0f};           ///< L / pdf of an area light, I / d^2 or E of a delta light: multiply by f cos
+  float pdf_solid_angle = 0;    ///< [1/sr], choice included; 0 if delta
+  bool delta = false;
+};
+
+struct PhotonEmission {
+  Vec3 origin{}, travel{};      ///< travel: unit direction of flight
+  float origin_offset = 0;      ///< start this far along the emitting side's normal
+  Vec3 normal{};                ///< of the emitting side; zero for punctual lights
+  Rgb flux{0.0f};               ///< W, of one photon if `photon_count` are emitted: divide by the count yourself
+  std::uint32_t slot = 0;
+};
+
+/// Lights at one frame.
+class Lights {
+ public:
+  Lights(const SceneFrame& frame, const EmissionTable& table);
+  ~Lights();
+  Lights(Lights&&) noexcept;
+
+  bool empty() const;
+  std::size_t count() const;
+  const std::vector<EmissionSlot>& slots() const;
+  /// Flux of all lights [W]; directional lights by the scene sphere's disc.
+  Rgbd total_flux() const;
+
+  /// Chooses a light for the point (u_choice; by an importance that knows distance and orientation, in
+  /// O(log n)) and a point on it (u). Returns false if no light can reach the point. `normal` is a hint to
+  /// discard lights below the surface; zero vector: none.
+  bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const;
+  /// Density per solid angle with which sample() at (point, normal) would have chosen the position
+  /// `on_light` of this emissive triangle, seen from its front or (two-sided) back; 0 if it is no light.
+  float pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle,
+                        Vec3 on_light, Vec3 light_normal) const;
+  /// Radiance that the triangle's material emits towards `wo` (unit, away from it); zero from the back of a
+  /// one-sided emitter.
+  Rgb emitted(std::uint32_t surface, Vec3 normal_geometric, Vec3 wo) const;
+
+  /// A photon from the frozen table: u[0] chooses the slot and, stretched, the first coordinate on it; u[1]
+  /// the second; u[2], u[3] the direction. flux = (what the slot emits at this frame) / probability.
+  PhotonEmission emit(const double u[4]) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tempolux

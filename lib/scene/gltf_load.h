@@ -1,0 +1,24 @@
+// lib/scene/gltf_load.h -- load a glTF 2.0 file, .gltf or .glb; the only user of tinygltf.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "lib/scene/scene.h"
+
+namespace tempolux {
+
+struct GltfOptions {
+  bool allow_outside = false;                    ///< URIs may leave the scene's folder
+  std::uint64_t max_file_bytes = 4ull << 30;     ///< of the scene file and of each buffer
+};
+
+/// Reads and checks a scene. Everything the file says is checked before it is used to size, index or
+/// recurse: nesting depth, required extensions and URIs before tinygltf sees the file; accessors, indices,
+/// numbers and the node graph after. Images are not decoded.
+///
+/// Throws InputError "FILE: PLACE: WHAT; REMEDY" for anything unusable; what is merely ignored goes to
+/// Scene::warnings. Never allocates more than a few times the size of the files.
+Scene load_gltf(const std::string& path, const GltfOptions& options = {});
+
+}  // namespace tempolux

@@ -1,0 +1,119 @@
+// lib/scene/scene.h -- a scene as plain data: nodes, meshes, materials, lights, cameras.
+//
+// Scene is what the file says, independent of time; SceneFrame (at_frame.h) is its state at one frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lib/core/affine.h"
+#include "lib/core/vec.h"
+
+namespace tempolux {
+
+inline constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Metallic-roughness material of glTF 2.0 with the extensions of architecture.md 7.
+struct Material {
+  std::string name;
+  Rgb base_color{1.0f};              ///< reflectance, each channel in [0, 1]
+  float metallic = 1;                ///< [0, 1]
+  float roughness = 1;               ///< perceptual, [0, 1]; alpha of GGX = roughness^2
+  Rgb emission{0.0f};                ///< radiance [glTF nits], strength included; front side, and back if double_sided
+  float specular = 1;                ///< KHR_materials_specular: factor of the dielectric lobe, [0, 1]
+  Rgb specular_color{1.0f};          ///< tint of F0, >= 0
+  float ior = 1.5f;                  ///< >= 1, or 0
+  float transmission = 0;            ///< KHR_materials_transmission, [0, 1]
+  bool double_sided = false;
+
+  bool emissive() const { return max_component(emission) > 0; }
+  bool operator==(const Material&) const = default;
+};
+
+/// Triangles of one glTF primitive in the space of its node.
+struct Primitive {
+  std::vector<Vec3> positions;                              ///< m, node space
+  std::vector<Vec3> normals;                                ///< unit; empty: flat shading
+  std::vector<Vec2> uvs;                                    ///< TEXCOORD_0; empty: none
+  std::vector<std::array<std::uint32_t, 3>> triangles;      ///< counter-clockwise seen from the front
+  std::uint32_t material = 0;                               ///< index into Scene::materials
+};
+
+struct Mesh {
+  std::string name;
+  std::vector<Primitive> primitives;
+};
+
+struct Camera {
+  enum class Kind { perspective, orthographic };
+  std::string name;
+  Kind kind = Kind::perspective;
+  double yfov_rad = 0.8;          ///< full vertical angle, perspective
+  double ymag_m = 1;              ///< half height of the view, orthographic
+  double z_near_m = 0, z_far_m = 0;  ///< far 0: none. Information only: nothing is clipped.
+};
+
+/// KHR_lights_punctual. Shines down the node's -Z; the node's scale does not change it.
+struct PunctualLight {
+  enum class Kind { point, spot, directional };
+  std::string name;
+  Kind kind = Kind::point;
+  Rgb intensity{1.0f};            ///< colour x intensity: W/sr (point, spot) or W/m^2 (directional), per channel
+  float inner_cone_rad = 0, outer_cone_rad = 0.785398f;  ///< spot: half angles
+
+  bool operator==(const PunctualLight&) const = default;
+};
+
+struct Node {
+  std::string name;
+  int parent = -1;                ///< always below its own index: nodes are sorted parents first
+  std::uint32_t source_index = 0; ///< index in the file, for messages
+  // Local transform at rest, as T R S; a file's matrix (no animation allowed then) is in `matrix`.
+  Vec3d translation{};
+  std::array<double, 4> rotation{0, 0, 0, 1};  ///< unit quaternion x y z w
+  Vec3d scale{1, 1, 1};
+  bool has_matrix = false;
+  Affine matrix{};
+  int mesh = -1, camera = -1, light = -1;      ///< -1: none
+  std::uint32_t object = kNone;                ///< id.object of its mesh: 0, 1, 2 ... in node order
+};
+
+/// One animated property of a node: keys at increasing times.
+struct AnimationTrack {
+  enum class Path { translation, rotation, scale };
+  enum class Interpolation { linear, step, cubic_spline };
+  int node = 0;
+  Path path = Path::translation;
+  Interpolation interpolation = Interpolation::linear;
+  std::vector<double> times_s;              ///< strictly increasing
+  std::vector<std::array<double, 4>> values;  ///< xyz or xyzw per key; cubic spline: in-tangent, value, out-tangent
+};
+
+struct Animation {
+  std::string name;
+  std::vector<AnimationTrack> tracks;
+};
+
+/// A scene as its file describes it. Built by load_gltf.
+struct Scene {
+  std::string path;                         ///< as given, for messages
+  std::vector<std::string> files;           ///< every file that was read: the scene and its buffers
+  std::vector<Node> nodes;                  ///< parents before children; the default scene's nodes only
+  std::vector<Mesh> meshes;
+  std::vector<Material> materials;          ///< never empty: a primitive without one uses the last
+  std::vector<Camera> cameras;
+  std::vector<PunctualLight> lights;
+  std::vector<Animation> animations;        ///< all play together
+  std::vector<std::string> object_names;    ///< by object id
+  double duration_s = 0;                    ///< last key of all animations
+  std::vector<std::string> warnings;        ///< what was ignored, one line each
+
+  /// Index into nodes of the camera to use, by camera or node name; "auto" is the first in the file.
+  /// Throws InputError that lists the names, or says how to export cameras.
+  int camera_node(const std::string& name) const;
+};
+
+}  // namespace tempolux

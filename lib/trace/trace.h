@@ -1,0 +1,66 @@
+// lib/trace/trace.h -- rays against the scene at a frame; the only user of Embree.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "lib/core/vec.h"
+#include "lib/scene/at_frame.h"
+
+namespace tempolux {
+
+struct Ray {
+  Vec3 origin;                 ///< scene space
+  Vec3 direction;              ///< need not be unit; t is in units of its length
+  float t_min = 0, t_max = INFINITY;
+};
+
+struct Hit {
+  float t = 0;
+  std::uint32_t surface = kNone, triangle = 0;   ///< index into SceneFrame::surfaces, triangle of its primitive
+  float u = 0, v = 0;                            ///< barycentrics of corners 1 and 2
+};
+
+/// What a shading routine needs to know of a hit; all in scene space.
+struct SurfacePoint {
+  Vec3 position;               ///< from the triangle's corners, not from t: exact to a few ulp
+  Vec3 normal_geometric;       ///< unit, towards the front of the triangle
+  Vec3 normal;                 ///< shading normal: unit, on the front's side
+  Vec2 uv;
+  float offset = 0;            ///< m: rays leaving start this far above the side they leave from
+  std::uint32_t surface = kNone, triangle = 0, object = 0, material = 0;
+  float u = 0, v = 0;
+};
+
+/// Two search trees, what is static over the segment and what moves; the nearer hit wins, static at a tie.
+/// Thread-safe once built. Every ray is checked: one that is not finite is a miss and counted, never an abort.
+class Tracer {
+ public:
+  explicit Tracer(const SceneFrame& frame);
+  ~Tracer();
+  Tracer(Tracer&&) noexcept;
+
+  /// Nearest hit in (t_min, t_max). Returns false, hit untouched, if there is none.
+  bool intersect(const Ray& ray, Hit& hit) const;
+  /// Nearest hit with the static surfaces alone.
+  bool intersect_static(const Ray& ray, Hit& hit) const;
+  /// Is anything in between?
+  bool occluded(const Ray& ray) const;
+
+  SurfacePoint surface_point(const Hit& hit) const;
+  /// Rays refused because they were not finite; for stats.
+  std::uint64_t refused_ray_count() const;
+  const SceneFrame& frame() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A ray that leaves `point` into `direction`, started off the surface on the side it leaves to.
+Ray spawn_ray(const SurfacePoint& point, Vec3 direction);
+/// A ray from `point` that ends just before `target`; target_offset is that point's own offset, or 0.
+/// Direction is not normalised: t runs from 0 to 1.
+Ray spawn_shadow_ray(const SurfacePoint& point, Vec3 target, float target_offset);
+
+}  // namespace tempolux

@@ -1,0 +1,40 @@
+#!/bin/sh
+# The arrows of lib/README.md, checked with grep. Run at the top of the tree.
+bad=0
+forbid() {  # folder, pattern of an #include it must not have, reason
+  if grep -rnE --include='*.h' --include='*.cpp' "^ *#include [<\"]($2)" "$1" 2>/dev/null; then echo "^ $1: $3"; bad=1; fi
+}
+third='CLI/|OpenEXR/|Imf|Imath|OpenImageIO/|openvdb/|embree|tiny_gltf|nlohmann/|tbb/|png.h'
+forbid formats "lib/|tools/|$third" 'formats needs the standard library and xxhash only'
+forbid lib 'tools/|CLI/|iostream' 'lib has no command line and prints nothing'
+forbid modules 'tools/|CLI/' 'a module knows no tool'
+# inside lib: folder, what it may include of lib
+may() {
+  others=$(grep -rhoE --include='*.h' --include='*.cpp' '^ *#include "lib/[a-z]+/' "lib/$1" 2>/dev/null | sed 's|.*"lib/||; s|/$||' | sort -u)
+  for other in $others; do
+    case " $1 $2 " in *" $other "*) ;; *) echo "lib/$1 includes lib/$other: not one of its arrows ($2)"; bad=1;; esac
+  done
+}
+may core     ''
+may image    'core'
+may scene    'core'
+may trace    'core scene'
+may material 'core scene'
+may light    'core scene'
+may photon   'core scene trace material light'
+may density  'core'
+may render   'core image scene trace material light photon density'
+may aqm      'core image'
+may plan     'core scene light'
+for folder in lib/*/; do
+  case " lib/core/ lib/image/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/photon/ lib/density/ lib/render/ lib/aqm/ lib/plan/ " in
+    *" $folder "*) ;; *) echo "$folder: has no line in tests/layering.sh"; bad=1;; esac
+done
+# each third-party header in one file of the tree (tests and benchmarks apart; JSON and CLI: one layer)
+for header in embree3/ OpenEXR/ png.h tiny_gltf xxhash; do
+  files=$(grep -rlE --include='*.h' --include='*.cpp' "^ *#include [<\"]$header" formats lib tools modules 2>/dev/null)
+  [ "$(echo "$files" | grep -c .)" -le 1 ] || { echo "$header is included by more than one file:" $files; bad=1; }
+done
+tbb=$(grep -rlE '^ *#include [<"]tbb/' lib tools formats 2>/dev/null | grep -v '^lib/core/'); [ -z "$tbb" ] || { echo "tbb outside lib/core: $tbb"; bad=1; }
+if grep -rnE '\b(exit|abort|getenv)\(' lib formats --include='*.cpp' --include='*.h' | grep -v 'check.h'; then echo '^ lib and formats call no exit and read no environment'; bad=1; fi
+exit $bad
