@@ -1,10 +1,12 @@
 // lib/scene/at_frame.h -- the scene at one frame: transforms evaluated, triangles in scene space.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lib/scene/scene.h"
@@ -35,15 +37,38 @@ Segment segment_of(const Scene& scene, int frame, const TimeOptions& options);
 /// World transforms of all nodes at a frame. Frames outside the animation hold its first or last state.
 std::vector<Affine> world_from_node(const Scene& scene, int frame, const TimeOptions& options);
 
-/// Triangles of one primitive of one node, in scene space (world - Segment::origin).
+/// An array that never changes, shared by its copies: static surfaces are the same memory in every frame.
+template <class T>
+class SharedArray {
+ public:
+  SharedArray() = default;
+  SharedArray(std::vector<T> values)
+      : values_(values.empty() ? nullptr : std::make_shared<const std::vector<T>>(std::move(values))) {}
+  SharedArray(std::initializer_list<T> values) : SharedArray(std::vector<T>(values)) {}
+
+  std::size_t size() const { return values_ ? values_->size() : 0; }
+  bool empty() const { return !values_; }
+  const T* data() const { return values_ ? values_->data() : nullptr; }
+  const T* begin() const { return data(); }
+  const T* end() const { return data() + size(); }
+  const T& operator[](std::size_t i) const { return (*values_)[i]; }
+
+ private:
+  std::shared_ptr<const std::vector<T>> values_;
+};
+
+/// Triangles of one primitive of one node, in scene space (world - Segment::origin). Cheap to copy.
+///
+/// A transform may flatten or shrink triangles to zero area at some frames: their normal is then zero, not
+/// NaN, and they can neither be hit nor emit.
 struct Surface {
   std::uint32_t object = 0;                 ///< id.object
   std::uint32_t node = 0;
   std::uint32_t material = 0;
   bool flipped = false;                     ///< transform mirrors: the front is on the other winding
   const Primitive* primitive = nullptr;     ///< triangles and uvs; owned by the Scene
-  std::vector<Vec3> positions;              ///< scene space, m
-  std::vector<Vec3> normals;                ///< unit, or empty
+  SharedArray<Vec3> positions;              ///< scene space, m; double transform, rounded once
+  SharedArray<Vec3> normals;                ///< unit, or empty: flat shading
   Affine scene_from_node;
 };
 
@@ -83,10 +108,40 @@ struct SceneFrame {
   Box3 bounds;                              ///< of the whole segment, scene space
   SceneHashes hashes;
 
+  /// The camera of a node (an index into Scene::nodes, as Scene::camera_node returns it) at this frame.
+  /// Throws InputError if the node's transform leaves it without a direction.
   PlacedCamera camera(int camera_node) const;
 };
 
-/// Evaluates everything at `frame`. `segment` must hold the frame.
+/// Content hash of one camera where it stands; SceneHashes::camera is over all cameras of the scene.
+std::string camera_hash(const PlacedCamera& placed);
+
+/// A scene over one segment: what is static in it is placed and hashed once, and shared by all its frames.
+///
+///     const SegmentScene stage(scene, segment_of(scene, 0, options), options);
+///     for (int f = stage.segment().first; f <= stage.segment().last; ++f) use(stage.at(f));
+///
+/// at() is linear in what moves, not in what stands; safe to call from several threads. The Scene must
+/// outlive it.
+class SegmentScene {
+ public:
+  SegmentScene(const Scene& scene, Segment segment, const TimeOptions& options);
+
+  const Segment& segment() const { return segment_; }
+  /// Everything at `frame`, which the segment must hold (std::invalid_argument).
+  /// Throws InputError if a transform takes geometry or a light beyond what can be computed with.
+  SceneFrame at(int frame) const;
+
+ private:
+  const Scene* scene_;
+  Segment segment_;
+  TimeOptions options_;
+  std::vector<Surface> static_surfaces_;
+  Box3 bounds_;
+  std::string static_hash_, materials_hash_, media_hash_;
+};
+
+/// SegmentScene(scene, segment, options).at(frame), for callers that need one frame.
 SceneFrame scene_at_frame(const Scene& scene, const Segment& segment, int frame, const TimeOptions& options);
 
 }  // namespace tempolux

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -115,5 +114,9 @@ struct Scene {
   /// Throws InputError that lists the names, or says how to export cameras.
   int camera_node(const std::string& name) const;
 };
+
+/// Throws InputError, with the exporter box to tick, unless something in the scene emits: a punctual light
+/// or an emissive material on some triangle. For tools that cannot work without light.
+void require_lights(const Scene& scene);
 
 }  // namespace tempolux
