@@ -26,6 +26,11 @@ class Bsdf {
   Rgb diffuse_albedo() const { return rho_; }
   /// c(w) above, 1 for a matte material; cos_theta > 0.
   float diffuse_coupling(float cos_theta) const;
+  /// What the Lambert lobe reflects of uniform light towards wo: rho (1 - A_S(wo)), rho for a matte material.
+  Rgb diffuse_reflectance(float cos_o) const;
+  /// Factor for light arriving from wi before it is averaged into an irradiance E, so that f_D's radiance is
+  /// diffuse_reflectance(cos_o) E / pi exactly: (1 - A_S(wi)) / (1 - A_S,mean), 1 for a matte material.
+  float arrival_weight(float cos_i) const;
 
   /// f_D and f_S apart [1/sr]; without the cosine. Delta lobes evaluate to 0.
   Rgb eval_diffuse(Vec3 wi, Vec3 wo) const;

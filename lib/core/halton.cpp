@@ -1,0 +1,77 @@
+#include "lib/core/halton.h"
+
+#include <cmath>
+#include <numeric>
+
+#include "lib/core/random.h"
+
+namespace tempolux {
+namespace {
+
+constexpr std::uint32_t kMaxTable = 2048;
+
+/// Random permutation of 0 .. base-1 for one digit position (Fisher-Yates on counter-based numbers).
+std::vector<std::uint32_t> digit_permutation(std::uint32_t base, std::uint64_t seed, std::uint32_t position) {
+  std::vector<std::uint32_t> permutation(base);
+  std::iota(permutation.begin(), permutation.end(), 0u);
+  const PathRandom random(seed, base);
+  for (std::uint32_t i = base - 1; i > 0; --i) {
+    const std::uint64_t bits = random.bits(position, Purpose::scramble, i);
+    const auto j = std::uint32_t((bits >> 32) * (i + 1) >> 32);
+    std::swap(permutation[i], permutation[j]);
+  }
+  return permutation;
+}
+
+}  // namespace
+
+RadicalInverse::RadicalInverse(std::uint32_t base, std::uint64_t seed, bool scramble)
+    : base_(base), block_digits_(1), block_size_(base), block_count_(0) {
+  while (std::uint64_t(block_size_) * base <= kMaxTable) {
+    block_size_ *= base;
+    ++block_digits_;
+  }
+  // As many whole blocks as a 64-bit numerator can hold: 2^64 / block_size never overflows.
+  for (std::uint64_t power = 1; power <= ~0ull / block_size_; power *= block_size_) ++block_count_;
+  scale_ = std::pow(double(block_size_), -block_count_);
+
+  table_.resize(std::size_t(block_count_) * block_size_);
+  for (int block = 0; block < block_count_; ++block) {
+    std::vector<std::vector<std::uint32_t>> permutations;
+    for (std::uint32_t digit = 0; digit < block_digits_; ++digit) {
+      const std::uint32_t position = std::uint32_t(block) * block_digits_ + digit;
+      permutations.push_back(digit_permutation(base, seed, position));
+      if (!scramble) std::iota(permutations.back().begin(), permutations.back().end(), 0u);
+    }
+    for (std::uint32_t value = 0; value < block_size_; ++value) {
+      std::uint32_t rest = value, reversed = 0;
+      for (std::uint32_t digit = 0; digit < block_digits_; ++digit, rest /= base)
+        reversed = reversed * base + permutations[digit][rest % base];
+      table_[std::size_t(block) * block_size_ + value] = reversed;
+    }
+  }
+}
+
+double RadicalInverse::operator()(std::uint64_t index) const {
+  std::uint64_t numerator = 0;
+  const std::uint32_t* table = table_.data();
+  for (int block = 0; block < block_count_; ++block, table += block_size_) {
+    const std::uint64_t quotient = index / block_size_;
+    numerator = numerator * block_size_ + table[index - quotient * block_size_];
+    index = quotient;
+  }
+  const double value = double(numerator) * scale_;
+  return value < 1 ? value : 0x1.fffffffffffffp-1;
+}
+
+PhotonHalton::PhotonHalton(std::uint64_t seed)
+    : base3_(3, seed), base5_(5, seed), base7_(7, seed), base2_(2, seed) {}
+
+void PhotonHalton::point(std::uint64_t index, double u[4]) const {
+  u[0] = base3_(index);
+  u[1] = base5_(index);
+  u[2] = base7_(index);
+  u[3] = base2_(index);
+}
+
+}  // namespace tempolux

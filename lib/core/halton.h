@@ -1,0 +1,44 @@
+// lib/core/halton.h -- scrambled Halton points with exact integer digits: where photons start.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace tempolux {
+
+/// Radical inverse in one prime base b with a random permutation of the digits at every position, keyed by
+/// (seed, base, position).
+///
+/// i = sum a_k b^k  ->  sum perm_k(a_k) b^(-k-1), for as many digits as fit a 64-bit numerator. Digits are
+/// taken in blocks from tables of at most 2048 entries. Indices that agree modulo b^m agree in the first m
+/// digits of the result, scrambled or not: the property photon groups rest on (algorithms.md 6.2).
+/// Exact for every 64-bit index; the value is rounded once and is always below 1.
+class RadicalInverse {
+ public:
+  /// seed 0 is scrambled like any other; scramble = false gives the plain sequence, for tests.
+  RadicalInverse(std::uint32_t base, std::uint64_t seed, bool scramble = true);
+
+  double operator()(std::uint64_t index) const;
+  std::uint32_t base() const { return base_; }
+
+ private:
+  std::uint32_t base_, block_digits_, block_size_;
+  int block_count_;
+  double scale_;                                 ///< base^-(block_digits * block_count)
+  std::vector<std::uint32_t> table_;             ///< block_count x block_size: reversed, permuted digits
+};
+
+/// The four coordinates of a photon's emission, bases 3, 5, 7, 2 in the order in which they are used:
+/// light choice and position (base 3), position (5), direction (7, 2). Photon i of group g = i mod N_g stays
+/// in one box of volume 1/N_g where N_g = 2^a 3^b 5^c 7^d.
+class PhotonHalton {
+ public:
+  explicit PhotonHalton(std::uint64_t seed);
+  /// Point of photon `index`: components in [0, 1).
+  void point(std::uint64_t index, double u[4]) const;
+
+ private:
+  RadicalInverse base3_, base5_, base7_, base2_;
+};
+
+}  // namespace tempolux

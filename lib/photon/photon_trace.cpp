@@ -1,0 +1,142 @@
+#include "lib/photon/photon_trace.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "formats/error.h"
+#include "lib/core/frame.h"
+#include "lib/core/random.h"
+#include "lib/material/bsdf.h"
+
+namespace tempolux {
+namespace {
+
+using formats::PathKind;
+
+constexpr float kLargestSurvival = 0.998f;   ///< in a lossless box paths end after 500 bounces in the mean
+
+/// Kind of a photon by the events so far (architecture.md 3).
+PathKind kind_after(bool diffuse_seen, bool specular_seen) {
+  return diffuse_seen ? PathKind::indirect : specular_seen ? PathKind::caustic : PathKind::direct;
+}
+
+/// A light ray arriving at a surface: normals turned to the side it comes from.
+struct Arrival {
+  Vec3 wi, normal_geometric, normal;
+  Frame frame;
+  Vec3 wi_local;
+  float shading_correction;                  ///< |wi.n_s| / |wi.n_g|
+  bool flat;                                 ///< the two normals are one
+
+  Arrival(const SurfacePoint& point, Vec3 travel)
+      : wi(-travel),
+        normal_geometric(dot(point.normal_geometric, wi) < 0 ? -point.normal_geometric : point.normal_geometric),
+        normal(dot(point.normal, normal_geometric) < 0 ? -point.normal : point.normal),
+        frame(normal),
+        wi_local(frame.to_local(wi)),
+        flat(normal == normal_geometric) {
+    const float geometric = dot(wi, normal_geometric);
+    shading_correction = flat ? 1 : geometric > 0 ? std::max(0.0f, wi_local.z) / geometric : 0;
+  }
+};
+
+}  // namespace
+
+void PhotonOptions::set_kinds(const std::string& list) {
+  store_direct = store_caustic = store_indirect = false;
+  std::istringstream in(list);
+  for (std::string kind; std::getline(in, kind, ',');) {
+    if (kind == "direct") store_direct = true;
+    else if (kind == "caustic") store_caustic = true;
+    else if (kind == "indirect") store_indirect = true;
+    else throw InputError("--kinds: '" + kind + "' is not a kind of light; choose from direct,caustic,indirect");
+  }
+  if (kinds().empty()) throw InputError("--kinds: no kind named; choose from direct,caustic,indirect");
+}
+
+std::string PhotonOptions::kinds() const {
+  std::string list;
+  for (const auto& [stored, name] : {std::pair{store_direct, "direct"}, std::pair{store_caustic, "caustic"},
+                                     std::pair{store_indirect, "indirect"}})
+    if (stored) list += (list.empty() ? "" : ",") + std::string(name);
+  return list;
+}
+
+std::uint32_t automatic_group_count(std::uint64_t photon_count) {
+  for (std::uint32_t groups : {630u, 210u, 30u, 6u})
+    if (photon_count / groups >= 256) return groups;
+  return 1;
+}
+
+PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const PhotonOptions& options)
+    : tracer_(tracer), lights_(lights), options_(options), halton_(options.seed) {
+  group_count_ = options.group_count ? options.group_count : automatic_group_count(options.photon_count);
+  members_ = (options.photon_count + group_count_ - 1) / group_count_;
+  batches_per_group_ = (members_ + kBatch - 1) / kBatch;
+}
+
+PhotonBatch PhotonTracer::trace(std::size_t number) const {
+  PhotonBatch batch;
+  const std::uint64_t group = number / batches_per_group_, piece = number % batches_per_group_;
+  batch.block.group = std::uint32_t(group);
+  const std::uint64_t last = std::min(members_, (piece + 1) * kBatch);
+  batch.block.photons.reserve(std::size_t(2 * (last - piece * kBatch)));
+  if (!lights_.empty())
+    for (std::uint64_t q = piece * kBatch; q < last; ++q) follow(group + q * group_count_, batch);
+  return batch;
+}
+
+void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
+  const PathRandom random(options_.seed, photon);
+  double u[4];
+  halton_.point(photon, u);
+  const PhotonEmission start = lights_.emit(u);
+  Rgb flux = start.flux * float(1.0 / double(photon_count()));
+  ++batch.path_count;
+  batch.emitted += Rgbd(flux);
+
+  Ray ray{start.origin + start.normal * start.origin_offset, start.travel, 0, INFINITY};
+  bool diffuse_seen = false, specular_seen = false;
+  for (std::uint32_t bounce = 0;; ++bounce) {
+    ++batch.ray_count;
+    Hit hit;
+    if (!tracer_.intersect(ray, hit)) {
+      batch.escaped += Rgbd(flux);
+      return;
+    }
+    const SurfacePoint point = tracer_.surface_point(hit);
+    const Arrival at(point, ray.direction);
+    const Bsdf bsdf(tracer_.frame().materials[point.material]);
+
+    // Record.
+    const PathKind kind = kind_after(diffuse_seen, specular_seen);
+    const bool wanted = kind == PathKind::direct ? options_.store_direct
+                        : kind == PathKind::caustic ? options_.store_caustic : options_.store_indirect;
+    if (wanted && bsdf.has_diffuse() && at.shading_correction > 0) {
+      const Rgb stored = flux * (bsdf.arrival_weight(at.wi_local.z) * at.shading_correction);
+      const Vec3 p = point.position, n = at.normal_geometric;
+      batch.block.photons.push_back({{p.x, p.y, p.z}, {stored.r, stored.g, stored.b},
+                                     formats::encode_normal({n.x, n.y, n.z}), std::uint16_t(point.object), kind,
+                                     std::uint8_t(std::min(bounce, 255u))});
+    }
+
+    // Scatter, or be absorbed.
+    const auto next = bsdf.sample(at.wi_local, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
+    const Vec3 travel = at.frame.to_world(next.wi);
+    const float cos_geometric = dot(travel, at.normal_geometric);
+    const Rgb before = flux;
+    flux *= next.weight;
+    if (!at.flat) flux *= at.shading_correction * std::max(0.0f, cos_geometric) / std::max(1e-6f, next.wi.z);
+    const float survival = std::min(kLargestSurvival, max_component(flux) / std::max(max_component(before), 1e-37f));
+    if (!(cos_geometric > 0) || !(random.get1(bounce, Purpose::roulette) < survival)) {
+      batch.absorbed += Rgbd(before);
+      return;
+    }
+    flux *= 1 / survival;
+    batch.absorbed += Rgbd(before) - Rgbd(flux);
+    (next.diffuse ? diffuse_seen : specular_seen) = true;
+    ray = spawn_ray(point, travel);
+  }
+}
+
+}  // namespace tempolux

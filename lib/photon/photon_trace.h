@@ -1,0 +1,69 @@
+// lib/photon/photon_trace.h -- emit photons, follow them, record where they arrive.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "formats/photons/photons.h"
+#include "lib/core/halton.h"
+#include "lib/light/lights.h"
+#include "lib/trace/trace.h"
+
+namespace tempolux {
+
+struct PhotonOptions {
+  std::uint64_t seed = 0;
+  std::uint64_t photon_count = 1'000'000;    ///< paths to start; rounded up to a multiple of group_count
+  std::uint32_t group_count = 0;             ///< N_g; 0: automatic
+  bool store_direct = true, store_caustic = true, store_indirect = true;
+
+  /// "direct,caustic,indirect" or a part of it. Throws InputError.
+  void set_kinds(const std::string& list);
+  std::string kinds() const;
+};
+
+/// N_g that keeps groups at 256 photons or more: the largest of 630 = 2 3^2 5 7, 210, 30, 6, 1 that does.
+std::uint32_t automatic_group_count(std::uint64_t photon_count);
+
+/// What a batch of photon paths left behind.
+struct PhotonBatch {
+  formats::PhotonBlock block;                ///< of one group
+  Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};   ///< W; emitted = escaped + absorbed up to rounding
+  std::uint64_t ray_count = 0, path_count = 0;
+};
+
+/// Traces photons through one frame. Photon i starts at point i of a scrambled Halton sequence and draws all
+/// else from random numbers keyed by (seed, i, bounce): it does not depend on the number of photons (but for
+/// its flux, emission / probability / N), on the group count or on any other photon.
+///
+/// A photon is recorded at every surface that has a Lambert lobe, before it is scattered, with
+///     flux x arrival_weight(wi) x |wi.n_s| / |wi.n_g|     [W]
+/// so that  rho/pi x density  is what the Lambert lobe reflects, shading normals included [Veach 1997, 5.3];
+/// for a matte flat surface that is the flux that arrives. Roulette keeps the flux of a path about constant
+/// and its expectation exact.
+class PhotonTracer {
+ public:
+  PhotonTracer(const Tracer& tracer, const Lights& lights, const PhotonOptions& options);
+
+  std::uint64_t photon_count() const { return group_count_ * members_; }
+  std::uint32_t group_count() const { return std::uint32_t(group_count_); }
+  /// Batches in file order: groups ascending, each cut into pieces of kBatch paths.
+  std::size_t batch_count() const { return std::size_t(group_count_) * batches_per_group_; }
+  /// Traces batch number b < batch_count(). Thread-safe.
+  PhotonBatch trace(std::size_t batch) const;
+
+  static constexpr std::uint64_t kBatch = 8192;
+
+ private:
+  void follow(std::uint64_t photon, PhotonBatch& batch) const;
+
+  const Tracer& tracer_;
+  const Lights& lights_;
+  PhotonOptions options_;
+  PhotonHalton halton_;
+  std::uint64_t group_count_, members_, batches_per_group_;
+};
+
+}  // namespace tempolux

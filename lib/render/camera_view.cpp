@@ -1,0 +1,54 @@
+#include "lib/render/camera_view.h"
+
+namespace tempolux {
+
+CameraView::CameraView(const PlacedCamera& camera, Vec3d origin, int width, int height)
+    : camera_(camera), camera_from_scene_(inverse(camera.scene_from_camera)), origin_(origin), width_(width), height_(height) {
+  half_height_ = camera.camera.kind == Camera::Kind::perspective ? std::tan(camera.camera.yfov_rad / 2)
+                                                                 : camera.camera.ymag_m;
+  half_width_ = half_height_ * width / height;
+}
+
+Ray CameraView::ray(float x, float y) const {
+  const double px = (2.0 * double(x) / width_ - 1) * half_width_, py = (1 - 2.0 * double(y) / height_) * half_height_;
+  const Affine& from = camera_.scene_from_camera;
+  if (camera_.camera.kind == Camera::Kind::orthographic)
+    return {Vec3(from.point({px, py, 0})), Vec3(normalize(from.direction({0, 0, -1}))), 0, INFINITY};
+  return {Vec3(from.translation), Vec3(normalize(from.direction({px, py, -1}))), 0, INFINITY};
+}
+
+std::optional<std::array<double, 2>> CameraView::project(Vec3 point) const {
+  const Vec3d p = camera_from_scene_.point(Vec3d(point));
+  double x = p.x, y = p.y;
+  if (camera_.camera.kind == Camera::Kind::perspective) {
+    if (!(p.z < 0)) return std::nullopt;
+    x /= -p.z;
+    y /= -p.z;
+  }
+  return std::array{(x / half_width_ + 1) * width_ / 2, (1 - y / half_height_) * height_ / 2};
+}
+
+double CameraView::depth(Vec3 point) const { return -camera_from_scene_.point(Vec3d(point)).z; }
+
+std::array<double, 16> CameraView::world_to_camera() const {
+  const auto& m = camera_from_scene_.row;
+  const Vec3d t = camera_from_scene_.translation - camera_from_scene_.direction(origin_);
+  return {m[0].x, m[1].x, m[2].x, 0, m[0].y, m[1].y, m[2].y, 0, m[0].z, m[1].z, m[2].z, 0, t.x, t.y, t.z, 1};
+}
+
+std::array<double, 16> CameraView::world_to_ndc() const {
+  const std::array<double, 16> c = world_to_camera();
+  std::array<double, 16> ndc{};
+  const bool perspective = camera_.camera.kind == Camera::Kind::perspective;
+  // Perspective: w = -z, NDC depth 1 (no clipping planes); orthographic: w = 1, NDC depth = -z.
+  for (std::size_t row = 0; row < 4; ++row) {
+    const double x = c[row * 4], y = c[row * 4 + 1], z = c[row * 4 + 2], w = c[row * 4 + 3];
+    ndc[row * 4] = x / half_width_;
+    ndc[row * 4 + 1] = y / half_height_;
+    ndc[row * 4 + 2] = -z;
+    ndc[row * 4 + 3] = perspective ? -z : w;
+  }
+  return ndc;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,41 @@
+// lib/render/camera_view.h -- pixels to rays and points to pixels.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "lib/scene/at_frame.h"
+#include "lib/trace/trace.h"
+
+namespace tempolux {
+
+/// A camera with a picture size. Pixel (0, 0) is the top left one; raster coordinates grow right and down,
+/// pixel centres at +0.5. The vertical field of view is the camera's; the width follows the picture's aspect.
+class CameraView {
+ public:
+  CameraView(const PlacedCamera& camera, Vec3d origin, int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// The ray through raster position (x, y), scene space; perspective rays start at the eye, orthographic ones
+  /// on the plane through it. Direction is unit.
+  Ray ray(float x, float y) const;
+  /// Raster position of a scene-space point; nothing if it is not in front of the camera.
+  std::optional<std::array<double, 2>> project(Vec3 point) const;
+  /// Distance along the view axis, m: the Z channel.
+  double depth(Vec3 point) const;
+
+  /// OpenEXR's attributes: row-vector matrices, row-major; camera looks down -Z; visible NDC is [-1, 1]^2.
+  std::array<double, 16> world_to_camera() const;
+  std::array<double, 16> world_to_ndc() const;
+
+ private:
+  PlacedCamera camera_;
+  Affine camera_from_scene_;
+  Vec3d origin_;
+  int width_, height_;
+  double half_width_, half_height_;  ///< of the view plane at distance 1 (perspective) or anywhere, m (orthographic)
+};
+
+}  // namespace tempolux

@@ -1,0 +1,112 @@
+#include "lib/render/path_tracer.h"
+
+#include "lib/core/sampling.h"
+#include "lib/render/shading.h"
+
+namespace tempolux {
+namespace {
+
+constexpr std::uint32_t kRouletteFrom = 3;     ///< bounces that always survive
+constexpr float kLargestSurvival = 0.998f;     ///< so that paths in a lossless box end, after 500 bounces in the mean
+
+/// The last scattering: what a hit on a light must know to weigh itself against light sampling.
+struct LastScatter {
+  bool weighed = false;                        ///< false: camera ray or delta lobe, light sampling could not find it
+  Vec3 position, normal;
+  float pdf_solid_angle = 0;
+};
+
+/// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)]
+void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, const Rgb& throughput, const EyePath& path,
+                       const PixelRandom& random, std::uint32_t bounce, bool weigh_diffuse, Layers& result,
+                       RayCounts& counts) {
+  const bool specular = x.bsdf.has_specular() && !x.bsdf.specular_is_delta();
+  if (!x.bsdf.has_diffuse() && !specular) return;
+  LightSample light;
+  if (!scene.lights.sample(x.surface.position, x.normal, random.get1(bounce, Purpose::light_choice),
+                           random.get2(bounce, Purpose::light_point), light))
+    return;
+  if (!x.sees(light.wi)) return;
+  const Vec3 wi = x.frame.to_local(light.wi);
+  Rgb diffuse = x.bsdf.has_diffuse() ? x.bsdf.eval_diffuse(wi, x.wo_local) : Rgb(0.0f);
+  Rgb glossy = specular ? x.bsdf.eval_specular(wi, x.wo_local) : Rgb(0.0f);
+  if (!light.delta) {
+    if (weigh_diffuse) diffuse *= mis_power(light.pdf_solid_angle, x.bsdf.pdf_diffuse(wi, x.wo_local));
+    if (specular) glossy *= mis_power(light.pdf_solid_angle, x.bsdf.pdf_specular(wi, x.wo_local));
+  }
+  if (is_black(diffuse) && is_black(glossy)) return;
+  ++counts.shadow;
+  if (scene.tracer.occluded(spawn_shadow_ray(x.surface, light.position, light.position_offset))) return;
+  const Rgb arriving = throughput * light.radiance * wi.z;
+  result[path.after(true).layer()] += arriving * diffuse;
+  result[path.after(false).layer()] += arriving * glossy;
+}
+
+/// Emission of the surface that was hit, weighed against light sampling from the scattering before.
+void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, const LastScatter& last,
+                  const Rgb& throughput, Layer layer, Layers& result) {
+  const Rgb emitted = scene.lights.emitted(hit.surface, hit.normal_geometric, wo);
+  if (is_black(emitted)) return;
+  const float weight = last.weighed ? mis_power(last.pdf_solid_angle,
+                                                scene.lights.pdf_solid_angle(last.position, last.normal, hit.surface,
+                                                                             hit.triangle, hit.position,
+                                                                             hit.normal_geometric))
+                                    : 1.0f;
+  result[layer] += throughput * emitted * weight;
+}
+
+}  // namespace
+
+Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
+                      const DiffuseLight* diffuse_light, RayCounts& counts) {
+  Layers result;
+  Rgb throughput{1.0f};
+  EyePath path;
+  LastScatter last;
+  Ray ray = camera_ray;
+  ++counts.camera;
+
+  for (std::uint32_t bounce = 0;; ++bounce) {
+    Hit hit;
+    if (!scene.tracer.intersect(ray, hit)) break;
+    const SurfacePoint point = scene.tracer.surface_point(hit);
+    const Vec3 wo = -ray.direction;
+    add_emission(scene, point, wo, last, throughput, path.layer(), result);
+
+    const ShadingPoint x(point, wo, scene.frame().materials[point.material]);
+    const bool ends_here = diffuse_light && x.bsdf.has_diffuse();
+    add_sampled_light(scene, x, throughput, path, random, bounce, !ends_here, result, counts);
+    if (ends_here) {
+      const DiffuseLight::Irradiance e = diffuse_light->at(point.position, x.normal_geometric, point.object);
+      ++counts.lookups;
+      // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
+      const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi;
+      const bool seen_directly = path.layer() == Layer::emission;
+      result[seen_directly ? Layer::caustic : Layer::specular] += reflected * e.caustic;
+      result[seen_directly ? Layer::indirect : Layer::specular] += reflected * e.indirect;
+    }
+
+    // Next direction: event D or S.
+    const Bsdf::Sample next = x.bsdf.sample(x.wo_local, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
+    if (is_black(next.weight) || (ends_here && next.diffuse)) break;
+    const Vec3 wi = x.frame.to_world(next.wi);
+    if (!x.sees(wi)) break;
+    throughput *= next.weight;
+    path.scatter(next.diffuse);
+
+    if (bounce + 1 >= kRouletteFrom) {
+      const float survival = std::min(kLargestSurvival, max_component(throughput));
+      if (!(random.get1(bounce, Purpose::roulette) < survival)) break;
+      throughput *= 1 / survival;
+    }
+    last.weighed = !next.delta;
+    last.position = point.position;
+    last.normal = x.normal;
+    last.pdf_solid_angle = next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.wo_local) : x.bsdf.pdf_specular(next.wi, x.wo_local);
+    ray = spawn_ray(point, wi);
+    ++counts.bounce;
+  }
+  return result;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,110 @@
+// lib/render/path_tracer.h -- radiance along one camera ray, told apart by layer.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "lib/core/random.h"
+#include "lib/core/sobol.h"
+#include "lib/light/lights.h"
+#include "lib/trace/trace.h"
+
+namespace tempolux {
+
+/// Layers of a frame (architecture.md 3); their sum, in this order, is the image.
+enum class Layer : std::uint8_t { emission, specular, direct, caustic, indirect };
+inline constexpr std::size_t kLayerCount = 5;
+inline constexpr std::array<const char*, kLayerCount> kLayerNames{"emission", "specular", "direct", "caustic", "indirect"};
+
+/// Radiance [W/m^2/sr] by layer.
+template <class T>
+struct LayersT {
+  std::array<RgbT<T>, kLayerCount> value{};
+  RgbT<T>& operator[](Layer layer) { return value[std::size_t(layer)]; }
+  const RgbT<T>& operator[](Layer layer) const { return value[std::size_t(layer)]; }
+};
+using Layers = LayersT<float>;
+
+/// Which layer light belongs to that is seen after the events of an eye path so far.
+class EyePath {
+ public:
+  void scatter(bool diffuse) {
+    switch (layer_) {
+      case Layer::emission: layer_ = diffuse ? Layer::direct : Layer::specular; break;
+      case Layer::specular: break;
+      case Layer::direct: layer_ = diffuse ? Layer::indirect : Layer::caustic; break;
+      case Layer::caustic: layer_ = diffuse ? Layer::indirect : Layer::caustic; break;
+      case Layer::indirect: break;
+    }
+  }
+  EyePath after(bool diffuse) const {
+    EyePath next = *this;
+    next.scatter(diffuse);
+    return next;
+  }
+  Layer layer() const { return layer_; }
+
+ private:
+  Layer layer_ = Layer::emission;
+};
+
+/// Random numbers of one pixel sample: scrambled Sobol points for the first bounces, hashed ones beyond.
+class PixelRandom {
+ public:
+  PixelRandom(std::uint64_t seed, std::uint64_t pixel, std::uint32_t sample)
+      : key_(mix64(mix64(seed ^ 0x8f14e45fceea167aull) + pixel * 0x9e3779b97f4a7c15ull)), sample_(sample), plain_(key_, sample) {}
+
+  Vec2 get2(std::uint32_t bounce, Purpose purpose) const {
+    return bounce < kSobolBounces ? sobol_owen_2d(sample_, key(bounce, purpose)) : plain_.get2(bounce, purpose);
+  }
+  float get1(std::uint32_t bounce, Purpose purpose) const {
+    return bounce < kSobolBounces ? sobol_owen_1d(sample_, key(bounce, purpose)) : plain_.get1(bounce, purpose);
+  }
+
+ private:
+  static constexpr std::uint32_t kSobolBounces = 4;
+  std::uint64_t key(std::uint32_t bounce, Purpose purpose) const {
+    return key_ + (std::uint64_t(bounce) * 64 + std::uint64_t(purpose)) * 0xd1342543de82ef95ull;
+  }
+  std::uint64_t key_;
+  std::uint32_t sample_;
+  PathRandom plain_;
+};
+
+/// Counters of one thread's work, for stats.
+struct RayCounts {
+  std::uint64_t camera = 0, bounce = 0, shadow = 0, lookups = 0;
+  RayCounts& operator+=(const RayCounts& o) {
+    camera += o.camera; bounce += o.bounce; shadow += o.shadow; lookups += o.lookups;
+    return *this;
+  }
+};
+
+/// What replaces the path beyond its first Lambert scattering, if anything: irradiance [W/m^2] by kind.
+class DiffuseLight {
+ public:
+  struct Irradiance {
+    Rgb caustic{0.0f}, indirect{0.0f};
+  };
+  virtual ~DiffuseLight() = default;
+  /// Light arriving at the point on the side of `normal` (unit, scene space). Thread-safe.
+  virtual Irradiance at(Vec3 position, Vec3 normal, std::uint32_t object) const = 0;
+};
+
+/// The scene as a renderer sees it; all must outlive it.
+struct RenderScene {
+  const Tracer& tracer;
+  const Lights& lights;
+  const SceneFrame& frame() const { return tracer.frame(); }
+};
+
+/// Radiance along a camera ray, by layer: unbiased path tracing with light sampling and scattering joined by
+/// the power heuristic [Veach 1997, 9.2], roulette after three bounces, nothing clamped, no depth limit.
+///
+/// With `diffuse_light` the path ends at its first Lambert lobe x: direct light there by light sampling alone,
+/// caustic and indirect light = rho/pi times the irradiance given (biased as that irradiance is).
+Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
+                      const DiffuseLight* diffuse_light, RayCounts& counts);
+
+}  // namespace tempolux

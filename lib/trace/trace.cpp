@@ -1,0 +1,212 @@
+#include "lib/trace/trace.h"
+
+#include <embree3/rtcore.h>
+
+#include <atomic>
+#include <string>
+
+#include "formats/error.h"
+#include "lib/core/check.h"
+
+namespace tempolux {
+namespace {
+
+/// Rays leave a surface this fraction of the largest coordinate of its triangle above it: 16 ulp of float32,
+/// four times the rounding of a point made from barycentrics and of Embree's own arithmetic.
+constexpr float kOffsetScale = 0x1p-20f;
+
+/// Finite, t_min >= 0, and small enough that Embree's squared lengths stay finite.
+bool usable(const Ray& ray) {
+  constexpr float kLargest = 1e18f;
+  const bool finite = is_finite(ray.origin) && is_finite(ray.direction) && ray.t_min >= 0 && !std::isnan(ray.t_max);
+  return finite && max_component(abs(ray.origin)) < kLargest && max_component(abs(ray.direction)) < kLargest;
+}
+
+struct Tree {
+  RTCScene scene = nullptr;
+  std::uint32_t first_surface = 0;
+
+  bool exists() const { return scene != nullptr; }
+};
+
+RTCRay to_embree(const Ray& ray) {
+  RTCRay r;
+  r.org_x = ray.origin.x; r.org_y = ray.origin.y; r.org_z = ray.origin.z; r.tnear = ray.t_min;
+  r.dir_x = ray.direction.x; r.dir_y = ray.direction.y; r.dir_z = ray.direction.z; r.tfar = ray.t_max;
+  r.time = 0; r.mask = 0xffffffffu; r.id = 0; r.flags = 0;
+  return r;
+}
+
+bool intersect_tree(const Tree& tree, RTCRayHit& query, Hit& hit) {
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(tree.scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit = {query.ray.tfar, tree.first_surface + query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+  return true;
+}
+
+}  // namespace
+
+struct Tracer::Impl {
+  const SceneFrame* frame = nullptr;
+  RTCDevice device = nullptr;
+  Tree fixed, moving;
+  mutable std::atomic<std::uint64_t> refused{0};
+
+  ~Impl() {
+    if (fixed.scene) rtcReleaseScene(fixed.scene);
+    if (moving.scene) rtcReleaseScene(moving.scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  void throw_on_error() const {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw ResourceError("building the search tree: out of memory");
+    throw ResourceError("building the search tree: Embree error " + std::to_string(int(error)));
+  }
+
+  void build(Tree& tree, std::size_t first, std::size_t last) {
+    tree.first_surface = std::uint32_t(first);
+    if (first == last) return;
+    tree.scene = rtcNewScene(device);
+    rtcSetSceneBuildQuality(tree.scene, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneFlags(tree.scene, RTC_SCENE_FLAG_ROBUST);
+    for (std::size_t s = first; s < last; ++s) {
+      const Surface& surface = frame->surfaces[s];
+      const auto& triangles = surface.primitive->triangles;
+      RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+      // Embree reads vertices in 16-byte loads, so the last one needs padding: a copy of its own.
+      auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+          geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), surface.positions.size()));
+      if (vertices) std::copy(surface.positions.begin(), surface.positions.end(), vertices);
+      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                                 sizeof triangles[0], triangles.size());
+      rtcCommitGeometry(geometry);
+      rtcAttachGeometryByID(tree.scene, geometry, unsigned(s - first));
+      rtcReleaseGeometry(geometry);
+      throw_on_error();
+    }
+    rtcCommitScene(tree.scene);
+    throw_on_error();
+  }
+};
+
+Tracer::Tracer(const SceneFrame& frame) : impl_(std::make_unique<Impl>()) {
+  impl_->frame = &frame;
+  impl_->device = rtcNewDevice(nullptr);
+  if (!impl_->device) throw ResourceError("Embree: cannot make a device");
+  impl_->build(impl_->fixed, 0, frame.static_count);
+  impl_->build(impl_->moving, frame.static_count, frame.surfaces.size());
+}
+
+Tracer::~Tracer() = default;
+Tracer::Tracer(Tracer&&) noexcept = default;
+
+bool Tracer::intersect_static(const Ray& ray, Hit& hit) const {
+  if (!impl_->fixed.exists()) return false;
+  if (!usable(ray)) {
+    impl_->refused.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+  RTCRayHit query{to_embree(ray), {}};
+  return intersect_tree(impl_->fixed, query, hit);
+}
+
+bool Tracer::intersect(const Ray& ray, Hit& hit) const {
+  if (!usable(ray)) {
+    impl_->refused.fetch_add(1, std::memory_order_relaxed);
+    return false;
+  }
+  // The first call shortens the ray, so the second reports only what is strictly nearer.
+  RTCRayHit query{to_embree(ray), {}};
+  bool found = false;
+  if (impl_->fixed.exists()) found = intersect_tree(impl_->fixed, query, hit);
+  if (impl_->moving.exists()) {
+    if (found && query.ray.tfar <= query.ray.tnear) return true;
+    Hit nearer;
+    const float limit = query.ray.tfar;
+    if (intersect_tree(impl_->moving, query, nearer) && (!found || nearer.t < limit)) {
+      hit = nearer;
+      found = true;
+    }
+  }
+  return found;
+}
+
+bool Tracer::occluded(const Ray& ray) const {
+  if (!usable(ray)) {
+    impl_->refused.fetch_add(1, std::memory_order_relaxed);
+    return true;
+  }
+  for (const Tree* tree : {&impl_->fixed, &impl_->moving}) {
+    if (!tree->exists()) continue;
+    RTCRay query = to_embree(ray);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(tree->scene, &context, &query);
+    if (query.tfar < 0) return true;
+  }
+  return false;
+}
+
+SurfacePoint Tracer::surface_point(const Hit& hit) const {
+  const Surface& surface = impl_->frame->surfaces[hit.surface];
+  const auto& corner = surface.primitive->triangles[hit.triangle];
+  const Vec3 a = surface.positions[corner[0]], b = surface.positions[corner[1]], c = surface.positions[corner[2]];
+  const float w = 1 - hit.u - hit.v;
+
+  SurfacePoint point;
+  point.position = a * w + b * hit.u + c * hit.v;
+  point.normal_geometric = normalize(cross(b - a, c - a));
+  if (surface.flipped) point.normal_geometric = -point.normal_geometric;
+  point.normal = point.normal_geometric;
+  if (!surface.normals.empty()) {
+    const Vec3 n = normalize(surface.normals[corner[0]] * w + surface.normals[corner[1]] * hit.u +
+                             surface.normals[corner[2]] * hit.v);
+    if (length2(n) > 0) point.normal = dot(n, point.normal_geometric) < 0 ? -n : n;
+  }
+  if (!surface.primitive->uvs.empty()) {
+    const auto& uv = surface.primitive->uvs;
+    point.uv = {uv[corner[0]].x * w + uv[corner[1]].x * hit.u + uv[corner[2]].x * hit.v,
+                uv[corner[0]].y * w + uv[corner[1]].y * hit.u + uv[corner[2]].y * hit.v};
+  }
+  point.offset = kOffsetScale * max_component(max(max(abs(a), abs(b)), abs(c)));
+  point.surface = hit.surface;
+  point.triangle = hit.triangle;
+  point.object = surface.object;
+  point.material = surface.material;
+  point.u = hit.u;
+  point.v = hit.v;
+  return point;
+}
+
+std::uint64_t Tracer::refused_ray_count() const { return impl_->refused.load(); }
+const SceneFrame& Tracer::frame() const { return *impl_->frame; }
+
+namespace {
+
+Vec3 offset_origin(const SurfacePoint& point, Vec3 direction) {
+  const float side = dot(direction, point.normal_geometric) < 0 ? -point.offset : point.offset;
+  return point.position + point.normal_geometric * side;
+}
+
+}  // namespace
+
+Ray spawn_ray(const SurfacePoint& point, Vec3 direction) {
+  return {offset_origin(point, direction), direction, 0, INFINITY};
+}
+
+Ray spawn_shadow_ray(const SurfacePoint& point, Vec3 target, float target_offset) {
+  const Vec3 origin = offset_origin(point, target - point.position);
+  const Vec3 direction = target - origin;
+  const float distance = length(direction);
+  // Stop short of the light by its own offset, a few ulp of the distance at least.
+  const float stop = distance > 0 ? 1 - std::min(0.5f, 4 * target_offset / distance + 0x1p-20f) : 0;
+  return {origin, direction, 0, stop};
+}
+
+}  // namespace tempolux
