@@ -69,6 +69,7 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
   for (std::uint32_t bounce = 0;; ++bounce) {
     Hit hit;
     if (!scene.tracer.intersect(ray, hit)) break;
+    result.coverage = 1;
     const SurfacePoint point = scene.tracer.surface_point(hit);
     const Vec3 wo = -ray.direction;
     add_emission(scene, point, wo, last, throughput, path.layer(), result);

@@ -21,6 +21,7 @@ inline constexpr std::array<const char*, kLayerCount> kLayerNames{"emission", "s
 template <class T>
 struct LayersT {
   std::array<RgbT<T>, kLayerCount> value{};
+  T coverage = 0;                  ///< 1 if the camera ray met a surface: the alpha channel
   RgbT<T>& operator[](Layer layer) { return value[std::size_t(layer)]; }
   const RgbT<T>& operator[](Layer layer) const { return value[std::size_t(layer)]; }
 };

@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <map>
+
+#include "formats/error.h"
+#include "lib/core/parallel.h"
+#include "lib/material/bsdf.h"
+#include "lib/render/frame_renderer.h"
+
+namespace tempolux {
+namespace {
+
+const std::vector<std::string> kGroups{"RGBA", "layers", "emission", "specular", "direct", "caustic", "indirect",
+                                       "Z", "N", "P", "id", "albedo", "motion"};
+
+bool asked(const std::vector<std::string>& channels, const char* name) {
+  return std::find(channels.begin(), channels.end(), name) != channels.end();
+}
+
+/// Where the same point of the same surface is in another frame: the surface is found by node and primitive,
+/// the point by its barycentrics.
+class OtherFrame {
+ public:
+  explicit OtherFrame(const NeighbourFrame& other) : other_(other) {
+    if (!other.frame) return;
+    for (const Surface& surface : other.frame->surfaces) surfaces_[{surface.node, surface.primitive}] = &surface;
+  }
+  /// Pixels right and up from raster position `here`; zero if the point is not in front of that camera.
+  Vec2 motion(const Surface& surface, const SurfacePoint& point, std::array<double, 2> here) const {
+    if (!other_.frame) return {};
+    const auto found = surfaces_.find({surface.node, surface.primitive});
+    if (found == surfaces_.end()) return {};
+    const auto& corner = surface.primitive->triangles[point.triangle];
+    const auto& p = found->second->positions;
+    const Vec3 there = p[corner[0]] * (1 - point.u - point.v) + p[corner[1]] * point.u + p[corner[2]] * point.v;
+    const auto raster = other_.view->project(there);
+    if (!raster) return {};
+    return {float((*raster)[0] - here[0]), float(here[1] - (*raster)[1])};
+  }
+
+ private:
+  NeighbourFrame other_;
+  std::map<std::pair<std::uint32_t, const Primitive*>, const Surface*> surfaces_;
+};
+
+}  // namespace
+
+void check_channels(const std::vector<std::string>& channels) {
+  for (const std::string& name : channels)
+    if (std::find(kGroups.begin(), kGroups.end(), name) == kGroups.end()) {
+      std::string list;
+      for (const std::string& group : kGroups) list += (list.empty() ? "" : ",") + group;
+      throw InputError("--channels: '" + name + "' is no channel group; choose from " + list);
+    }
+}
+
+void add_data_channels(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
+                       const NeighbourFrame& next, const NeighbourFrame& previous, Image& image) {
+  // Channels are added first, then looked up: adding may move them.
+  const auto add3 = [&](const char* a, const char* b, const char* c) {
+    image.add(a); image.add(b); image.add(c);
+  };
+  const bool z = asked(channels, "Z"), n = asked(channels, "N"), p = asked(channels, "P"), id = asked(channels, "id"),
+             albedo = asked(channels, "albedo"), motion = asked(channels, "motion");
+  if (!(z || n || p || id || albedo || motion)) return;
+  if (z) image.add("Z");
+  if (n) add3("N.X", "N.Y", "N.Z");
+  if (p) add3("P.X", "P.Y", "P.Z");
+  if (albedo) add3("albedo.R", "albedo.G", "albedo.B");
+  if (motion) { image.add("forward.u"); image.add("forward.v"); image.add("backward.u"); image.add("backward.v"); }
+  if (id) image.add_ids("id.object");
+  const auto values = [&](const char* name) -> float* {
+    Channel* channel = image.find(name);
+    return channel ? channel->values.data() : nullptr;
+  };
+  float *const Z = values("Z"), *const NX = values("N.X"), *const NY = values("N.Y"), *const NZ = values("N.Z"),
+        *const PX = values("P.X"), *const PY = values("P.Y"), *const PZ = values("P.Z"), *const AR = values("albedo.R"),
+        *const AG = values("albedo.G"), *const AB = values("albedo.B"), *const FU = values("forward.u"),
+        *const FV = values("forward.v"), *const BU = values("backward.u"), *const BV = values("backward.v");
+  std::uint32_t* const ID = id ? image.find("id.object")->ids.data() : nullptr;
+  const OtherFrame later(motion ? next : NeighbourFrame{}), earlier(motion ? previous : NeighbourFrame{});
+  const Vec3d origin = scene.frame().origin;
+
+  parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const float x = float(int(i % std::size_t(view.width()))) + 0.5f, y = float(int(i / std::size_t(view.width()))) + 0.5f;
+      const Ray ray = view.ray(x, y);
+      Hit hit;
+      if (!scene.tracer.intersect(ray, hit)) {
+        if (Z) Z[i] = INFINITY;
+        if (ID) ID[i] = kNone;
+        continue;
+      }
+      const SurfacePoint point = scene.tracer.surface_point(hit);
+      if (Z) Z[i] = float(view.depth(point.position));
+      if (ID) ID[i] = point.object;
+      if (NX) {
+        const Vec3 normal = dot(point.normal, ray.direction) > 0 ? -point.normal : point.normal;
+        NX[i] = normal.x; NY[i] = normal.y; NZ[i] = normal.z;
+      }
+      if (PX) {
+        const Vec3d world = Vec3d(point.position) + origin;
+        PX[i] = float(world.x); PY[i] = float(world.y); PZ[i] = float(world.z);
+      }
+      if (AR) {
+        const Bsdf bsdf(scene.frame().materials[point.material]);
+        const Rgb rho = bsdf.diffuse_albedo();
+        AR[i] = rho.r; AG[i] = rho.g; AB[i] = rho.b;
+      }
+      if (FU) {
+        const Surface& surface = scene.frame().surfaces[point.surface];
+        const std::array<double, 2> here = view.project(point.position).value_or(std::array{double(x), double(y)});
+        const Vec2 f = later.motion(surface, point, here), b = earlier.motion(surface, point, here);
+        FU[i] = f.x; FV[i] = f.y; BU[i] = b.x; BV[i] = b.y;
+      }
+    }
+  });
+}
+
+}  // namespace tempolux

@@ -1,0 +1,135 @@
+#include "lib/render/frame_renderer.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+
+#include "formats/error.h"
+#include "lib/core/parallel.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kTile = 16;
+
+/// Samples [first, first + count) of every pixel of one half, joined to what `image` holds already.
+void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
+                 int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
+  const int first = image.samples, tiles_x = (view.width() + kTile - 1) / kTile;
+  const int tiles = tiles_x * ((view.height() + kTile - 1) / kTile);
+  std::mutex mutex;
+  std::atomic<int> done{0};
+  parallel_chunks(std::size_t(tiles), 1, [&](std::size_t tile, std::size_t) {
+    RayCounts counts;
+    const int x0 = int(tile) % tiles_x * kTile, y0 = int(tile) / tiles_x * kTile;
+    for (int y = y0; y < std::min(y0 + kTile, view.height()); ++y)
+      for (int x = x0; x < std::min(x0 + kTile, view.width()); ++x) {
+        const std::size_t pixel = std::size_t(y) * std::size_t(view.width()) + std::size_t(x);
+        LayersT<double> sum;
+        for (int s = first; s < first + count; ++s) {
+          const PixelRandom random(seed, pixel, std::uint32_t(s));
+          const Vec2 jitter = random.get2(0, Purpose::pixel);
+          const Layers sample = trace_eye_path(scene, view.ray(float(x) + jitter.x, float(y) + jitter.y), random,
+                                               options.diffuse_light, counts);
+          for (std::size_t l = 0; l < kLayerCount; ++l) sum.value[l] += Rgbd(sample.value[l]);
+          sum.coverage += double(sample.coverage);
+        }
+        Layers& mean = image.pixels[pixel];
+        const double old_weight = double(first) / (first + count), new_weight = 1.0 / (first + count);
+        for (std::size_t l = 0; l < kLayerCount; ++l)
+          mean.value[l] = Rgb(Rgbd(mean.value[l]) * old_weight + sum.value[l] * new_weight);
+        mean.coverage = float(double(mean.coverage) * old_weight + sum.coverage * new_weight);
+      }
+    const std::lock_guard lock(mutex);
+    rays += counts;
+    if (progress) progress(double(++done) / tiles);
+  });
+  image.samples += count;
+}
+
+LayerImage empty_layers(const CameraView& view) {
+  LayerImage image{view.width(), view.height(), 0, {}};
+  image.pixels.resize(std::size_t(view.width()) * std::size_t(view.height()));
+  return image;
+}
+
+Rgb total(const Layers& layers) {
+  Rgb sum = layers.value[0];
+  for (std::size_t l = 1; l < kLayerCount; ++l) sum += layers.value[l];
+  return sum;
+}
+
+double mean_radiance(const LayerImage& image) {
+  double sum = 0;
+  for (const Layers& pixel : image.pixels) {
+    const Rgb t = total(pixel);
+    sum += double(t.r) + double(t.g) + double(t.b);
+  }
+  return sum / double(std::max<std::size_t>(1, 3 * image.pixels.size()));
+}
+
+/// Mean of the two halves, its error from their difference: E[(a-b)^2] / 4 is the variance of (a+b)/2.
+void join_halves(RenderedFrame& frame) {
+  const LayerImage &a = frame.half[0], &b = frame.half[1];
+  frame.mean = a;
+  frame.mean.samples = a.samples + b.samples;
+  double difference2 = 0;
+  for (std::size_t p = 0; p < a.pixels.size(); ++p) {
+    Layers& mean = frame.mean.pixels[p];
+    for (std::size_t l = 0; l < kLayerCount; ++l) mean.value[l] = (a.pixels[p].value[l] + b.pixels[p].value[l]) * 0.5f;
+    mean.coverage = (a.pixels[p].coverage + b.pixels[p].coverage) * 0.5f;
+    const Rgbd d = Rgbd(total(a.pixels[p])) - Rgbd(total(b.pixels[p]));
+    difference2 += d.r * d.r + d.g * d.g + d.b * d.b;
+  }
+  frame.own_rmse = std::sqrt(difference2 / 4 / double(std::max<std::size_t>(1, 3 * a.pixels.size())));
+}
+
+}  // namespace
+
+RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options) {
+  RenderedFrame frame;
+  const bool halves = options.halves || options.target_error > 0;
+  if (!halves) {
+    frame.mean = empty_layers(view);
+    render_pass(scene, view, options.seed, options, options.samples, frame.mean, frame.rays, options.progress);
+  } else {
+    // The second half's seed is far from any user's seeds.
+    const std::uint64_t seeds[2] = {options.seed, options.seed ^ 0x68616c665f74776full};
+    frame.half[0] = empty_layers(view);
+    frame.half[1] = empty_layers(view);
+    int count = std::max(1, options.samples / 2);
+    for (;;) {
+      for (int h = 0; h < 2; ++h)
+        render_pass(scene, view, seeds[h], options, count, frame.half[h], frame.rays,
+                    options.progress ? [&, h](double f) { options.progress((f + h) / 2); } : options.progress);
+      join_halves(frame);
+      if (!(options.target_error > 0) || frame.own_rmse <= options.target_error * mean_radiance(frame.mean)) break;
+      count = frame.half[0].samples;
+      if (4 * count > options.max_samples) break;
+    }
+  }
+  frame.mean_radiance = mean_radiance(frame.mean);
+  return frame;
+}
+
+void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {
+  const auto add = [&](const std::string& prefix, auto&& value_of) {
+    constexpr const char* kNames[3] = {"R", "G", "B"};
+    for (int c = 0; c < 3; ++c) {
+      Channel& channel = image.add(prefix + kNames[c]);
+      for (std::size_t p = 0; p < layers.pixels.size(); ++p) channel.values[p] = value_of(layers.pixels[p])[c];
+    }
+  };
+  for (const std::string& name : channels) {
+    if (name == "RGBA") {
+      add("", [](const Layers& pixel) { return total(pixel); });
+      Channel& alpha = image.add("A");
+      for (std::size_t p = 0; p < layers.pixels.size(); ++p) alpha.values[p] = layers.pixels[p].coverage;
+    }
+    for (std::size_t l = 0; l < kLayerCount; ++l)
+      if (name == "layers" || name == kLayerNames[l])
+        add(std::string(kLayerNames[l]) + ".", [l](const Layers& pixel) { return pixel.value[l]; });
+  }
+}
+
+}  // namespace tempolux

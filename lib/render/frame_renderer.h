@@ -1,0 +1,60 @@
+// lib/render/frame_renderer.h -- all pixels of a frame: colour layers averaged over samples.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "lib/image/image.h"
+#include "lib/render/camera_view.h"
+#include "lib/render/path_tracer.h"
+
+namespace tempolux {
+
+struct FrameOptions {
+  std::uint64_t seed = 0;
+  int samples = 16;                     ///< per pixel; with halves even: half of them in each
+  bool halves = false;                  ///< keep two independent halves apart
+  double target_error = 0;              ///< > 0: double the samples until the estimated relative RMSE is below
+  int max_samples = 1 << 20;            ///< never more than this for target_error
+  const DiffuseLight* diffuse_light = nullptr;
+  std::function<void(double)> progress; ///< called with [0, 1]; may be empty
+};
+
+/// Mean radiance by layer and pixel of one half (or of all samples).
+struct LayerImage {
+  int width = 0, height = 0, samples = 0;
+  std::vector<Layers> pixels;           ///< width * height, top row first
+};
+
+struct RenderedFrame {
+  LayerImage mean;                      ///< over all samples
+  LayerImage half[2];                   ///< empty unless halves or target_error
+  RayCounts rays;
+  /// RMSE of the mean over pixels and channels [radiance], estimated from the halves' difference; < 0: unknown.
+  double own_rmse = -1;
+  double mean_radiance = 0;             ///< over pixels and channels
+};
+
+/// Box filter of one pixel; every sample of a pixel is a stratified position in it. Deterministic for any
+/// number of threads.
+RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options);
+
+/// Adds to `image` the colour channels asked for: "RGBA", "layers" or a layer's name. The sum of the layers
+/// in the order of kLayerNames, in float32, is R G B exactly.
+void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image);
+
+/// Data channels of one ray through each pixel's centre: "Z", "N", "P", "id", "albedo", "motion" (forward
+/// and backward: pixels, +u right, +v up; zero where nothing is seen). `next` and `previous` are the scene one
+/// frame later and earlier with their cameras; needed for motion only.
+struct NeighbourFrame {
+  const SceneFrame* frame = nullptr;
+  const CameraView* view = nullptr;
+};
+void add_data_channels(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels,
+                       const NeighbourFrame& next, const NeighbourFrame& previous, Image& image);
+
+/// Channel groups that may be asked for; throws InputError that lists them if one of `channels` is not among them.
+void check_channels(const std::vector<std::string>& channels);
+
+}  // namespace tempolux
