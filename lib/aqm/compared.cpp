@@ -1,0 +1,119 @@
+// lib/aqm/compared.cpp -- choosing planes and checking that they fit.
+#include "lib/aqm/compared.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "formats/error.h"
+
+namespace tempolux {
+namespace {
+
+/// "layers RGB, direct, indirect; channels Z, id.object"
+std::string what_is_there(const Image& image) {
+  std::string layers, channels;
+  std::set<std::string> in_layers;
+  for (const std::string& layer : image.layers()) {
+    layers += (layers.empty() ? "" : ", ") + (layer.empty() ? "RGB" : layer);
+    for (const char* suffix : {"R", "G", "B"}) in_layers.insert(layer.empty() ? suffix : layer + "." + suffix);
+  }
+  for (const Channel& channel : image.channels)
+    if (!in_layers.contains(channel.name)) channels += (channels.empty() ? "" : ", ") + channel.name;
+  return "it has layers " + (layers.empty() ? "none" : layers) + "; other channels " +
+         (channels.empty() ? "none" : channels);
+}
+
+std::string layer_name(const std::string& layer) { return layer.empty() ? "RGB" : layer; }
+
+void check_size(const NamedImage& image, const NamedImage& test) {
+  const auto size = [](const Image& i) { return std::to_string(i.width) + "x" + std::to_string(i.height); };
+  if (image.image->width == test.image->width && image.image->height == test.image->height) return;
+  throw InputError(image.name + ": " + size(*image.image) + " pixels, but " + test.name + " has " +
+                   size(*test.image) + "; compare frames of one size");
+}
+
+/// The planes of `image` in the order of `like`.
+std::vector<const std::vector<float>*> planes_like(const NamedImage& image, const std::string& layer,
+                                                   const std::vector<std::string>& like) {
+  LayerPlanes found = layer_planes(image, layer);
+  if (found.suffixes == like) return found.planes;
+  std::string wanted;
+  for (const std::string& suffix : like) wanted += (wanted.empty() ? "" : ", ") + suffix;
+  throw InputError(image.name + ": layer " + layer_name(layer) + " has other channels than the test frame's (" +
+                   wanted + "); " + what_is_there(*image.image));
+}
+
+std::vector<std::uint8_t> pixels_of_mask(const NamedImage& mask) {
+  std::vector<std::uint8_t> counted(mask.image->pixel_count(), 0);
+  for (const Channel& channel : mask.image->channels)
+    for (std::size_t i = 0; i < counted.size(); ++i)
+      if (channel.ids.empty() ? channel.values[i] != 0.0f : channel.ids[i] != 0) counted[i] = 1;
+  if (std::ranges::count(counted, 0) == std::ptrdiff_t(counted.size()))
+    throw InputError(mask.name + ": leaves no pixel to compare; make it other than 0 where pixels count");
+  return counted;
+}
+
+void check_finite(const Compared& pair, const std::vector<const std::vector<float>*>& planes,
+                  const std::string& name, const std::string& layer) {
+  for (std::size_t c = 0; c < planes.size(); ++c)
+    for (std::size_t i = 0; i < planes[c]->size(); ++i)
+      if (!std::isfinite((*planes[c])[i]) && pair.counts(i))
+        throw InputError(name + ": layer " + layer_name(layer) + " channel " +
+                         (pair.channels[c].empty() ? layer : pair.channels[c]) + " at column " +
+                         std::to_string(i % std::size_t(pair.width)) + ", row " +
+                         std::to_string(i / std::size_t(pair.width)) +
+                         ": not a finite number; leave such pixels out with --mask");
+}
+
+}  // namespace
+
+LayerPlanes layer_planes(const NamedImage& image, const std::string& layer) {
+  const std::string prefix = layer.empty() ? "" : layer + ".";
+  LayerPlanes found;
+  const auto take = [&](const Channel* channel, const std::string& suffix) {
+    if (!channel || !channel->ids.empty()) return;
+    found.suffixes.push_back(suffix);
+    found.planes.push_back(&channel->values);
+  };
+  for (const char* suffix : {"R", "G", "B"}) take(image.image->find(prefix + suffix), suffix);
+  if (found.planes.size() == 3) return found;
+
+  found = {};
+  take(image.image->find(layer.empty() ? "Y" : layer), "");
+  if (!found.planes.empty()) return found;
+  std::vector<const Channel*> members;
+  for (const Channel& channel : image.image->channels)
+    if (!layer.empty() && channel.name.starts_with(prefix)) members.push_back(&channel);
+  std::ranges::sort(members, {}, &Channel::name);
+  for (const Channel* member : members) take(member, member->name.substr(prefix.size()));
+  if (!found.planes.empty()) return found;
+  throw InputError(image.name + ": layer " + layer_name(layer) + " is not in this file; " +
+                   what_is_there(*image.image));
+}
+
+Compared compare_layers(const ComparedInputs& inputs) {
+  const auto& [test, reference, second, mask, layer] = inputs;
+  for (const NamedImage* other : {&reference, &second, &mask})
+    if (other->image) check_size(*other, test);
+
+  Compared pair;
+  pair.width = test.image->width;
+  pair.height = test.image->height;
+  LayerPlanes planes = layer_planes(test, layer);
+  pair.channels = std::move(planes.suffixes);
+  pair.test = std::move(planes.planes);
+  pair.reference = planes_like(reference, layer, pair.channels);
+  if (second.image) pair.second = planes_like(second, layer, pair.channels);
+  if (mask.image) pair.counted = pixels_of_mask(mask);
+  for (const NamedImage* from : {&test, &reference}) {
+    const Channel* ids = from->image->find("id.object");
+    if (!pair.objects && ids && !ids->ids.empty()) pair.objects = &ids->ids;
+  }
+  check_finite(pair, pair.test, test.name, layer);
+  check_finite(pair, pair.reference, reference.name, layer);
+  check_finite(pair, pair.second, second.name, layer);
+  return pair;
+}
+
+}  // namespace tempolux
