@@ -8,13 +8,28 @@ namespace tempolux {
 
 /// Scattering of one material at one point, in the local frame of the shading normal (z = normal).
 ///
-/// f = f_D + f_S. f_D is the Lambert lobe base_color (1 - metallic) / pi, coupled to the reflection above it
-/// so that the whole never reflects more than it receives, from either side:
-///     f_D(wi, wo) = rho/pi  c(wo) c(wi),   c(w) = (1 - A_S(w)) / sqrt(1 - A_S,mean)
-/// with A_S the directional albedo of the S lobes; c = 1 exactly for a matte material (Kelemen &
-/// Szirmay-Kalos 2001). f_S is GGX with Smith's height-correlated masking and Schlick's Fresnel term, a delta
-/// mirror below a roughness of kMirrorRoughness. wi and wo point away from the surface; both on the side
-/// z > 0, else f = 0 (transmission is not part of this version).
+/// f = f_D + f_S [1/sr]. wi and wo are unit vectors away from the surface, both on the side z > 0, else f = 0
+/// (transmission is not part of this version: the factor is taken as 0).
+///
+/// f_S is GGX (ggx.h) with Schlick's Fresnel term F = F0 + (F90 - F0) (1 - wo h)^5, or below a roughness of
+/// kMirrorRoughness a delta mirror with the same F. From glTF 2.0 and KHR_materials_specular, _ior:
+///     F0  = mix(specular min(1, ((ior - 1) / (ior + 1))^2 specular_color), base_color, metallic)
+///     F90 = mix(specular, 1, metallic)
+/// plus the light that microfacets reflect more than once, which GGX alone loses (70 % of a rough white
+/// metal at normal incidence), by Kulla & Conty, "Revisiting Physically Based Shading at Imageworks", 2017:
+///     f_ms(wi, wo) = F_ms (1 - E(wi)) (1 - E(wo)) / (pi (1 - E_mean)),
+///     F_ms = F_mean^2 E_mean / (1 - F_mean (1 - E_mean)),   F_mean = (20 F0 + F90) / 21,
+/// where E is the albedo of GGX for F = 1. It is reciprocal, and for F = 1 all light comes back: the
+/// directional albedo A(w) of f_S is F0 a + F90 b + F_ms (1 - E), a + b = E, with a and b from a table.
+///
+/// f_D is the Lambert lobe rho / pi, rho = base_color (1 - metallic), under the reflection above it, coupled
+/// as by Kelemen & Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model", EG 2001:
+///     f_D(wi, wo) = rho/pi  c(wo) c(wi),   c(w) = (1 - A(w)) / sqrt(1 - A_mean),
+/// A of the channel with the largest F0, A_mean = 2 integral_0^1 A(mu) mu dmu. Then
+///     integral of c(w) cos / pi = (1 - A_mean) / sqrt(1 - A_mean) = sqrt(1 - A_mean), and
+///     integral of f_D(wi, wo) cos_i = rho c(wo) sqrt(1 - A_mean) = rho (1 - A(wo)):
+/// the Lambert lobe gets what is not reflected, and D + S returns A + rho (1 - A) <= 1 from either side. For a
+/// matte material (F0 = F90 = 0) there is no f_S and c is 1 exactly.
 class Bsdf {
  public:
   explicit Bsdf(const Material& material);
@@ -52,10 +67,25 @@ class Bsdf {
   float pdf_specular(Vec3 wi, Vec3 wo) const;
 
  private:
-  float diffuse_probability(float cos_o) const;
+  struct Reflection {  ///< of uniform light towards a direction: by one and by several microfacet reflections
+    Rgb single{0.0f}, multiple{0.0f};
+    float lost = 0;    ///< 1 - E: what GGX alone would lose at F = 1
+  };
+  Reflection reflection(float cos_theta) const;
+  float diffuse_probability(const Reflection& r) const;
+  static float multiple_share(const Reflection& r);
+  Rgb specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const;
+  float specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const;
+  void sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const;
+  void sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, Sample& s) const;
 
-  Rgb rho_{0.0f}, f0_{0.0f}, f90_{0.0f};
-  float alpha_ = 1, mean_albedo_ = 0;
+  Rgb rho_{0.0f}, f0_{0.0f};
+  Rgb multiple_{0.0f};              ///< F_ms / (1 - E_mean)
+  float f0_max_ = 0, f90_ = 0;
+  float alpha_ = 1, alpha2_ = 1;
+  float mean_lost_ = 0;             ///< 1 - E_mean
+  float mean_albedo_ = 0;           ///< A_mean of the channel with the largest F0
+  float coupling_scale_ = 1;        ///< 1 / sqrt(1 - A_mean)
   bool diffuse_ = false, specular_ = false, delta_ = false;
 };
 

@@ -1,0 +1,183 @@
+#include "lib/material/bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/sampling.h"
+#include "lib/material/albedo.h"
+#include "lib/material/ggx.h"
+
+namespace tempolux {
+namespace {
+
+float power5(float x) { return x * x * x * x * x; }
+float mean(Rgb c) { return (c.r + c.g + c.b) / 3; }
+/// Schlick's Fresnel term.
+Rgb fresnel(Rgb f0, float f90, float cos_h) {
+  const float k = power5(std::clamp(1 - cos_h, 0.0f, 1.0f));
+  return f0 * (1 - k) + Rgb(f90 * k);
+}
+
+/// F0 of glTF's dielectric: KHR_materials_ior, KHR_materials_specular.
+Rgb dielectric_f0(const Material& m) {
+  const float r = (m.ior - 1) / (m.ior + 1), f = r * r;
+  return Rgb{std::min(1.0f, f * m.specular_color.r), std::min(1.0f, f * m.specular_color.g),
+             std::min(1.0f, f * m.specular_color.b)} * m.specular;
+}
+
+}  // namespace
+
+Bsdf::Bsdf(const Material& material) {
+  const float metallic = material.metallic;
+  rho_ = material.base_color * (1 - metallic);
+  diffuse_ = max_component(rho_) > 0;
+  f90_ = material.specular * (1 - metallic) + metallic;
+  if (!(f90_ > 0)) return;  // specular = metallic = 0: matte, F0 is 0 as well
+  specular_ = true;
+  f0_ = dielectric_f0(material) * (1 - metallic) + material.base_color * metallic;
+  f0_max_ = max_component(f0_);
+  delta_ = material.roughness < kMirrorRoughness;
+  if (delta_) {
+    mean_albedo_ = (20 * f0_max_ + f90_) / 21;
+  } else {
+    alpha_ = material.roughness * material.roughness;
+    alpha2_ = alpha_ * alpha_;
+    const AlbedoPair m = ggx_mean_albedo(alpha_);
+    const float e = m.a + m.b, lost = 1 - e;
+    mean_lost_ = lost;
+    if (lost > 1e-4f) {  // below, GGX alone is as good as lossless
+      for (int c = 0; c < 3; ++c) {
+        const float f = (20 * f0_[c] + f90_) / 21;
+        multiple_[c] = f * f * e / (1 - f * lost) / lost;
+      }
+    }
+    mean_albedo_ = f0_max_ * m.a + f90_ * m.b + max_component(multiple_) * lost * lost;
+  }
+  // A lobe that reflects everything leaves nothing to the Lambert lobe.
+  const float rest = 1 - mean_albedo_;
+  if (rest > 1e-6f) coupling_scale_ = 1 / std::sqrt(rest);
+  else diffuse_ = false;
+}
+
+Bsdf::Reflection Bsdf::reflection(float cos_theta) const {
+  Reflection r;
+  if (!specular_) return r;
+  AlbedoPair e;
+  if (delta_) {
+    e.b = power5(std::clamp(1 - cos_theta, 0.0f, 1.0f));
+    e.a = 1 - e.b;
+  } else {
+    e = ggx_albedo(cos_theta, alpha_);
+    r.lost = std::max(0.0f, 1 - (e.a + e.b));
+  }
+  r.single = f0_ * e.a + Rgb(f90_ * e.b);
+  r.multiple = multiple_ * (mean_lost_ * r.lost);
+  return r;
+}
+
+float Bsdf::diffuse_coupling(float cos_theta) const {
+  if (!specular_) return 1;
+  const Reflection r = reflection(cos_theta);
+  return std::max(0.0f, 1 - max_component(r.single + r.multiple)) * coupling_scale_;
+}
+
+Rgb Bsdf::diffuse_reflectance(float cos_o) const {
+  return specular_ ? rho_ * (diffuse_coupling(cos_o) / coupling_scale_) : rho_;
+}
+
+float Bsdf::arrival_weight(float cos_i) const { return diffuse_coupling(cos_i) * coupling_scale_; }
+
+/// P(D): the Lambert lobe's share of what uniform light would leave towards wo.
+float Bsdf::diffuse_probability(const Reflection& r) const {
+  if (!diffuse_) return 0;
+  if (!specular_) return 1;
+  const Rgb s = r.single + r.multiple;
+  const float d = mean(rho_) * std::max(0.0f, 1 - max_component(s)), total = d + mean(s);
+  return total > 0 ? d / total : 0;
+}
+
+Rgb Bsdf::eval_diffuse(Vec3 wi, Vec3 wo) const {
+  if (!diffuse_ || !(wi.z > 0) || !(wo.z > 0)) return Rgb(0.0f);
+  if (!specular_) return rho_ * kInvPi;
+  return rho_ * (kInvPi * diffuse_coupling(wi.z) * diffuse_coupling(wo.z));
+}
+
+Rgb Bsdf::specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const {
+  const Vec3 h = normalize(wi + wo);
+  const float d = ggx::distribution(h, alpha2_) * ggx::visibility(wi.z, wo.z, alpha2_);
+  return fresnel(f0_, f90_, dot(wo, h)) * d + multiple_ * (kInvPi * lost_i * lost_o);
+}
+
+Rgb Bsdf::eval_specular(Vec3 wi, Vec3 wo) const {
+  if (!specular_ || delta_ || !(wi.z > 0) || !(wo.z > 0)) return Rgb(0.0f);
+  return specular(wi, wo, reflection(wi.z).lost, reflection(wo.z).lost);
+}
+
+float Bsdf::pdf_diffuse(Vec3 wi, Vec3 wo) const {
+  if (!diffuse_ || !(wi.z > 0) || !(wo.z > 0)) return 0;
+  return specular_ ? diffuse_probability(reflection(wo.z)) * pdf_hemisphere_cos(wi.z)
+                   : pdf_hemisphere_cos(wi.z);
+}
+
+/// What is reflected more than once, as a share of event S.
+float Bsdf::multiple_share(const Reflection& r) {
+  const float multiple = mean(r.multiple), total = multiple + mean(r.single);
+  return total > 0 ? multiple / total : 0;
+}
+
+/// Of event S, without P(S): visible normals and, for what is reflected more than once, the cosine.
+float Bsdf::specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const {
+  const float share = multiple_share(r);
+  return (1 - share) * ggx::pdf_reflected(normalize(wi + wo), wo.z, alpha2_) + share * pdf_hemisphere_cos(wi.z);
+}
+
+float Bsdf::pdf_specular(Vec3 wi, Vec3 wo) const {
+  if (!specular_ || delta_ || !(wi.z > 0) || !(wo.z > 0)) return 0;
+  const Reflection r = reflection(wo.z);
+  return (1 - diffuse_probability(r)) * specular_density(wi, wo, r);
+}
+
+void Bsdf::sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const {
+  const float p = diffuse_probability(r);
+  s.diffuse = true;
+  s.wi = sample_hemisphere_cos(u);
+  s.pdf_solid_angle = p * pdf_hemisphere_cos(s.wi.z);
+  s.weight = rho_;  // f_D cos / pdf_D; c = 1
+  if (!specular_) return;
+  s.weight *= diffuse_coupling(s.wi.z) * diffuse_coupling(wo.z) / p;
+  if (!delta_) s.pdf_solid_angle += (1 - p) * specular_density(s.wi, wo, r);
+}
+
+void Bsdf::sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, Sample& s) const {
+  const float p = 1 - diffuse_probability(r);
+  if (delta_) {
+    s.delta = true;
+    s.wi = {-wo.x, -wo.y, wo.z};
+    s.weight = r.single / p;
+    s.pdf_solid_angle = p;
+    return;
+  }
+  const float share = multiple_share(r);
+  if (u_lobe < share) {
+    s.wi = sample_hemisphere_cos(u);
+  } else {
+    const Vec3 h = ggx::sample_visible_normal(wo, alpha_, u);
+    s.wi = normalize(h * (2 * dot(wo, h)) - wo);
+  }
+  if (!(s.wi.z > 0)) return;  // reflected into the surface: absorbed
+  const float density = p * specular_density(s.wi, wo, r);
+  s.weight = specular(s.wi, wo, reflection(s.wi.z).lost, r.lost) * (s.wi.z / density);
+  s.pdf_solid_angle = density + (1 - p) * pdf_hemisphere_cos(s.wi.z);
+}
+
+Bsdf::Sample Bsdf::sample(Vec3 wo, float u_lobe, Vec2 u) const {
+  Sample s;
+  if (!(wo.z > 0)) return s;
+  const Reflection r = reflection(wo.z);
+  const float p = diffuse_probability(r);
+  if (u_lobe < p) sample_diffuse(wo, u, r, s);
+  else if (specular_ && max_component(r.single) > 0) sample_specular(wo, (u_lobe - p) / (1 - p), u, r, s);
+  return s;
+}
+
+}  // namespace tempolux
