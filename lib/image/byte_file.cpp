@@ -1,0 +1,73 @@
+#include "lib/image/byte_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "formats/error.h"
+
+namespace tempolux {
+
+ByteFile::ByteFile(std::string path) : path_(std::move(path)) {
+  // Not blocking: opening a pipe by mistake must give a message, not a wait.
+  descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor_ < 0) throw InputError(path_ + ": cannot open: " + std::strerror(errno));
+  struct stat status;
+  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+    ::close(descriptor_);
+    throw InputError(path_ + ": not a regular file; images are read from files only");
+  }
+  size_ = std::uint64_t(status.st_size);
+}
+
+ByteFile::~ByteFile() { ::close(descriptor_); }
+
+void ByteFile::read_at(std::uint64_t offset, void* to, std::size_t count) const {
+  char* next = static_cast<char*>(to);
+  while (count > 0) {
+    const ssize_t got = ::pread(descriptor_, next, count, off_t(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw ResourceError(path_ + ": cannot read: " + std::strerror(errno));
+    if (got == 0)
+      throw InputError(path_ + ": byte " + std::to_string(offset) +
+                       ": the file ends here, too early; write it again");
+    next += got;
+    offset += std::uint64_t(got);
+    count -= std::size_t(got);
+  }
+}
+
+void write_bytes(const std::string& path, const void* data, std::size_t size) {
+  const auto fail = [&](int error) {
+    throw ResourceError(path + ": cannot write: " + std::strerror(error));
+  };
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail(errno);
+  const char* next = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t done = ::write(descriptor, next, std::min(size, std::size_t(1) << 30));
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) {
+      const int error = errno;
+      ::close(descriptor);
+      fail(error);
+    }
+    next += done;
+    size -= std::size_t(done);
+  }
+  if (::close(descriptor) != 0) fail(errno);
+}
+
+std::string one_line(const std::string& text) {
+  std::string line = text.substr(0, 1024);
+  std::replace_if(line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
+  while (!line.empty() && (line.back() == ' ' || line.back() == '.')) line.pop_back();
+  return line;
+}
+
+}  // namespace tempolux

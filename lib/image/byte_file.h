@@ -1,0 +1,35 @@
+// lib/image/byte_file.h -- a regular file read at given offsets, safely from several threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace tempolux {
+
+class ByteFile {
+ public:
+  /// Throws InputError if `path` cannot be opened or is not a regular file.
+  explicit ByteFile(std::string path);
+  ~ByteFile();
+  ByteFile(const ByteFile&) = delete;
+  ByteFile& operator=(const ByteFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::uint64_t size() const { return size_; }
+  /// Fills all of `to`; InputError "FILE: byte N: ends here ..." if the file ends before. Thread-safe.
+  void read_at(std::uint64_t offset, void* to, std::size_t count) const;
+
+ private:
+  std::string path_;
+  int descriptor_ = -1;
+  std::uint64_t size_ = 0;
+};
+
+/// Creates or truncates `path` and writes all bytes; not synced. Throws ResourceError with the reason.
+void write_bytes(const std::string& path, const void* data, std::size_t size);
+
+/// Text of somebody else's library for a one-line message: control characters become spaces, at most 1 KB.
+std::string one_line(const std::string& text);
+
+}  // namespace tempolux

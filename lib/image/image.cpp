@@ -1,0 +1,65 @@
+#include "lib/image/image.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "formats/error.h"
+
+namespace tempolux {
+namespace {
+
+std::string joined(const std::string& layer, const char* component) {
+  return layer.empty() ? component : layer + "." + component;
+}
+
+}  // namespace
+
+const Channel* Image::find(std::string_view name) const {
+  const auto found = std::find_if(channels.begin(), channels.end(),
+                                  [&](const Channel& channel) { return channel.name == name; });
+  return found == channels.end() ? nullptr : &*found;
+}
+
+Channel* Image::find(std::string_view name) { return const_cast<Channel*>(std::as_const(*this).find(name)); }
+
+Channel& Image::add(std::string name) {
+  channels.push_back({std::move(name), std::vector<float>(pixel_count()), {}});
+  return channels.back();
+}
+
+Channel& Image::add_ids(std::string name) {
+  channels.push_back({std::move(name), {}, std::vector<std::uint32_t>(pixel_count())});
+  return channels.back();
+}
+
+std::array<const std::vector<float>*, 3> Image::rgb(const std::string& layer) const {
+  std::array<const std::vector<float>*, 3> planes{};
+  constexpr std::array components{"R", "G", "B"};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Channel* channel = find(joined(layer, components[c]));
+    if (!channel || !channel->ids.empty()) {
+      std::string known;
+      for (const std::string& name : layers()) known += (known.empty() ? "" : ", ") + (name.empty() ? "RGB" : name);
+      throw InputError("no colour layer \"" + (layer.empty() ? "RGB" : layer) + "\"; the image has " +
+                       (known.empty() ? "none" : known));
+    }
+    planes[c] = &channel->values;
+  }
+  return planes;
+}
+
+std::vector<std::string> Image::layers() const {
+  std::set<std::string> names;  // "" sorts first
+  for (const Channel& channel : channels) {
+    if (channel.name == "R") names.insert("");
+    if (channel.name.size() > 2 && channel.name.ends_with(".R"))
+      names.insert(channel.name.substr(0, channel.name.size() - 2));
+  }
+  std::erase_if(names, [&](const std::string& name) {
+    return !find(joined(name, "G")) || !find(joined(name, "B"));
+  });
+  return {names.begin(), names.end()};
+}
+
+}  // namespace tempolux
