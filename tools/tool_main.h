@@ -4,8 +4,9 @@
 //
 //     int main(int argc, char** argv) {
 //       tools::Tool tool("photon-trace", "Trace photons through a scene.", argc, argv);
-//       std::string scene;
+//       std::string scene, output;
 //       tool.app().add_option("scene", scene, "glTF scene")->required();
+//       tool.output_option(output, "the photons")->required();
 //       tool.common_options(tools::uses_scene | tools::uses_seed);
 //       return tool.run([&] { ...; return tools::exit_ok; });
 //     }
@@ -14,10 +15,18 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-namespace CLI { class App; }
+#include "tools/arguments.h"
+#include "tools/output.h"
+#include "tools/stats.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace tempolux::tools {
 
@@ -29,9 +38,10 @@ enum ExitCode {
 };
 
 enum CommonOptions : unsigned {
-  uses_scene = 1,       ///< --camera --fps --segment --light-units --frame --state --allow-stale ...
+  uses_scene = 1,       ///< --fps --segment --light-units --state --allow-stale --allow-outside
   uses_seed = 2,        ///< --seed --seed-mode
-  uses_camera = 4,
+  uses_camera = 4,      ///< --camera
+  uses_frames = 8,      ///< --frame N or --frames SPEC, into Common::frames
 };
 
 /// Values of the common options.
@@ -40,6 +50,7 @@ struct Common {
   std::uint64_t seed = 0;
   std::string seed_mode = "fixed";       ///< or "frame": the frame number is mixed into the seed
   std::string camera = "auto";
+  std::vector<int> frames{0};            ///< at least one
   double fps = 24;
   int segment_length = 24;
   std::string light_units = "raw";
@@ -51,24 +62,6 @@ struct Common {
 
   /// The seed for a frame under --seed-mode.
   std::uint64_t seed_for_frame(int frame) const;
-};
-
-/// What a run did, written by --stats as JSON (formats/stats/stats.md).
-class Stats {
- public:
-  Stats();
-  ~Stats();
-  /// Starts a phase ("load", "build", "trace", "write" ...); ends the one before. CPU and wall seconds are summed by name.
-  void phase(const std::string& name, bool parallel = false);
-  void end_phase();
-  void count(const std::string& name, double value);          ///< adds to counts.NAME: rays, photons, bytes ...
-  void set(const std::string& name, double value);            ///< results.NAME: its own error estimate ...
-  void set(const std::string& name, const std::string& value);
-  std::string json(const std::string& tool, int exit_code) const;
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
 };
 
 /// One program run. Sets flush-to-zero before any thread starts; maps exceptions to one line on standard
@@ -83,7 +76,19 @@ class Tool {
   void common_options(unsigned flags);
   const Common& common() const;
 
-  /// Parses, runs, reports. Returns the exit code for main.
+  /// Adds -o,--output (or another option that names an output, which then stays out of the history).
+  CLI::Option* output_option(std::string& path, const std::string& help,
+                             const std::string& names = "-o,--output");
+  /// Adds an option whose value is a count ("1M"), bytes ("2GiB") or "WIDTHxHEIGHT"; the default shown by
+  /// --help is the variable's value.
+  CLI::Option* count_option(const std::string& names, std::uint64_t& count, const std::string& help);
+  CLI::Option* bytes_option(const std::string& names, std::uint64_t& bytes, const std::string& help);
+  CLI::Option* size_option(const std::string& names, int& width, int& height, const std::string& help);
+  /// Leaves an option out of history_line(): it does not shape what the output holds.
+  void leave_out_of_history(const CLI::Option* option);
+
+  /// Parses, runs, reports. Returns the exit code for main. --stats and --depfile are written when the body
+  /// has returned (with 0, or 1 of a comparison), not after an error.
   int run(const std::function<int()>& body);
 
   Stats& stats();
@@ -91,50 +96,21 @@ class Tool {
   void warn(const std::string& message);
   /// Only with --verbose.
   void say(const std::string& message);
-  /// Progress in [0, 1]: a bar, only on a terminal and after a second.
+  /// Progress in [0, 1]: a bar, only on a terminal and after a second. From any thread.
   void progress(double fraction);
-  /// This tool's line for an output's history: version, tool, the options that shape content, input names
-  /// without folders. Not --threads, --stats, --depfile, --quiet, --verbose, --state, outputs.
-  std::string history_line() const;
-  /// Files this run depends on, for --depfile (deduplicated, order kept).
-  void depends_on(const std::string& file);
+  /// This tool's line for an output's history, LF included: version, tool, the options that shape content
+  /// and were given, input names without folders. Not --threads, --stats, --depfile, --quiet, --verbose,
+  /// --state, outputs. With `frame`, --frames SPEC becomes --frame N and patterns in names are filled, so
+  /// that a file says the same whether it was made alone or as one of a range.
+  std::string history_line(std::optional<int> frame = {}) const;
+  /// Files this run depends on, for --depfile (deduplicated, order kept). With --state, files named here
+  /// as part of the scene (`of_scene`) are left out for the state files.
+  void depends_on(const std::string& file, bool of_scene = false);
   const std::string& name() const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// An output under construction: a temporary name in the same folder (".NAME.tmp.HOST.PID"), created at once so that an
-/// unwritable place is noticed before the work; commit() syncs and renames. Destroyed uncommitted: removed.
-/// "-" is standard output (refused if that is a terminal).
-class Output {
- public:
-  explicit Output(const std::string& path, bool no_clobber = false);   ///< throws ResourceError
-  ~Output();
-  Output(Output&&) noexcept;
-  const std::string& path() const;        ///< final name
-  const std::string& temporary_path() const;  ///< write here; "/dev/stdout" for "-"
-  bool is_stdout() const;
-  /// Writes bytes through a 1 MiB buffer of its own; throws ResourceError with the reason.
-  void write(const void* data, std::size_t size);
-  std::ostream& stream();                 ///< the same buffer as a std::ostream
-  void commit();                          ///< flush, check, fsync, rename; throws ResourceError
-
- private:
-  struct State;
-  std::unique_ptr<State> state_;
-};
-
-/// Frames of a range: "0-47", "0-47x2", "1,5,9", "9-1" (down). Throws InputError.
-std::vector<int> parse_frames(const std::string& text);
-/// "f.####.exr" or "f.%04d.exr" with the frame put in; a name without a pattern is returned as it is.
-std::string frame_name(const std::string& pattern, int frame);
-bool has_frame_pattern(const std::string& pattern);
-/// "10k", "1M", "1.5M", "1G", "250000" as a count; "64KiB", "2GiB" as bytes (parse_bytes also takes K, M, G = 1024^n). Throw InputError.
-std::uint64_t parse_count(const std::string& text);
-std::uint64_t parse_bytes(const std::string& text);
-/// "640x360". Throws InputError; each from 1 to 65536.
-void parse_size(const std::string& text, int& width, int& height);
 
 }  // namespace tempolux::tools

@@ -1,0 +1,68 @@
+#include "tools/scene_input.h"
+
+#include "formats/error.h"
+#include "lib/scene/gltf_load.h"
+
+namespace tempolux::tools {
+
+SceneInput::SceneInput(Tool& tool, const std::string& path) : tool_(tool) {
+  const Common& common = tool.common();
+  GltfOptions options;
+  options.allow_outside = common.allow_outside;
+  scene_ = load_gltf(path, options);
+  for (const std::string& warning : scene_.warnings) tool.warn(warning);
+  for (const std::string& file : scene_.files) tool.depends_on(file);
+  time_.fps = common.fps;
+  time_.segment_length = common.segment_length;
+  time_.light_units = common.light_units;
+  if (common.light_units == "spec") tool.say(path + ": punctual lights divided by 683");
+}
+
+void SceneInput::enter_segment(int frame) {
+  if (segment_ && frame >= segment_->segment().first && frame <= segment_->segment().last) return;
+  segment_ = std::make_unique<SegmentScene>(scene_, segment_of(scene_, frame, time_), time_);
+  emission_.reset();
+}
+
+SceneFrame SceneInput::at(int frame) {
+  const int last = int(scene_.duration_s * time_.fps + 0.5);
+  if (frame < 0 || (frame > last && last > 0)) {
+    const int clamped = frame < 0 ? 0 : last;
+    if (!warned_range_)
+      tool_.warn(scene_.path + ": frame " + std::to_string(frame) + " is outside the animation (0-" +
+                 std::to_string(last) + "); using frame " + std::to_string(clamped));
+    warned_range_ = true;
+    frame = clamped;
+  }
+  enter_segment(frame);
+  return segment_->at(frame);
+}
+
+const EmissionTable& SceneInput::emission(int frame) {
+  enter_segment(frame);
+  if (!emission_) emission_ = build_emission_table(scene_, segment_->segment(), time_);
+  return *emission_;
+}
+
+formats::Identity identity_of(const SceneFrame& frame) {
+  const SceneHashes& h = frame.hashes;
+  return {h.static_geometry, h.moving_geometry, h.materials, h.lights, h.media, frame.frame, frame.frame};
+}
+
+void check_identity(Tool& tool, const std::string& file, const formats::Identity& file_identity, const SceneFrame& frame) {
+  if (!file_identity.known()) {
+    tool.warn(file + ": does not say which scene it was made for; used as it is");
+    return;
+  }
+  const auto stale = formats::stale_concerns(file_identity, identity_of(frame),
+                                             {"static_geometry", "moving_geometry", "materials", "lights", "media"});
+  if (stale.empty()) return;
+  std::string list;
+  for (const std::string& concern : stale) list += (list.empty() ? "" : ", ") + concern;
+  const std::string message = file + ": made for another state of the scene: " + list + " differ at frame " +
+                              std::to_string(frame.frame);
+  if (!tool.common().allow_stale) throw InputError(message + "; trace it again, or pass --allow-stale");
+  tool.warn(message);
+}
+
+}  // namespace tempolux::tools
