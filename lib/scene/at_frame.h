@@ -106,6 +106,7 @@ struct SceneFrame {
   std::vector<PlacedLight> lights;
   Vec3d origin{};                           ///< world = origin + scene space
   Box3 bounds;                              ///< of the whole segment, scene space
+  std::vector<Affine> world_from_node;      ///< per node, at this frame
   SceneHashes hashes;
 
   /// The camera of a node (an index into Scene::nodes, as Scene::camera_node returns it) at this frame.

@@ -1,0 +1,117 @@
+// lib/scene/animate.cpp
+#include "lib/scene/animate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tempolux {
+namespace {
+
+using Value = std::array<double, 4>;
+using Path = AnimationTrack::Path;
+using Interpolation = AnimationTrack::Interpolation;
+
+Value unit(Value q) {
+  const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  if (!(length > 0)) return {0, 0, 0, 1};  // a spline through zero has no direction there
+  for (double& c : q) c /= length;
+  return q;
+}
+
+Value lerp(const Value& a, const Value& b, double s) {
+  Value v;
+  for (std::size_t c = 0; c < 4; ++c) v[c] = a[c] + (b[c] - a[c]) * s;
+  return v;
+}
+
+/// Along the shorter arc.
+Value slerp(const Value& a, Value b, double s) {
+  double cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
+  if (cosine < 0) {
+    cosine = -cosine;
+    for (double& c : b) c = -c;
+  }
+  if (a == b) return a;
+  if (cosine > 1 - 1e-9) return unit(lerp(a, b, s));  // the sine below would lose its digits
+  const double angle = std::acos(cosine), sine = std::sin(angle);
+  const double wa = std::sin((1 - s) * angle) / sine, wb = std::sin(s * angle) / sine;
+  Value v;
+  for (std::size_t c = 0; c < 4; ++c) v[c] = wa * a[c] + wb * b[c];
+  return unit(v);
+}
+
+/// Cubic Hermite spline of glTF appendix C, written so that equal values without tangents stay exact.
+Value spline(const AnimationTrack& track, std::size_t key, double s, double dt_s) {
+  const Value &v0 = track.values[3 * key + 1], &out0 = track.values[3 * key + 2];
+  const Value &in1 = track.values[3 * key + 3], &v1 = track.values[3 * key + 4];
+  const double s2 = s * s, s3 = s2 * s;
+  Value v;
+  for (std::size_t c = 0; c < 4; ++c)
+    v[c] = v0[c] + (v1[c] - v0[c]) * (3 * s2 - 2 * s3) + dt_s * ((s3 - 2 * s2 + s) * out0[c] + (s3 - s2) * in1[c]);
+  return v;
+}
+
+bool same_time(double a, double b) { return float(a) == float(b); }
+
+bool has_two_values(const AnimationTrack& track) {
+  return std::any_of(track.values.begin(), track.values.end(),
+                     [&](const Value& v) { return v != track.values.front(); });
+}
+
+}  // namespace
+
+Value evaluate(const AnimationTrack& track, double time_s) {
+  const std::vector<double>& times = track.times_s;
+  const auto value = [&](std::size_t key) {
+    return track.values[track.interpolation == Interpolation::cubic_spline ? 3 * key + 1 : key];
+  };
+  const std::size_t next = std::size_t(std::upper_bound(times.begin(), times.end(), time_s) - times.begin());
+  if (next < times.size() && same_time(times[next], time_s)) return value(next);
+  if (next == 0) return value(0);
+  const std::size_t key = next - 1;
+  if (next == times.size() || same_time(times[key], time_s) || track.interpolation == Interpolation::step)
+    return value(key);
+  const double dt_s = times[next] - times[key], s = (time_s - times[key]) / dt_s;
+  const bool rotation = track.path == Path::rotation;
+  if (track.interpolation == Interpolation::linear)
+    return rotation ? slerp(value(key), value(next), s) : lerp(value(key), value(next), s);
+  const Value v = spline(track, key, s, dt_s);
+  return rotation ? unit(v) : v;
+}
+
+Animator::Animator(const Scene& scene)
+    : scene_(&scene), tracks_(scene.nodes.size()), animated_(scene.nodes.size(), false) {
+  for (const Animation& animation : scene.animations)
+    for (const AnimationTrack& track : animation.tracks) {
+      tracks_[std::size_t(track.node)].push_back(&track);
+      if (has_two_values(track)) animated_[std::size_t(track.node)] = true;
+    }
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    const int parent = scene.nodes[n].parent;
+    if (parent >= 0 && animated_[std::size_t(parent)]) animated_[n] = true;
+  }
+}
+
+Affine Animator::local(std::size_t n, double time_s) const {
+  const Node& node = scene_->nodes[n];
+  if (node.has_matrix) return node.matrix;
+  Vec3d translation = node.translation, scale = node.scale;
+  std::array<double, 4> rotation = node.rotation;
+  for (const AnimationTrack* track : tracks_[n]) {
+    const Value v = evaluate(*track, time_s);
+    if (track->path == Path::rotation) rotation = v;
+    else (track->path == Path::translation ? translation : scale) = {v[0], v[1], v[2]};
+  }
+  return affine_from_trs(translation, rotation, scale);
+}
+
+std::vector<Affine> Animator::world_from_node(double time_s) const {
+  std::vector<Affine> world(scene_->nodes.size());
+  for (std::size_t n = 0; n < world.size(); ++n) {
+    const int parent = scene_->nodes[n].parent;
+    world[n] = parent < 0 ? local(n, time_s) : world[std::size_t(parent)] * local(n, time_s);
+  }
+  return world;
+}
+
+}  // namespace tempolux

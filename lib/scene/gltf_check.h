@@ -1,0 +1,27 @@
+// lib/scene/gltf_check.h -- accessors of a glTF file, checked before they are read.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lib/core/vec.h"
+#include "lib/scene/gltf_model.h"
+
+namespace tempolux::gltf {
+
+/// Every bufferView lies inside its buffer and every accessor, sparse parts included, inside its view, in
+/// 64-bit arithmetic. Everything below relies on it. Throws InputError naming the first that does not.
+void check_accessors(const Import& import);
+
+/// Elements of an accessor as floats; integers are normalised where the accessor says so
+/// (KHR_mesh_quantization). `place` is who asks, for messages. Throws InputError if the accessor does not
+/// exist or has another type, or (all but indices) if a number is not finite.
+std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place);
+std::vector<Vec2> read_vec2(Import& import, int accessor, const std::string& place);
+/// Unsigned 8, 16 or 32-bit integers, not normalised.
+std::vector<std::uint32_t> read_indices(Import& import, int accessor, const std::string& place);
+/// All components in one row; `components` per element (1, 3 or 4).
+std::vector<double> read_numbers(Import& import, int accessor, int components, const std::string& place);
+
+}  // namespace tempolux::gltf

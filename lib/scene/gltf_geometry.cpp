@@ -1,0 +1,180 @@
+// lib/scene/gltf_geometry.cpp -- meshes as indexed triangles, each primitive with just the vertices it uses.
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "lib/scene/gltf_check.h"
+
+namespace tempolux::gltf {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+constexpr std::size_t kMaxObjects = 65534;  // id.object is 16 bits in files; 65535 means none
+
+std::vector<Triangle> triangles_from(const std::vector<std::uint32_t>& indices, int mode) {
+  std::vector<Triangle> triangles;
+  const std::size_t count = indices.size();
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    triangles.reserve(count / 3);
+    for (std::size_t i = 0; i + 2 < count; i += 3) triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  } else {
+    const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
+    if (count > 2) triangles.reserve(count - 2);
+    for (std::size_t i = 0; i + 2 < count; ++i) {
+      if (fan) triangles.push_back({indices[i + 1], indices[i + 2], indices[0]});
+      else triangles.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
+    }
+  }
+  return triangles;
+}
+
+/// Differences of floats are exact enough in double that only truly collinear corners give zero.
+bool has_area(const std::vector<Vec3>& positions, const Triangle& t) {
+  const Vec3d a(positions[t[0]]), b(positions[t[1]]), c(positions[t[2]]);
+  return length2(cross(b - a, c - a)) > 0;
+}
+
+template <class T>
+std::vector<T> pick(const std::vector<T>& values, const std::vector<std::uint32_t>& used) {
+  std::vector<T> picked;
+  if (values.empty()) return picked;
+  picked.reserve(used.size());
+  for (const std::uint32_t i : used) picked.push_back(values[i]);
+  return picked;
+}
+
+/// Exporters may put many primitives on one shared vertex accessor: keep the vertices that are used.
+void drop_unused_vertices(Primitive& primitive) {
+  std::vector<std::uint32_t> new_index(primitive.positions.size(), 0), used;
+  for (const Triangle& t : primitive.triangles)
+    for (const std::uint32_t i : t) new_index[i] = 1;
+  for (std::uint32_t i = 0; i < new_index.size(); ++i)
+    if (new_index[i]) {
+      new_index[i] = std::uint32_t(used.size());
+      used.push_back(i);
+    }
+  if (used.size() == new_index.size()) return;
+  primitive.positions = pick(primitive.positions, used);
+  primitive.normals = pick(primitive.normals, used);
+  primitive.uvs = pick(primitive.uvs, used);
+  for (Triangle& t : primitive.triangles)
+    for (std::uint32_t& i : t) i = new_index[i];
+}
+
+std::vector<std::uint32_t> vertex_order(Import& import, const tinygltf::Primitive& source, std::size_t vertices,
+                                        const std::string& place) {
+  if (source.indices == -1) {
+    import.take_memory(vertices * sizeof(std::uint32_t), place);
+    std::vector<std::uint32_t> all(vertices);
+    for (std::size_t i = 0; i < vertices; ++i) all[i] = std::uint32_t(i);
+    return all;
+  }
+  std::vector<std::uint32_t> indices = read_indices(import, source.indices, place + ".indices");
+  const auto largest = std::max_element(indices.begin(), indices.end());
+  if (largest != indices.end() && *largest >= vertices)
+    import.fail(place + ".indices", "index " + std::to_string(*largest) + " is beyond the " +
+                                        std::to_string(vertices) + " vertices");
+  return indices;
+}
+
+void read_normals(Import& import, int accessor, const std::string& place, Primitive& primitive) {
+  primitive.normals = read_vec3(import, accessor, place);
+  if (primitive.normals.size() != primitive.positions.size())
+    import.fail(place, "there are not as many normals as positions");
+  for (Vec3& normal : primitive.normals) {
+    const Vec3d unit = normalize(Vec3d(normal));
+    if (length2(unit) == 0) {
+      import.ignore("normals of zero length (their primitives are flat shaded)");
+      primitive.normals.clear();
+      return;
+    }
+    normal = Vec3(unit);
+  }
+}
+
+void note_ignored(Import& import, const tinygltf::Primitive& source) {
+  if (!source.targets.empty()) import.ignore("morph targets (meshes stay in their rest shape)");
+  for (const auto& [name, accessor] : source.attributes) {
+    if (name == "COLOR_0") import.ignore("vertex colours");
+    if (name == "TEXCOORD_1") import.ignore("second texture coordinates");
+  }
+  for (const auto& [name, value] : source.extensions) import.ignore(name + " of primitives");
+}
+
+/// Empty triangles if there is nothing to draw in it.
+Primitive read_primitive(Import& import, const tinygltf::Primitive& source, const std::string& place) {
+  Primitive primitive;
+  if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+    import.fail(place + ".mode", std::to_string(source.mode) + " is not one of glTF's");
+  if (source.mode < TINYGLTF_MODE_TRIANGLES) {
+    import.ignore("points and lines");
+    return primitive;
+  }
+  const auto position = source.attributes.find("POSITION");
+  if (position == source.attributes.end()) {
+    import.ignore("primitives without positions");
+    return primitive;
+  }
+  primitive.positions = read_vec3(import, position->second, place + ".POSITION");
+  const std::vector<std::uint32_t> order = vertex_order(import, source, primitive.positions.size(), place);
+  if (source.mode == TINYGLTF_MODE_TRIANGLES && order.size() % 3 != 0)
+    import.ignore("one or two indices at the end of a triangle list");
+  import.take_memory(order.size() * sizeof(Triangle), place);
+  primitive.triangles = triangles_from(order, source.mode);
+  const std::size_t before = primitive.triangles.size();
+  std::erase_if(primitive.triangles, [&](const Triangle& t) { return !has_area(primitive.positions, t); });
+  if (before > primitive.triangles.size())
+    import.ignore("triangles of zero area", before - primitive.triangles.size());
+  if (const auto normal = source.attributes.find("NORMAL"); normal != source.attributes.end())
+    read_normals(import, normal->second, place + ".NORMAL", primitive);
+  if (const auto uv = source.attributes.find("TEXCOORD_0"); uv != source.attributes.end()) {
+    primitive.uvs = read_vec2(import, uv->second, place + ".TEXCOORD_0");
+    if (primitive.uvs.size() != primitive.positions.size())
+      import.fail(place + ".TEXCOORD_0", "there are not as many texture coordinates as positions");
+  }
+  if (source.material < -1 || source.material >= int(import.model.materials.size()))
+    import.fail(place + ".material", "material " + std::to_string(source.material) + " does not exist");
+  primitive.material = source.material == -1 ? std::uint32_t(import.scene.materials.size() - 1)
+                                             : std::uint32_t(source.material);
+  note_ignored(import, source);
+  drop_unused_vertices(primitive);
+  return primitive;
+}
+
+/// Index of the mesh in the scene, reading it at its first use; -1 if it has no triangles.
+int mesh_of(Import& import, std::size_t source_index, std::vector<bool>& seen) {
+  if (seen[source_index]) return import.mesh_from_source[source_index];
+  seen[source_index] = true;
+  const tinygltf::Mesh& source = import.model.meshes[source_index];
+  const std::string place = place_of("meshes", source_index, source.name);
+  Mesh mesh;
+  mesh.name = source.name;
+  for (std::size_t p = 0; p < source.primitives.size(); ++p) {
+    Primitive primitive = read_primitive(import, source.primitives[p], place + ".primitives[" + std::to_string(p) + "]");
+    if (!primitive.triangles.empty()) mesh.primitives.push_back(std::move(primitive));
+  }
+  if (mesh.primitives.empty()) return -1;
+  import.scene.meshes.push_back(std::move(mesh));
+  return import.mesh_from_source[source_index] = int(import.scene.meshes.size()) - 1;
+}
+
+}  // namespace
+
+void import_meshes(Import& import) {
+  Scene& scene = import.scene;
+  import.mesh_from_source.assign(import.model.meshes.size(), -1);
+  std::vector<bool> seen(import.model.meshes.size(), false);
+  for (Node& node : scene.nodes) {
+    if (node.mesh == -1) continue;
+    node.mesh = mesh_of(import, std::size_t(node.mesh), seen);
+    if (node.mesh == -1) continue;
+    if (scene.object_names.size() >= kMaxObjects)
+      import.fail("nodes", "more than " + std::to_string(kMaxObjects) + " objects; join meshes that move together");
+    node.object = std::uint32_t(scene.object_names.size());
+    scene.object_names.push_back(node.name.empty() ? scene.meshes[std::size_t(node.mesh)].name : node.name);
+  }
+  if (scene.meshes.empty()) import.fail("nodes", "no node of the scene has a mesh with triangles; nothing to render");
+}
+
+}  // namespace tempolux::gltf

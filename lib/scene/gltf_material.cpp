@@ -1,0 +1,181 @@
+// lib/scene/gltf_material.cpp -- materials, punctual lights and cameras.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "lib/scene/gltf_model.h"
+
+namespace tempolux::gltf {
+namespace {
+
+using tinygltf::Value;
+
+constexpr double kNoUpper = std::numeric_limits<float>::max();
+
+/// A number brought into [lower, upper], with a warning if it was outside; fails if it is not finite.
+float limited(Import& import, double value, double lower, double upper, const std::string& place) {
+  if (!std::isfinite(value)) import.fail(place, "is not finite");
+  if (value < lower || value > upper) {
+    import.scene.warnings.push_back(place + ": " + std::to_string(value) + " brought into its range " +
+                                    (upper == kNoUpper ? "from " + std::to_string(lower) + " up"
+                                                       : std::to_string(lower) + " .. " + std::to_string(upper)));
+  }
+  return float(std::clamp(value, lower, upper));
+}
+
+Rgb limited_colour(Import& import, const std::vector<double>& values, Rgb fallback, double upper,
+                   const std::string& place) {
+  if (values.empty()) return fallback;
+  if (values.size() < 3) import.fail(place, "must have 3 numbers");
+  Rgb colour;
+  for (int c = 0; c < 3; ++c) colour[c] = limited(import, values[std::size_t(c)], 0, upper, place);
+  return colour;
+}
+
+/// Numbers inside the JSON of an extension.
+struct ExtensionReader {
+  Import& import;
+  const Value& object;
+  std::string place;
+
+  double number(const char* key, double fallback) const {
+    if (!object.Has(key)) return fallback;
+    const Value& value = object.Get(key);
+    if (!value.IsNumber()) import.fail(place + "." + key, "is not a number");
+    return value.GetNumberAsDouble();
+  }
+  std::vector<double> numbers(const char* key) const {
+    std::vector<double> values;
+    if (!object.Has(key)) return values;
+    const Value& array = object.Get(key);
+    for (std::size_t i = 0; i < array.ArrayLen(); ++i) {
+      if (!array.Get(int(i)).IsNumber()) import.fail(place + "." + key, "holds something that is not a number");
+      values.push_back(array.Get(int(i)).GetNumberAsDouble());
+    }
+    if (values.size() != 3) import.fail(place + "." + key, "must have 3 numbers");
+    return values;
+  }
+  void ignore_texture(const char* key) const {
+    if (object.Has(key)) import.ignore("textures (materials keep their factors)");
+  }
+};
+
+void read_extension(Import& import, const std::string& name, const Value& value, const std::string& place,
+                    Material& material, double& emissive_strength) {
+  const ExtensionReader reader{import, value, place + ".extensions." + name};
+  if (!value.IsObject()) import.fail(reader.place, "is not an object");
+  if (name == "KHR_materials_emissive_strength") {
+    emissive_strength = limited(import, reader.number("emissiveStrength", 1), 0, kNoUpper, reader.place);
+  } else if (name == "KHR_materials_specular") {
+    material.specular = limited(import, reader.number("specularFactor", 1), 0, 1, reader.place);
+    material.specular_color =
+        limited_colour(import, reader.numbers("specularColorFactor"), Rgb{1.0f}, kNoUpper, reader.place);
+    reader.ignore_texture("specularTexture");
+    reader.ignore_texture("specularColorTexture");
+  } else if (name == "KHR_materials_ior") {
+    const double ior = reader.number("ior", 1.5);
+    material.ior = ior == 0 ? 0.0f : limited(import, ior, 1, kNoUpper, reader.place);
+  } else if (name == "KHR_materials_transmission") {
+    material.transmission = limited(import, reader.number("transmissionFactor", 0), 0, 1, reader.place);
+    if (material.transmission > 0) import.ignore("KHR_materials_transmission (glass is drawn opaque)");
+    reader.ignore_texture("transmissionTexture");
+  } else if (name == "KHR_materials_volume") {
+    import.ignore("KHR_materials_volume (absorption inside glass)");
+  } else if (name == "KHR_materials_unlit") {
+    import.ignore("KHR_materials_unlit (the material is lit like any other)");
+  } else {
+    import.ignore(name + " of materials");
+  }
+}
+
+Material read_material(Import& import, std::size_t index) {
+  const tinygltf::Material& source = import.model.materials[index];
+  const std::string place = place_of("materials", index, source.name);
+  const auto& pbr = source.pbrMetallicRoughness;
+  Material material;
+  material.name = source.name;
+  material.base_color = limited_colour(import, pbr.baseColorFactor, Rgb{1.0f}, 1, place + ".baseColorFactor");
+  material.metallic = limited(import, pbr.metallicFactor, 0, 1, place + ".metallicFactor");
+  material.roughness = limited(import, pbr.roughnessFactor, 0, 1, place + ".roughnessFactor");
+  material.double_sided = source.doubleSided;
+  double strength = 1;
+  for (const auto& [name, value] : source.extensions) read_extension(import, name, value, place, material, strength);
+  material.emission = limited_colour(import, source.emissiveFactor, Rgb{0.0f}, kNoUpper, place + ".emissiveFactor");
+  material.emission *= float(strength);
+  if (!is_finite(material.emission)) import.fail(place, "emissiveFactor times emissiveStrength is not finite");
+  for (int texture : {pbr.baseColorTexture.index, pbr.metallicRoughnessTexture.index, source.normalTexture.index,
+                      source.occlusionTexture.index, source.emissiveTexture.index})
+    if (texture >= 0) import.ignore("textures (materials keep their factors)");
+  if (source.alphaMode != "OPAQUE") import.ignore("alphaMode " + source.alphaMode + " (the material is opaque)");
+  return material;
+}
+
+PunctualLight read_light(Import& import, std::size_t index) {
+  const tinygltf::Light& source = import.model.lights[index];
+  const std::string place = place_of("extensions.KHR_lights_punctual.lights", index, source.name);
+  PunctualLight light;
+  light.name = source.name;
+  if (source.type == "point") light.kind = PunctualLight::Kind::point;
+  else if (source.type == "spot") light.kind = PunctualLight::Kind::spot;
+  else if (source.type == "directional") light.kind = PunctualLight::Kind::directional;
+  else import.fail(place + ".type", "\"" + source.type + "\" is not point, spot or directional");
+  light.intensity = limited_colour(import, source.color, Rgb{1.0f}, kNoUpper, place + ".color");
+  light.intensity *= limited(import, source.intensity, 0, kNoUpper, place + ".intensity");
+  if (!is_finite(light.intensity)) import.fail(place, "color times intensity is not finite");
+  if (light.kind == PunctualLight::Kind::spot) {
+    const double outer = source.spot.outerConeAngle, inner = source.spot.innerConeAngle;
+    if (!(outer > 0 && outer <= std::numbers::pi / 2 + 1e-6 && inner >= 0 && inner < outer))
+      import.fail(place + ".spot", "cone angles must be 0 <= inner < outer <= pi/2");
+    light.inner_cone_rad = float(inner);
+    light.outer_cone_rad = float(outer);
+  }
+  if (source.range > 0) import.ignore("range of lights (light follows the inverse square)");
+  return light;
+}
+
+Camera read_camera(Import& import, std::size_t index) {
+  const tinygltf::Camera& source = import.model.cameras[index];
+  const std::string place = place_of("cameras", index, source.name);
+  Camera camera;
+  camera.name = source.name;
+  if (source.type == "perspective") {
+    camera.kind = Camera::Kind::perspective;
+    camera.yfov_rad = source.perspective.yfov;
+    camera.z_near_m = source.perspective.znear;
+    camera.z_far_m = source.perspective.zfar;
+    if (!(camera.yfov_rad > 0 && camera.yfov_rad < std::numbers::pi))
+      import.fail(place + ".perspective.yfov", "must lie between 0 and pi");
+  } else if (source.type == "orthographic") {
+    camera.kind = Camera::Kind::orthographic;
+    camera.ymag_m = source.orthographic.ymag;
+    camera.z_near_m = source.orthographic.znear;
+    camera.z_far_m = source.orthographic.zfar;
+    if (!(camera.ymag_m > 0 && std::isfinite(camera.ymag_m)))
+      import.fail(place + ".orthographic.ymag", "must be above 0");
+  } else {
+    import.fail(place + ".type", "\"" + source.type + "\" is not perspective or orthographic");
+  }
+  return camera;
+}
+
+}  // namespace
+
+void import_materials(Import& import) {
+  for (std::size_t i = 0; i < import.model.materials.size(); ++i)
+    import.scene.materials.push_back(read_material(import, i));
+  import.scene.materials.emplace_back();  // glTF's default, for primitives without one
+}
+
+void import_lights(Import& import) {
+  for (std::size_t i = 0; i < import.model.lights.size(); ++i) import.scene.lights.push_back(read_light(import, i));
+}
+
+void import_cameras(Import& import) {
+  for (std::size_t i = 0; i < import.model.cameras.size(); ++i)
+    import.scene.cameras.push_back(read_camera(import, i));
+}
+
+}  // namespace tempolux::gltf

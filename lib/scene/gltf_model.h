@@ -1,0 +1,51 @@
+// lib/scene/gltf_model.h -- what the gltf_*.cpp files share; the one place that includes tinygltf.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lib/scene/scene.h"
+
+namespace tempolux::gltf {
+
+/// Throws InputError "FILE: PLACE: WHAT".
+[[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what);
+
+/// A place in the file: `meshes[3]`, or `meshes[3] "Wall"` if it has a name.
+std::string place_of(const char* array, std::size_t index, const std::string& name = {});
+
+/// One scene on its way from tinygltf's model to ours.
+struct Import {
+  const tinygltf::Model& model;
+  Scene& scene;
+  std::uint64_t geometry_budget = 0;        ///< bytes that may still be allocated for geometry
+  std::vector<int> node_from_source{};      ///< node index of the file -> of the scene, -1: not in the scene
+  std::vector<int> mesh_from_source{};      ///< the same for meshes; -1: not used or without triangles
+  std::map<std::string, std::size_t> ignored{};  ///< what was ignored -> how often; warnings at the end
+
+  [[noreturn]] void fail(const std::string& place, const std::string& what) const {
+    gltf::fail(scene.path, place, what);
+  }
+  /// Takes `bytes` from the budget before they are allocated; fails when a file asks for far more memory
+  /// than its own size can mean.
+  void take_memory(std::uint64_t bytes, const std::string& place);
+  void ignore(const std::string& what, std::size_t count = 1) { ignored[what] += count; }
+};
+
+/// Makes a quaternion x y z w unit; false if it is zero or not finite.
+bool normalize_rotation(std::array<double, 4>& rotation);
+
+// The steps of load_gltf, in this order.
+void import_nodes(Import& import);       ///< gltf_nodes.cpp: default scene's nodes, parents first
+void import_materials(Import& import);   ///< gltf_material.cpp
+void import_lights(Import& import);      ///< gltf_material.cpp: KHR_lights_punctual
+void import_cameras(Import& import);     ///< gltf_material.cpp
+void import_meshes(Import& import);      ///< gltf_geometry.cpp: those that nodes use
+void import_animations(Import& import);  ///< gltf_animation.cpp
+
+}  // namespace tempolux::gltf

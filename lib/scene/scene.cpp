@@ -1,0 +1,38 @@
+// lib/scene/scene.cpp
+#include "lib/scene/scene.h"
+
+#include <algorithm>
+
+#include "formats/error.h"
+
+namespace tempolux {
+
+int Scene::camera_node(const std::string& name) const {
+  int first = -1;
+  std::string names;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const Node& node = nodes[n];
+    if (node.camera < 0) continue;
+    const std::string& camera_name = cameras[std::size_t(node.camera)].name;
+    if (name != "auto" && (name == node.name || name == camera_name)) return int(n);
+    if (first < 0 || node.source_index < nodes[std::size_t(first)].source_index) first = int(n);
+    names += (names.empty() ? "" : ", ") + (node.name.empty() ? camera_name : node.name);
+  }
+  if (first < 0)
+    throw InputError(path + ": cameras: the scene has no camera; in Blender's glTF exporter tick Include > Cameras");
+  if (name != "auto") throw InputError(path + ": cameras: no camera is named \"" + name + "\"; there is " + names);
+  return first;
+}
+
+void require_lights(const Scene& scene) {
+  const auto emits = [&](const Primitive& primitive) { return scene.materials[primitive.material].emissive(); };
+  for (const Node& node : scene.nodes) {
+    if (node.light >= 0 && max_component(scene.lights[std::size_t(node.light)].intensity) > 0) return;
+    if (node.mesh >= 0 && std::ranges::any_of(scene.meshes[std::size_t(node.mesh)].primitives, emits)) return;
+  }
+  throw InputError(scene.path +
+                   ": lights: nothing in the scene emits light; in Blender's glTF exporter tick Include > Punctual "
+                   "Lights, and note that it leaves out area lights and the world: use emissive meshes instead");
+}
+
+}  // namespace tempolux

@@ -1,0 +1,104 @@
+// lib/scene/scene_hash.cpp
+#include "lib/scene/scene_hash.h"
+
+#include "formats/hash.h"
+
+namespace tempolux {
+namespace {
+
+/// Material index of the scene -> its number by first use in node order; kNone: not used.
+std::vector<std::uint32_t> material_numbers(const Scene& scene) {
+  std::vector<std::uint32_t> numbers(scene.materials.size(), kNone);
+  std::uint32_t next = 0;
+  for (const Node& node : scene.nodes) {
+    if (node.mesh < 0) continue;
+    for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)
+      if (numbers[primitive.material] == kNone) numbers[primitive.material] = next++;
+  }
+  return numbers;
+}
+
+template <class T>
+void add_values(Hasher& hasher, const T& values) {
+  using Value = std::remove_cvref_t<decltype(values[0])>;
+  hasher.add_array(std::span<const Value>(values.data(), values.size()));
+}
+
+void add_shape(Hasher& hasher, const Surface& surface) {
+  hasher.add(surface.object);
+  hasher.add(std::uint32_t(surface.flipped));
+  add_values(hasher, surface.positions);
+  add_values(hasher, surface.primitive->triangles);
+}
+
+}  // namespace
+
+std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surface> surfaces) {
+  const std::vector<std::uint32_t> numbers = material_numbers(scene);
+  Hasher hasher;
+  hasher.add(std::string_view("geometry 1"));
+  hasher.add(origin);
+  for (const Surface& surface : surfaces) {
+    add_shape(hasher, surface);
+    hasher.add(numbers[surface.material]);
+    add_values(hasher, surface.normals);
+    add_values(hasher, surface.primitive->uvs);
+  }
+  return hasher.hex();
+}
+
+std::string materials_hash(const Scene& scene) {
+  const std::vector<std::uint32_t> numbers = material_numbers(scene);
+  std::vector<const Material*> ordered(scene.materials.size(), nullptr);
+  for (std::size_t m = 0; m < numbers.size(); ++m)
+    if (numbers[m] != kNone) ordered[numbers[m]] = &scene.materials[m];
+  Hasher hasher;
+  hasher.add(std::string_view("materials 1"));
+  for (const Material* material : ordered) {
+    if (!material) break;
+    for (const Rgb& colour : {material->base_color, material->specular_color}) hasher.add(colour);
+    for (const float number : {material->metallic, material->roughness, material->specular, material->ior,
+                               material->transmission, material->double_sided ? 1.0f : 0.0f})
+      hasher.add(number);
+  }
+  return hasher.hex();
+}
+
+std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const PlacedLight> lights,
+                        std::span<const Surface> surfaces) {
+  Hasher hasher;
+  hasher.add(std::string_view("lights 1"));
+  hasher.add(origin);
+  hasher.add(std::uint64_t(lights.size()));
+  for (const PlacedLight& placed : lights) {
+    hasher.add(std::uint32_t(placed.light.kind));
+    hasher.add(placed.light.intensity);
+    if (placed.light.kind == PunctualLight::Kind::spot) {
+      hasher.add(placed.light.inner_cone_rad);
+      hasher.add(placed.light.outer_cone_rad);
+    }
+    if (placed.light.kind != PunctualLight::Kind::directional) hasher.add(placed.position);
+    if (placed.light.kind != PunctualLight::Kind::point) hasher.add(placed.direction);
+  }
+  for (const Surface& surface : surfaces) {
+    const Material& material = scene.materials[surface.material];
+    if (!material.emissive()) continue;
+    add_shape(hasher, surface);
+    hasher.add(material.emission);
+    hasher.add(std::uint32_t(material.double_sided));
+  }
+  return hasher.hex();
+}
+
+std::string media_hash() { return hash_hex("media 1"); }
+
+std::string camera_hash(const PlacedCamera& placed) {
+  Hasher hasher;
+  hasher.add(std::string_view("camera 1"));
+  hasher.add(std::uint32_t(placed.camera.kind));
+  hasher.add(placed.camera.kind == Camera::Kind::perspective ? placed.camera.yfov_rad : placed.camera.ymag_m);
+  hasher.add(placed.scene_from_camera);
+  return hasher.hex();
+}
+
+}  // namespace tempolux

@@ -1,0 +1,26 @@
+// lib/scene/scene_hash.h -- content hashes of a scene at a frame, by concern (architecture.md 3 and 4).
+//
+// Content only: names, JSON order and unused parts of the file do not count. Materials are numbered by first
+// use in node order, so the order of a file's material list does not count either.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lib/scene/at_frame.h"
+
+namespace tempolux {
+
+/// Geometry of surfaces, in their order: object, winding, material number, positions, normals, texture
+/// coordinates, triangles; and the origin they are relative to.
+std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surface> surfaces);
+/// Reflecting properties of the materials in use, in order of first use. Emission belongs to lights_hash.
+std::string materials_hash(const Scene& scene);
+/// Punctual lights where they stand and all triangles that emit, with what they emit.
+std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const PlacedLight> lights,
+                        std::span<const Surface> surfaces);
+/// Participating media: none can be described yet, so a constant.
+std::string media_hash();
+
+}  // namespace tempolux
