@@ -1,0 +1,64 @@
+#include "lib/photon/photon_map.h"
+
+#include <memory>
+#include <string>
+
+#include "lib/core/parallel.h"
+
+namespace tempolux {
+namespace {
+
+constexpr std::size_t kBatchesInFlight = 16;   ///< about a megabyte each
+
+struct EncodedBatch {
+  PhotonBatch batch;
+  std::string bytes;
+};
+
+std::array<double, 3> to_array(const Rgbd& c) { return {c.r, c.g, c.b}; }
+
+}  // namespace
+
+PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions& options,
+                                 formats::PhotonHeader header,
+                                 const std::function<void(const void*, std::size_t)>& sink,
+                                 const std::function<void(double)>& progress) {
+  PhotonMapResult result;
+  header.group_count = tracer.group_count();
+  header.emitted_count = tracer.photon_count();
+  header.kinds = options.kinds();
+  formats::PhotonWriter writer(
+      [&](const void* data, std::size_t size) {
+        sink(data, size);
+        result.byte_count += size;
+      },
+      header);
+
+  Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
+  parallel_ordered(
+      tracer.batch_count(), kBatchesInFlight,
+      [&](std::size_t i) -> std::shared_ptr<void> {
+        auto item = std::make_shared<EncodedBatch>();
+        item->batch = tracer.trace(i);
+        if (!item->batch.block.photons.empty()) item->bytes = formats::encode_block(item->batch.block, header.columns);
+        return item;
+      },
+      [&](std::size_t i, void* pointer) {
+        const auto& item = *static_cast<const EncodedBatch*>(pointer);
+        if (!item.bytes.empty()) writer.write_encoded(item.bytes, item.batch.block);
+        result.totals.photon_count += item.batch.block.photons.size();
+        result.path_count += item.batch.path_count;
+        result.ray_count += item.batch.ray_count;
+        emitted += item.batch.emitted;
+        escaped += item.batch.escaped;
+        absorbed += item.batch.absorbed;
+        if (progress) progress(double(i + 1) / double(tracer.batch_count()));
+      });
+  result.totals.emitted_flux = to_array(emitted);
+  result.totals.escaped_flux = to_array(escaped);
+  result.totals.absorbed_flux = to_array(absorbed);
+  writer.finish(result.totals);
+  return result;
+}
+
+}  // namespace tempolux
