@@ -1,0 +1,85 @@
+#include "lib/density/irradiance_estimate.h"
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+
+#include "lib/core/parallel.h"
+#include "lib/density/morton.h"
+
+namespace tempolux {
+namespace {
+
+void require_valid(const IrradianceOptions& options) {
+  if (options.neighbours < 2 || options.neighbours > kMaxNeighbours)
+    throw std::invalid_argument("irradiance estimate: neighbours must be 2 to 512");
+  if (!(options.max_radius > 0)) throw std::invalid_argument("irradiance estimate: max_radius must be > 0");
+  if (!(options.min_radius >= 0)) throw std::invalid_argument("irradiance estimate: min_radius must be >= 0");
+  if (!(options.flattening >= 1)) throw std::invalid_argument("irradiance estimate: flattening must be >= 1");
+}
+
+PhotonQuery make_query(Vec3 point, Vec3 normal, const IrradianceOptions& options) {
+  return {.point = point, .normal = normal, .max_radius = options.max_radius, .min_cos = options.min_cos,
+          .flattening = options.flattening, .kinds = options.kinds};
+}
+
+/// Sum of flux over pi radius2.
+IrradianceEstimate divide_by_disc(const PhotonIndex& index, std::span<const std::uint32_t> photons,
+                                  double radius2) {
+  Rgbd sum;
+  for (std::uint32_t photon : photons) sum += Rgbd(index.flux(photon));
+  return {sum / (std::numbers::pi * radius2), float(std::sqrt(radius2)), std::uint32_t(photons.size())};
+}
+
+IrradianceEstimate estimate_within(const PhotonIndex& index, PhotonQuery query, float radius,
+                                   NeighbourList& scratch) {
+  query.max_radius = radius;
+  index.find_within(query, scratch);
+  return divide_by_disc(index, scratch.photons(), double(radius) * radius);
+}
+
+}  // namespace
+
+IrradianceEstimate estimate_irradiance(const PhotonIndex& index, Vec3 point, Vec3 normal,
+                                       const IrradianceOptions& options, NeighbourList& scratch) {
+  require_valid(options);
+  const PhotonQuery query = make_query(point, normal, options);
+  index.find_nearest(query, options.neighbours, scratch);
+  const std::size_t count = scratch.count();
+  if (count < std::size_t(options.neighbours)) {
+    if (std::isfinite(options.max_radius))
+      return divide_by_disc(index, scratch.photons(), double(options.max_radius) * options.max_radius);
+    return {};
+  }
+  const float radius_floor = std::min(std::max(options.min_radius, index.resolution()), options.max_radius);
+  const double radius2 = scratch.distance2().back();
+  if (radius2 > double(radius_floor) * radius_floor)
+    return divide_by_disc(index, scratch.photons().first(count - 1), radius2);
+  if (!(radius_floor > 0)) return {};
+  return estimate_within(index, query, radius_floor, scratch);
+}
+
+IrradianceEstimate estimate_irradiance_fixed(const PhotonIndex& index, Vec3 point, Vec3 normal,
+                                             const IrradianceOptions& options, NeighbourList& scratch) {
+  require_valid(options);
+  if (!std::isfinite(options.max_radius))
+    throw std::invalid_argument("irradiance estimate: a fixed radius must be finite");
+  return estimate_within(index, make_query(point, normal, options), options.max_radius, scratch);
+}
+
+void estimate_irradiances(const PhotonIndex& index, std::span<const Vec3> points,
+                          std::span<const Vec3> normals, const IrradianceOptions& options,
+                          std::span<IrradianceEstimate> results) {
+  require_valid(options);
+  if (points.size() != normals.size() || points.size() != results.size())
+    throw std::invalid_argument("irradiance estimate: as many normals and results as points");
+  const std::vector<std::uint32_t> order = morton_order(points);
+  parallel_chunks(order.size(), 512, [&](std::size_t first, std::size_t last) {
+    NeighbourList scratch;
+    for (std::size_t i = first; i < last; ++i)
+      results[order[i]] =
+          estimate_irradiance(index, points[order[i]], normals[order[i]], options, scratch);
+  });
+}
+
+}  // namespace tempolux

@@ -1,0 +1,48 @@
+// lib/density/nearest_select.h -- inside lib/density: eight floats at a time into and out of a list.
+#pragma once
+
+#include <immintrin.h>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace tempolux {
+
+/// For each 8-bit mask the lanes that are set, lowest first.
+inline constexpr auto kCompressLanes = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> table{};
+  for (std::size_t mask = 0; mask < 256; ++mask) {
+    std::size_t n = 0;
+    for (std::uint8_t lane = 0; lane < 8; ++lane)
+      if (mask >> lane & 1) table[mask][n++] = lane;
+  }
+  return table;
+}();
+
+/// Places a list needs beyond those in use, so that whole vectors can be stored.
+inline constexpr std::size_t kListSlack = 8;
+
+/// A list of (squared distance, photon) in two arrays owned by someone else.
+struct CandidateList {
+  float* distance2;
+  std::uint32_t* photon;
+  std::size_t count = 0;
+
+  /// Appends the lanes set in `mask`.
+  void append(__m256 d2, __m256i photons, unsigned mask) {
+    const __m256i lanes = _mm256_cvtepu8_epi32(
+        _mm_loadl_epi64(reinterpret_cast<const __m128i*>(kCompressLanes[mask].data())));
+    _mm256_storeu_ps(distance2 + count, _mm256_permutevar8x32_ps(d2, lanes));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(photon + count),
+                        _mm256_permutevar8x32_epi32(photons, lanes));
+    count += std::size_t(std::popcount(mask));
+  }
+};
+
+/// Keeps the k nearest of the list (1 <= k <= count) by (distance2, photon), the farthest last.
+/// Distances are >= 0 and no NaN.
+void keep_nearest(CandidateList& list, std::size_t k);
+
+}  // namespace tempolux

@@ -1,0 +1,181 @@
+#include "lib/density/photon_index.h"
+
+#include <algorithm>
+#include <bit>
+#include <stdexcept>
+
+#include "lib/core/parallel.h"
+
+namespace tempolux {
+
+/// A photon while the tree is built.
+struct PhotonIndex::Item {
+  float position[3];
+  std::uint32_t source;
+};
+
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t kChunk = 1 << 14;
+
+struct Range {
+  std::size_t first, last;
+};
+
+/// Orders [first, last) around `mid` by coordinate, equal ones by source: the two halves as sets do not
+/// depend on how the library selects.
+template <int axis, class Item>
+void select(Item* first, Item* mid, Item* last) {
+  std::nth_element(first, mid, last, [](const Item& a, const Item& b) {
+    return a.position[axis] < b.position[axis] ||
+           (a.position[axis] == b.position[axis] && a.source < b.source);
+  });
+}
+
+/// Cuts the range's box across its longest side. The left part takes a power of two of leaves, all full, so
+/// that any aligned block of 2^j leaves is a subtree. False: one leaf, sorted by source and finished.
+template <class Item>
+bool split(std::span<Item> items, std::size_t leaf_size, Range range, Range& left, Range& right) {
+  Item* const first = items.data() + range.first;
+  Item* const last = items.data() + range.last;
+  const std::size_t leaves = (range.last - range.first + leaf_size - 1) / leaf_size;
+  if (leaves <= 1) {
+    std::sort(first, last, [](const Item& a, const Item& b) { return a.source < b.source; });
+    return false;
+  }
+  Box3 box;
+  for (const Item* item = first; item != last; ++item)
+    box.add(Vec3{item->position[0], item->position[1], item->position[2]});
+  const Vec3 extent = box.upper - box.lower;
+  const std::size_t mid = range.first + std::bit_ceil(leaves) / 2 * leaf_size;
+  Item* const middle = items.data() + mid;
+  if (extent.x >= extent.y && extent.x >= extent.z) select<0>(first, middle, last);
+  else if (extent.y >= extent.z) select<1>(first, middle, last);
+  else select<2>(first, middle, last);
+  left = {range.first, mid};
+  right = {mid, range.last};
+  return true;
+}
+
+template <class Item>
+void split_to_leaves(std::span<Item> items, std::size_t leaf_size, Range range) {
+  Range left, right;
+  if (!split(items, leaf_size, range, left, right)) return;
+  split_to_leaves(items, leaf_size, left);
+  split_to_leaves(items, leaf_size, right);
+}
+
+/// Sorts items into tree order: the first levels range by range, then many subtrees at once.
+template <class Item>
+void order_as_tree(std::span<Item> items, std::size_t leaf_size) {
+  std::vector<Range> ranges{{0, items.size()}};
+  for (int level = 0; level < 7; ++level) {
+    std::vector<Range> halves(2 * ranges.size(), Range{0, 0});
+    parallel_chunks(ranges.size(), 1, [&](std::size_t i, std::size_t) {
+      split(items, leaf_size, ranges[i], halves[2 * i], halves[2 * i + 1]);
+    });
+    std::erase_if(halves, [](const Range& r) { return r.first == r.last; });
+    ranges = std::move(halves);
+  }
+  parallel_chunks(ranges.size(), 1,
+                  [&](std::size_t i, std::size_t) { split_to_leaves(items, leaf_size, ranges[i]); });
+}
+
+/// Ten bits per component (signed, 511 is 1) and two for the kind.
+std::uint32_t filter_code(const formats::Photon& photon) {
+  const std::array<float, 3> n = formats::decode_normal(photon.normal);
+  std::uint32_t code = std::uint32_t(photon.kind) << 30;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int step = int(std::rint(std::clamp(n[axis], -1.0f, 1.0f) * 511));
+    code |= (std::uint32_t(step) & 0x3ff) << (10 * axis);
+  }
+  return code;
+}
+
+}  // namespace
+
+PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons) : size_(photons.size()) {
+  if (size_ > std::size_t(1) << 31) throw std::length_error("PhotonIndex: more than 2^31 photons");
+  if (size_ == 0) return;
+  const auto items = std::make_unique_for_overwrite<Item[]>(size_);
+  std::vector<float> largest((size_ + kChunk - 1) / kChunk, 0.0f);
+  parallel_chunks(size_, kChunk, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec3 p{photons[i].position[0], photons[i].position[1], photons[i].position[2]};
+      if (!is_finite(p)) throw std::invalid_argument("PhotonIndex: a position is not finite");
+      items[i] = {{p.x, p.y, p.z}, std::uint32_t(i)};
+      largest[first / kChunk] = std::max(largest[first / kChunk], max_component(abs(p)));
+    }
+  });
+  resolution_ = *std::max_element(largest.begin(), largest.end()) * 0x1p-22f;
+  order_as_tree(std::span<Item>(items.get(), size_), kLeafSize);
+  build_leaves(photons, std::span<const Item>(items.get(), size_));
+  build_nodes();
+}
+
+void PhotonIndex::build_leaves(std::span<const formats::Photon> photons, std::span<const Item> items) {
+  leaf_count_ = (size_ + kLeafSize - 1) / kLeafSize;
+  leaves_ = std::make_unique_for_overwrite<Leaf[]>(leaf_count_);
+  filters_ = std::make_unique_for_overwrite<LeafFilter[]>(leaf_count_);
+  flux_ = std::make_unique_for_overwrite<Rgb[]>(size_);
+  source_ = std::make_unique_for_overwrite<std::uint32_t[]>(size_);
+  object_ = std::make_unique_for_overwrite<std::uint16_t[]>(size_);
+  parallel_chunks(leaf_count_ * kLeafSize, kChunk, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      Leaf& leaf = leaves_[i / kLeafSize];
+      const std::size_t lane = i % kLeafSize;
+      const bool used = i < size_;
+      leaf.x[lane] = used ? items[i].position[0] : kNaN;
+      leaf.y[lane] = used ? items[i].position[1] : kNaN;
+      leaf.z[lane] = used ? items[i].position[2] : kNaN;
+      const formats::Photon* photon = used ? &photons[items[i].source] : nullptr;
+      filters_[i / kLeafSize].code[lane] = photon ? filter_code(*photon) : 0;
+      if (!photon) continue;
+      flux_[i] = {photon->flux[0], photon->flux[1], photon->flux[2]};
+      source_[i] = items[i].source;
+      object_[i] = photon->object;
+    }
+  });
+}
+
+void PhotonIndex::build_nodes() {
+  std::vector<Box3> boxes(leaf_count_);
+  parallel_chunks(leaf_count_, kChunk / kLeafSize, [&](std::size_t first, std::size_t last) {
+    for (std::size_t j = first; j < last; ++j)
+      for (std::size_t i = j * kLeafSize; i < std::min((j + 1) * kLeafSize, size_); ++i)
+        boxes[j].add(position(i));
+  });
+  do {
+    const std::size_t count = (boxes.size() + 7) / 8;
+    level_start_.push_back(std::uint32_t(nodes_.size()));
+    std::vector<Box3> parents(count);
+    for (std::size_t j = 0; j < count; ++j) {
+      Node node;
+      for (std::size_t c = 0; c < 8; ++c) {
+        const bool used = 8 * j + c < boxes.size();
+        for (int axis = 0; axis < 3; ++axis) {
+          node.lower[axis][c] = used ? boxes[8 * j + c].lower[axis] : kNaN;
+          node.upper[axis][c] = used ? boxes[8 * j + c].upper[axis] : kNaN;
+        }
+        if (used) parents[j].add(boxes[8 * j + c]);
+      }
+      nodes_.push_back(node);
+    }
+    boxes = std::move(parents);
+  } while (boxes.size() > 1);
+}
+
+formats::PathKind PhotonIndex::kind(std::size_t i) const {
+  return formats::PathKind(filters_[i / kLeafSize].code[i % kLeafSize] >> 30);
+}
+
+Vec3 PhotonIndex::normal(std::size_t i) const {
+  const std::uint32_t code = filters_[i / kLeafSize].code[i % kLeafSize];
+  const auto component = [code](int axis) {
+    return float(std::int32_t(code << (22 - 10 * axis)) >> 22) * (1.0f / 511);
+  };
+  return {component(0), component(1), component(2)};
+}
+
+}  // namespace tempolux

@@ -1,0 +1,233 @@
+// The searches of PhotonIndex: a walk down the tree, nearer children first.
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <stdexcept>
+
+#include "lib/density/nearest_select.h"
+#include "lib/density/photon_index.h"
+
+namespace tempolux {
+
+/// One search. Bounds are exact: a box's distance is computed with the same roundings as a photon's, and
+/// rounding is monotonic, so it is never above that of a photon inside.
+struct PhotonSearch {
+  static constexpr unsigned kLeafBits = 5;  // log2(kLeafSize)
+  static_assert(PhotonIndex::kLeafSize == std::size_t(1) << kLeafBits);
+
+  /// A subtree: its box's squared distance (upper half, as float bits) and its first photon (lower half).
+  /// Everything in it comes after `last_key` if key > last_key.
+  struct Entry {
+    std::uint64_t key;
+    unsigned level;   // of the node; its number follows from the first photon
+  };
+  static std::uint64_t make_key(float d2, std::uint32_t photon) {
+    return std::uint64_t(std::bit_cast<std::uint32_t>(d2)) << 32 | photon;
+  }
+
+  const PhotonIndex& index;
+  NeighbourList& found;
+  CandidateList list;
+  __m256 px, py, pz, nx, ny, nz;
+  __m256 flat_factor, min_dot;
+  __m256i kinds;
+  __m256 bound;
+  std::uint64_t last_key;
+
+  PhotonSearch(const PhotonIndex& index_, const PhotonQuery& query, NeighbourList& found_)
+      : index(index_), found(found_), list{found_.distance2_.data(), found_.photon_.data()},
+        px(_mm256_set1_ps(query.point.x)), py(_mm256_set1_ps(query.point.y)),
+        pz(_mm256_set1_ps(query.point.z)), nx(_mm256_set1_ps(query.normal.x)),
+        ny(_mm256_set1_ps(query.normal.y)), nz(_mm256_set1_ps(query.normal.z)),
+        flat_factor(_mm256_set1_ps(query.flattening * query.flattening - 1)),
+        min_dot(_mm256_set1_ps(query.min_cos * 511)), kinds(_mm256_set1_epi32(query.kinds)) {
+    set_bound(query.max_radius * query.max_radius, 0xffffffffu);
+  }
+
+  void set_bound(float d2, std::uint32_t photon) {
+    bound = _mm256_set1_ps(d2);
+    last_key = make_key(d2, photon);
+  }
+
+  /// Room for `more` candidates after those in the list.
+  void reserve(std::size_t more) {
+    const std::size_t need = list.count + more + kListSlack;
+    if (found.distance2_.size() < need) {
+      found.distance2_.resize(std::max(need, 2 * found.distance2_.size()));
+      found.photon_.resize(found.distance2_.size());
+    }
+    list.distance2 = found.distance2_.data();
+    list.photon = found.photon_.data();
+  }
+
+  __m256 box_distance2(const PhotonIndex::Node& node) const {
+    const auto along = [](const float* lower, const float* upper, __m256 p) {
+      const __m256 d = _mm256_max_ps(_mm256_sub_ps(_mm256_load_ps(lower), p),
+                                     _mm256_sub_ps(p, _mm256_load_ps(upper)));
+      const __m256 outside = _mm256_max_ps(_mm256_setzero_ps(), d);  // NaN of a missing child stays NaN
+      return _mm256_mul_ps(outside, outside);
+    };
+    return _mm256_add_ps(_mm256_add_ps(along(node.lower[0], node.upper[0], px),
+                                       along(node.lower[1], node.upper[1], py)),
+                         along(node.lower[2], node.upper[2], pz));
+  }
+
+  /// The lanes of eight photons that pass the tests of normal and kind.
+  __m256 filter(const std::uint32_t* codes) const {
+    const __m256i code = _mm256_load_si256(reinterpret_cast<const __m256i*>(codes));
+    const auto component = [code](int shift) {
+      return _mm256_cvtepi32_ps(_mm256_srai_epi32(_mm256_slli_epi32(code, shift), 22));
+    };
+    const __m256 cosine =
+        _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(component(22), nx), _mm256_mul_ps(component(12), ny)),
+                      _mm256_mul_ps(component(2), nz));
+    const __m256i kind = _mm256_slli_epi32(_mm256_srlv_epi32(kinds, _mm256_srli_epi32(code, 30)), 31);
+    return _mm256_and_ps(_mm256_cmp_ps(cosine, min_dot, _CMP_GT_OQ), _mm256_castsi256_ps(kind));
+  }
+
+  /// Appends the photons of a leaf that pass; there must be room for a whole leaf.
+  template <bool kFilter, bool kFlat>
+  void scan_leaf(std::uint32_t first) {
+    const PhotonIndex::Leaf& leaf = index.leaves_[first >> kLeafBits];
+    __m256i photons = _mm256_add_epi32(_mm256_set1_epi32(int(first)), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    for (std::size_t i = 0; i < PhotonIndex::kLeafSize; i += 8) {
+      const __m256 dx = _mm256_sub_ps(_mm256_load_ps(leaf.x + i), px);
+      const __m256 dy = _mm256_sub_ps(_mm256_load_ps(leaf.y + i), py);
+      const __m256 dz = _mm256_sub_ps(_mm256_load_ps(leaf.z + i), pz);
+      __m256 d2 = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, dx), _mm256_mul_ps(dy, dy)),
+                                _mm256_mul_ps(dz, dz));
+      if constexpr (kFlat) {
+        const __m256 h = _mm256_add_ps(_mm256_add_ps(_mm256_mul_ps(dx, nx), _mm256_mul_ps(dy, ny)),
+                                       _mm256_mul_ps(dz, nz));
+        d2 = _mm256_add_ps(d2, _mm256_mul_ps(flat_factor, _mm256_mul_ps(h, h)));
+      }
+      __m256 pass = _mm256_cmp_ps(d2, bound, _CMP_LE_OQ);
+      if constexpr (kFilter)
+        pass = _mm256_and_ps(pass, filter(index.filters_[first >> kLeafBits].code + i));
+      list.append(d2, photons, unsigned(_mm256_movemask_ps(pass)));
+      photons = _mm256_add_epi32(photons, _mm256_set1_epi32(8));
+    }
+  }
+
+  /// The children of a node within the bound, nearest first (kSorted) or in tree order.
+  template <bool kSorted>
+  unsigned children_within(std::uint32_t first, unsigned level, std::array<std::uint64_t, 8>& keys) const {
+    const std::uint32_t number = std::uint32_t(first >> (kLeafBits + 3 * (level + 1)));
+    const PhotonIndex::Node& node = index.nodes_[index.level_start_[level] + number];
+    const __m256 d2 = box_distance2(node);
+    unsigned mask = unsigned(_mm256_movemask_ps(_mm256_cmp_ps(d2, bound, _CMP_LE_OQ)));
+    alignas(32) std::array<std::uint32_t, 8> bits;
+    _mm256_store_si256(reinterpret_cast<__m256i*>(bits.data()), _mm256_castps_si256(d2));
+    unsigned count = 0;
+    for (; mask; mask &= mask - 1) {
+      const unsigned child = unsigned(std::countr_zero(mask));
+      const std::uint64_t key =
+          std::uint64_t(bits[child]) << 32 | (first + (child << (kLeafBits + 3 * level)));
+      unsigned place = count++;
+      if constexpr (kSorted)
+        for (; place > 0 && keys[place - 1] > key; --place) keys[place] = keys[place - 1];
+      keys[place] = key;
+    }
+    return count;
+  }
+
+  void tighten(std::size_t k) {
+    keep_nearest(list, k);
+    set_bound(list.distance2[k - 1], list.photon[k - 1]);
+  }
+
+  template <bool kFilter, bool kFlat>
+  void nearest(std::size_t k) {
+    const std::size_t limit = 2 * k + 32;   // of candidates before the bound is tightened again
+    reserve(limit + PhotonIndex::kLeafSize);
+    std::array<Entry, 8 * 12> stack;
+    std::size_t depth = 0;
+    stack[depth++] = {0, unsigned(index.level_start_.size()) - 1};
+    std::array<std::uint64_t, 8> keys;
+    bool full = false;
+    while (depth > 0) {
+      const Entry entry = stack[--depth];
+      if (entry.key > last_key) continue;
+      const unsigned children = children_within<true>(std::uint32_t(entry.key), entry.level, keys);
+      if (entry.level > 0) {
+        for (unsigned c = children; c-- > 0;) stack[depth++] = {keys[c], entry.level - 1};
+        continue;
+      }
+      for (unsigned c = 0; c < children && keys[c] <= last_key; ++c) {
+        scan_leaf<kFilter, kFlat>(std::uint32_t(keys[c]));
+        if (list.count >= limit || (!full && list.count >= k)) {
+          tighten(k);
+          full = true;
+        }
+      }
+    }
+    if (list.count > 0) keep_nearest(list, std::min(k, list.count));
+  }
+
+  template <bool kFilter, bool kFlat>
+  void within() {
+    std::array<Entry, 8 * 12> stack;
+    std::size_t depth = 0;
+    stack[depth++] = {0, unsigned(index.level_start_.size()) - 1};
+    std::array<std::uint64_t, 8> keys;
+    while (depth > 0) {
+      const Entry entry = stack[--depth];
+      const unsigned children = children_within<false>(std::uint32_t(entry.key), entry.level, keys);
+      if (entry.level > 0) {
+        for (unsigned c = children; c-- > 0;) stack[depth++] = {keys[c], entry.level - 1};
+        continue;
+      }
+      reserve(8 * PhotonIndex::kLeafSize);
+      for (unsigned c = 0; c < children; ++c) scan_leaf<kFilter, kFlat>(std::uint32_t(keys[c]));
+    }
+  }
+
+  void finish() { found.count_ = list.count; }
+};
+
+namespace {
+
+/// Calls search(filter, flat) with the two switches of a query as compile-time constants.
+template <class Search>
+void specialised(const PhotonQuery& query, Search search) {
+  const bool filter = query.min_cos > kAnyNormal || (query.kinds & kAllKinds) != kAllKinds;
+  if (filter && query.flattening != 1) search(std::true_type{}, std::true_type{});
+  else if (filter) search(std::true_type{}, std::false_type{});
+  else if (query.flattening != 1) search(std::false_type{}, std::true_type{});
+  else search(std::false_type{}, std::false_type{});
+}
+
+}  // namespace
+
+void PhotonIndex::find_nearest(const PhotonQuery& query, int k, NeighbourList& found) const {
+  if (k < 1 || k > kMaxNeighbours) throw std::invalid_argument("find_nearest: k must be 1 to 512");
+  found.count_ = 0;
+  if (size_ == 0 || !is_finite(query.point)) return;
+  PhotonSearch search(*this, query, found);
+  specialised(query, [&](auto filter, auto flat) {
+    search.nearest<decltype(filter)::value, decltype(flat)::value>(std::size_t(k));
+  });
+  search.finish();
+}
+
+void PhotonIndex::find_within(const PhotonQuery& query, NeighbourList& found) const {
+  found.count_ = 0;
+  if (size_ == 0 || !is_finite(query.point)) return;
+  PhotonSearch search(*this, query, found);
+  specialised(query, [&](auto filter, auto flat) {
+    search.within<decltype(filter)::value, decltype(flat)::value>();
+  });
+  search.finish();
+}
+
+void NeighbourList::sort() {
+  std::vector<std::uint64_t> keys(count_);
+  for (std::size_t i = 0; i < count_; ++i) keys[i] = PhotonSearch::make_key(distance2_[i], photon_[i]);
+  std::sort(keys.begin(), keys.end());
+  for (std::size_t i = 0; i < count_; ++i) {
+    distance2_[i] = std::bit_cast<float>(std::uint32_t(keys[i] >> 32));
+    photon_[i] = std::uint32_t(keys[i]);
+  }
+}
+
+}  // namespace tempolux
