@@ -28,7 +28,7 @@ struct Photon {
   std::array<float, 3> position{};   ///< m; world space minus the header's origin
   std::array<float, 3> flux{};       ///< W, linear Rec. 709; already divided by the number of emitted paths
   std::array<std::uint16_t, 2> normal{};  ///< octahedral: surface normal on the side the light arrived at
-  std::uint16_t object = 0xffff;     ///< id.object; 0xffff in a medium
+  std::uint16_t object = 0xffff;     ///< id.object; 0xffff in a medium or not known
   PathKind kind = PathKind::direct;
   std::uint8_t bounce = 0;           ///< scattering events since the light, saturating at 255
 
@@ -36,14 +36,15 @@ struct Photon {
 };
 static_assert(sizeof(Photon) == 32);
 
-/// Octahedral encoding of a unit vector in two 16-bit numbers, and back (unit length to 1e-7).
+/// Octahedral encoding (conventions.md) of a vector that is not zero, of any length, in two 16-bit numbers of
+/// 0 .. 65534, and back (unit length to 1e-7). The axes are exact; the angle is off by at most 6.3e-5 rad.
 std::array<std::uint16_t, 2> encode_normal(std::array<float, 3> n);
 std::array<float, 3> decode_normal(std::array<std::uint16_t, 2> code);
 
 /// Optional columns: present for every photon of the file or for none.
 enum PhotonColumns : std::uint32_t {
   column_direction = 1,   ///< 4 bytes, octahedral wi: points back to where the light came from
-  column_albedo = 2,      ///< 4 bytes RGBE-free: 3 x 8-bit reflected share + 1 zero byte
+  column_albedo = 2,      ///< 4 bytes: reflected share R, G, B in 1/255, then a zero byte
 };
 
 /// What the header says.
@@ -54,13 +55,13 @@ struct PhotonHeader {
   std::uint32_t columns = 0;                  ///< PhotonColumns
   std::uint32_t group_count = 1;              ///< N_g: photon i is of group i mod N_g
   std::uint64_t emitted_count = 0;            ///< paths started, over all groups
-  std::string map = "global";                 ///< "global", "static" or "dynamic" (signed)
+  std::string map = "global";                 ///< "global", "static" or "dynamic" (only there flux may be < 0)
   std::string kinds = "direct,caustic,indirect";  ///< which kinds were stored
   /// Of an overlay: the file it changes, and that file's digest. Groups not in this file come from the base.
   std::string base_name, base_digest;
 };
 
-/// Photons of one group. Blocks of a group follow each other; groups ascend.
+/// Photons of one group. Blocks of a group follow each other; groups never descend.
 struct PhotonBlock {
   std::uint32_t group = 0;
   std::vector<Photon> photons;
@@ -68,58 +69,88 @@ struct PhotonBlock {
   std::vector<std::array<std::uint8_t, 4>> albedos;       ///< if column_albedo
 };
 
+/// What became of one group's flux [W]. All groups' entries make the ledger, from which the totals of an
+/// overlay with its base follow exactly.
+struct GroupFlux {
+  std::uint32_t group = 0;
+  std::array<double, 3> emitted{}, escaped{}, absorbed{};
+
+  bool operator==(const GroupFlux&) const = default;
+};
+
 /// Closing totals; summed over all groups of the file (of an overlay: over the groups it holds).
 struct PhotonTotals {
   std::uint64_t photon_count = 0;
-  std::array<double, 3> stored_flux{};        ///< W: sum of the photons' flux
+  std::array<double, 3> stored_flux{};        ///< W: exact sum of the photons' flux, rounded once
   std::array<double, 3> emitted_flux{};       ///< W: what left the lights
   std::array<double, 3> escaped_flux{};       ///< W: left the scene
   std::array<double, 3> absorbed_flux{};      ///< W: absorbed at surfaces (and by roulette, in the mean)
+
+  bool operator==(const PhotonTotals&) const = default;
 };
 
-/// Writes one .photons stream front to back; never seeks, so a pipe will do.
+/// Writes one .photons stream front to back; never seeks, so a pipe will do. A mistake of the caller (groups
+/// that descend, a photon out of the format's range, a kind the header does not name) is std::invalid_argument:
+/// nothing that a reader would refuse is written.
 class PhotonWriter {
  public:
   /// `sink` is called with pieces of the file, in order; it throws if it cannot write.
   PhotonWriter(std::function<void(const void*, std::size_t)> sink, const PhotonHeader& header);
   ~PhotonWriter();
-  /// Appends photons of one group as one or more blocks; an empty block of an overlay says "none now".
+  /// Appends photons of one group as one or more blocks; an empty block of an overlay says "none now", that of
+  /// another file is left out.
   void write(const PhotonBlock& block);
-  /// A block already encoded by encode_block (so that checksums can be made in parallel).
+  /// A block already encoded by encode_block(block, header.columns), so that checksums are made in parallel.
+  /// Serial cost beside the sink: the exact sum and the range check of the photons, 2 ns each.
   void write_encoded(std::string_view bytes, const PhotonBlock& block);
-  /// Writes the end block; photon_count and stored_flux are filled in by the writer.
-  void finish(const PhotonTotals& totals);
+  /// Writes the end block; photon_count and stored_flux are filled in by the writer. With a `ledger` (every
+  /// group ascending; of an overlay, which must have one: the groups it holds) emitted, escaped and absorbed
+  /// flux are its sums and those of `totals` are not read. Returns the totals as written.
+  PhotonTotals finish(const PhotonTotals& totals, std::span<const GroupFlux> ledger = {});
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
-/// The bytes of a block, checksum included. Thread-safe.
+/// The bytes of a block, checksum included; more than 65536 photons become several blocks. Thread-safe.
 std::string encode_block(const PhotonBlock& block, std::uint32_t columns);
+
+struct PhotonReadOptions {
+  bool digest = true;   ///< also hash the data: digest() may be called
+};
 
 /// Reads one .photons file front to back, one block in memory at a time; "-" is standard input.
 /// Every truncation, flipped bit and value out of range is an InputError "FILE: byte OFFSET: REASON; REMEDY".
+/// An unknown identity is no error: header().identity.known() is false, and the tool warns.
 class PhotonReader {
  public:
-  explicit PhotonReader(const std::string& path);
+  explicit PhotonReader(const std::string& path, const PhotonReadOptions& options = {});
   ~PhotonReader();
+  /// Of an overlay: its own (identity, history and emitted_count of the whole map).
   const PhotonHeader& header() const;
-  /// Next block; false once the end block has been read and checked. An overlay's base (found beside it)
-  /// is opened, its digest checked, and its untouched groups are delivered too: the caller sees one map.
+  /// Next block that has photons; false once the end block has been read and checked. An overlay's base (found
+  /// beside it) is opened, its digest checked at its end, and its untouched groups are delivered too: the
+  /// caller sees one map.
   bool read_block(PhotonBlock& block);
   /// After the last block. Of an overlay: of the whole map.
   const PhotonTotals& totals() const;
-  /// Hash of the data without header and history: equal content has equal digest, however it was cut into
-  /// blocks, and an overlay with its base equals the map written whole. After the last block.
+  /// After the last block: group by group, empty if the file has none. Of an overlay: of the whole map.
+  const std::vector<GroupFlux>& ledger() const;
+  /// Hash of the data without header and history (photons.md, section 9): equal content has equal digest,
+  /// however it was cut into blocks, and an overlay with its base equals the map written whole. After the
+  /// last block.
   std::string digest() const;
+  /// Most photons the file can hold by its size; 0 from a pipe. Of an overlay: with its base.
+  std::uint64_t photon_count_bound() const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
-/// All photons of a file in one array, file order; for readers that need the whole map.
+/// All photons of a file in one array, groups ascending; for readers that need the whole map. Columns are
+/// checked and left out. Memory: 32 bytes per photon and one block.
 struct PhotonMap {
   PhotonHeader header;
   PhotonTotals totals;

@@ -1,0 +1,48 @@
+// formats/photons/file_reader.h -- one .photons file as it stands, overlays not resolved.
+#pragma once
+
+#include "formats/byte_reader.h"
+#include "formats/photons/layout.h"
+
+namespace tempolux::formats::photons {
+
+class FileReader {
+ public:
+  /// Reads the header.
+  explicit FileReader(const std::string& path);
+
+  const PhotonHeader& header() const { return header_; }
+  bool is_overlay() const { return !header_.base_name.empty(); }
+  /// Next block, which may be empty; false once ledger and end block have been read and checked.
+  bool read_block(PhotonBlock& block);
+  /// Both after the last block.
+  const PhotonTotals& totals() const { return totals_; }
+  const std::vector<GroupFlux>& ledger() const { return ledger_; }
+  std::uint64_t photon_count_bound() const { return bytes_.size() / photon_size(header_.columns); }
+  /// Throws InputError about the place reached.
+  [[noreturn]] void fail(const std::string& reason, const std::string& remedy) const {
+    bytes_.fail(bytes_.offset(), reason, remedy);
+  }
+
+ private:
+  void read_header();
+  void read_body(PhotonBlock& block, std::size_t count, std::uint32_t crc, std::uint32_t expected);
+  void check_body(const PhotonBlock& block, std::uint64_t start) const;
+  void read_ledger();
+  void read_end();
+  void check_flux(const std::array<double, 3>& flux, std::uint64_t offset, const char* name) const;
+
+  ByteReader bytes_;
+  PhotonHeader header_;
+  RecordRules rules_;
+  std::uint32_t chain_ = 0;
+  std::uint32_t last_group_ = 0;
+  std::vector<std::uint32_t> groups_;   ///< of an overlay: those that have a block
+  std::uint64_t photon_count_ = 0;
+  FluxSum stored_flux_;
+  PhotonTotals totals_;
+  std::vector<GroupFlux> ledger_;
+  bool has_ledger_ = false, ended_ = false;
+};
+
+}  // namespace tempolux::formats::photons

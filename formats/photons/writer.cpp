@@ -1,0 +1,196 @@
+// formats/photons/writer.cpp -- PhotonWriter and encode_block.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include "formats/crc32.h"
+#include "formats/photons/layout.h"
+
+namespace tempolux::formats {
+namespace {
+
+using namespace photons;
+
+template <class T>
+void put(std::string& bytes, const T& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+template <class T>
+void put_array(std::string& bytes, std::span<const T> values) {
+  bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+}
+
+void put_flux(std::string& bytes, const std::array<double, 3>& flux) {
+  for (double x : flux) put(bytes, x);
+}
+
+[[noreturn]] void refuse(const std::string& reason) { throw std::invalid_argument("PhotonWriter: " + reason); }
+
+/// Appends one block of at most kMaxBlockCount photons, [first, first + count) of `block`.
+void append_block(std::string& bytes, const PhotonBlock& block, std::uint32_t columns, std::size_t first,
+                  std::size_t count) {
+  const std::size_t head = bytes.size();
+  bytes.append(kBlockMark);
+  put(bytes, block.group);
+  put(bytes, std::uint32_t(count));
+  put(bytes, std::uint32_t(0));
+  put_array(bytes, std::span(block.photons).subspan(first, count));
+  if (columns & column_direction) put_array(bytes, std::span(block.directions).subspan(first, count));
+  if (columns & column_albedo) put_array(bytes, std::span(block.albedos).subspan(first, count));
+  const char* body = bytes.data() + head + kBlockHeadSize;
+  const std::uint32_t crc = crc32(body, count * photon_size(columns), crc32(bytes.data() + head, 12));
+  std::memcpy(bytes.data() + head + 12, &crc, 4);
+}
+
+}  // namespace
+
+std::string encode_block(const PhotonBlock& block, std::uint32_t columns) {
+  const std::size_t count = block.photons.size();
+  if (block.directions.size() != (columns & column_direction ? count : 0) ||
+      block.albedos.size() != (columns & column_albedo ? count : 0))
+    throw std::invalid_argument("encode_block: a column has not one entry per photon");
+  if (find_bad_direction(block.directions))
+    throw std::invalid_argument("encode_block: direction is above 65534");
+  std::string bytes;
+  bytes.reserve(count * photon_size(columns) + (count / kMaxBlockCount + 1) * kBlockHeadSize);
+  std::size_t first = 0;
+  do {
+    const std::size_t size = std::min(count - first, kMaxBlockCount);
+    append_block(bytes, block, columns, first, size);
+    first += size;
+  } while (first < count);
+  return bytes;
+}
+
+struct PhotonWriter::State {
+  std::function<void(const void*, std::size_t)> sink;
+  PhotonHeader header;
+  RecordRules rules;
+  std::uint32_t chain = 0;
+  std::uint32_t last_group = 0;
+  std::vector<std::uint32_t> groups;   ///< of an overlay: those it holds
+  std::uint64_t photon_count = 0;
+  FluxSum stored_flux;
+  bool finished = false;
+
+  bool is_overlay() const { return !header.base_name.empty(); }
+  /// Of the blocks in `bytes`: their checksums join the chain. They must be those of `block`.
+  void take_checksums(std::string_view bytes, const PhotonBlock& block);
+  void check_ledger(std::span<const GroupFlux> ledger) const;
+  void check_totals(const PhotonTotals& totals) const;
+  void write_ledger(std::span<const GroupFlux> ledger);
+};
+
+void PhotonWriter::State::take_checksums(std::string_view bytes, const PhotonBlock& block) {
+  std::size_t photon_total = 0, at = 0;
+  while (at < bytes.size()) {
+    std::array<std::uint32_t, 4> head{};
+    if (bytes.size() - at < kBlockHeadSize || bytes.substr(at, 4) != kBlockMark) refuse("these are not blocks");
+    std::memcpy(head.data(), bytes.data() + at, kBlockHeadSize);
+    if (head[1] != block.group) refuse("a block of another group was encoded");
+    chain = crc32(&head[3], 4, chain);
+    photon_total += head[2];
+    at += kBlockHeadSize + head[2] * photon_size(header.columns);
+  }
+  if (at != bytes.size() || photon_total != block.photons.size()) refuse("another block was encoded");
+}
+
+void PhotonWriter::State::check_ledger(std::span<const GroupFlux> ledger) const {
+  const std::size_t expected = is_overlay() ? groups.size() : header.group_count;
+  if (ledger.size() != expected) refuse("the ledger does not have one entry per group");
+  for (std::size_t i = 0; i < ledger.size(); ++i)
+    if (ledger[i].group != (is_overlay() ? groups[i] : i)) refuse("the ledger's groups are not those of the file");
+}
+
+void PhotonWriter::State::check_totals(const PhotonTotals& totals) const {
+  for (const auto& flux : {totals.emitted_flux, totals.escaped_flux, totals.absorbed_flux})
+    for (double x : flux)
+      if (!std::isfinite(x) || (x < 0 && !rules.signed_flux)) refuse("a total is not finite or is negative");
+}
+
+void PhotonWriter::State::write_ledger(std::span<const GroupFlux> ledger) {
+  std::string body;
+  for (const GroupFlux& group : ledger) {
+    put(body, group.group);
+    put_flux(body, group.emitted);
+    put_flux(body, group.escaped);
+    put_flux(body, group.absorbed);
+  }
+  std::string head(kLedgerMark);
+  put(head, std::uint32_t(ledger.size()));
+  const std::uint32_t crc = crc32(body.data(), body.size(), crc32(head.data(), head.size()));
+  put(head, crc);
+  chain = crc32(&crc, 4, chain);
+  sink(head.data(), head.size());
+  if (!body.empty()) sink(body.data(), body.size());
+}
+
+PhotonWriter::PhotonWriter(std::function<void(const void*, std::size_t)> sink, const PhotonHeader& header)
+    : state_(std::make_unique<State>()) {
+  state_->sink = std::move(sink);
+  state_->header = header;
+  const std::string text = header_text(header);
+  state_->rules = rules_of(header);
+  std::string bytes(kMagic);
+  put(bytes, kVersionMajor);
+  put(bytes, kVersionMinor);
+  put(bytes, std::uint32_t(text.size()));
+  bytes += text;
+  const std::uint32_t crc = crc32(bytes.data(), bytes.size());
+  put(bytes, crc);
+  state_->chain = crc32(&crc, 4);
+  state_->sink(bytes.data(), bytes.size());
+}
+
+PhotonWriter::~PhotonWriter() = default;
+
+void PhotonWriter::write(const PhotonBlock& block) {
+  write_encoded(encode_block(block, state_->header.columns), block);
+}
+
+void PhotonWriter::write_encoded(std::string_view bytes, const PhotonBlock& block) {
+  State& s = *state_;
+  if (s.finished) refuse("a block after the end");
+  if (block.group >= s.header.group_count || block.group < s.last_group)
+    refuse("group " + std::to_string(block.group) + " is out of range or descends");
+  if (block.photons.empty() && !s.is_overlay()) return;
+  if (const auto bad = find_bad_photon(block.photons, s.rules))
+    refuse("photon " + std::to_string(bad->index) + " of group " + std::to_string(block.group) + ": " +
+           std::string(bad->reason));
+  s.take_checksums(bytes, block);
+  if (s.is_overlay() && (s.groups.empty() || s.groups.back() != block.group)) s.groups.push_back(block.group);
+  s.last_group = block.group;
+  s.photon_count += block.photons.size();
+  s.stored_flux.add(block.photons);
+  s.sink(bytes.data(), bytes.size());
+}
+
+PhotonTotals PhotonWriter::finish(const PhotonTotals& given, std::span<const GroupFlux> ledger) {
+  State& s = *state_;
+  if (s.finished) refuse("finished twice");
+  PhotonTotals totals = given;
+  totals.photon_count = s.photon_count;
+  totals.stored_flux = s.stored_flux.rounded();
+  const bool has_ledger = !ledger.empty() || s.is_overlay();
+  if (has_ledger) {
+    s.check_ledger(ledger);
+    for (const GroupFlux& group : ledger) s.check_totals({0, {}, group.emitted, group.escaped, group.absorbed});
+    add_up(ledger, totals);
+  }
+  s.check_totals(totals);
+  if (has_ledger) s.write_ledger(ledger);
+  std::string bytes(kEndMark);
+  put(bytes, totals.photon_count);
+  put_flux(bytes, totals.stored_flux);
+  put_flux(bytes, totals.emitted_flux);
+  put_flux(bytes, totals.escaped_flux);
+  put_flux(bytes, totals.absorbed_flux);
+  put(bytes, crc32(bytes.data(), bytes.size(), s.chain));
+  s.sink(bytes.data(), bytes.size());
+  s.finished = true;
+  return totals;
+}
+
+}  // namespace tempolux::formats
