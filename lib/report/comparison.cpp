@@ -1,0 +1,37 @@
+// lib/report/comparison.cpp -- frames collected into a comparison.
+#include "lib/report/comparison.h"
+
+#include <utility>
+
+#include "formats/error.h"
+#include "lib/core/check.h"
+
+namespace tempolux {
+
+ComparisonBuilder::ComparisonBuilder(Comparison comparison, std::uint64_t min_object_pixels)
+    : comparison_(std::move(comparison)), min_object_pixels_(min_object_pixels) {}
+
+void ComparisonBuilder::add(const Compared& pair, int frame, const std::string& name) {
+  const bool first = !total_;
+  if (!first && (pair.width != comparison_.width || pair.height != comparison_.height ||
+                 pair.channels != comparison_.channels))
+    throw InputError(name + ": size or channels differ from those of the frame before; compare equal frames");
+  comparison_.width = pair.width;
+  comparison_.height = pair.height;
+  comparison_.channels = pair.channels;
+
+  ErrorSums sums = sum_errors(pair, frame);
+  comparison_.frames.push_back({frame, figures_of(sums, min_object_pixels_)});
+  if (first) total_ = std::move(sums);
+  else add_errors(*total_, sums);
+  flicker_.add(pair);
+}
+
+Comparison ComparisonBuilder::finish() {
+  TEMPOLUX_CHECK(total_);
+  comparison_.total = figures_of(*total_, min_object_pixels_);
+  comparison_.flicker = flicker_.result();
+  return std::move(comparison_);
+}
+
+}  // namespace tempolux

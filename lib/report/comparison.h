@@ -1,0 +1,62 @@
+// lib/report/comparison.h -- a comparison of frames as JSON for machines and as a table for people.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lib/aqm/frame_error.h"
+
+namespace tempolux {
+
+/// What the reference of a comparison is.
+enum class ComparisonMode {
+  one_reference,      ///< its noise is part of every square
+  reference_halves,   ///< two independent halves: no noise floor
+  own_halves          ///< test and reference are two halves of one image: their difference is its noise
+};
+
+/// A frame or a sequence against its reference: what formats/comparison/comparison.md describes.
+struct Comparison {
+  std::string command;                                ///< the tool's line of history
+  std::string test;                                   ///< file or pattern, as given
+  std::vector<std::string> references;                ///< one or two
+  ComparisonMode mode = ComparisonMode::one_reference;
+  std::string layer;                                  ///< "" is RGB
+  std::vector<std::string> channels;
+  int width = 0, height = 0;
+  struct Frame {
+    int frame = 0;
+    FrameError error;
+  };
+  std::vector<Frame> frames;
+  FrameError total;                                   ///< over all frames
+  std::optional<SquaredFigure> flicker;               ///< absent for one frame
+};
+
+/// Collects the frames of a comparison, one in memory at a time.
+class ComparisonBuilder {
+ public:
+  /// `comparison` brings what is known before: command, names, mode, layer. Objects of fewer than
+  /// min_object_pixels pixels are flagged.
+  ComparisonBuilder(Comparison comparison, std::uint64_t min_object_pixels);
+  /// Adds a frame. Throws InputError if its size or channels differ from those of the frames before.
+  void add(const Compared& pair, int frame, const std::string& name);
+  /// Totals over the frames added, of which there must be one.
+  Comparison finish();
+
+ private:
+  Comparison comparison_;
+  std::uint64_t min_object_pixels_;
+  std::optional<ErrorSums> total_;
+  FlickerMeter flicker_;
+};
+
+/// The document of comparison.md, version 1.0. Equal comparisons give equal text.
+std::string comparison_json(const Comparison& comparison);
+
+/// Lines of at most 110 columns: one per frame, the total, flicker, the worst objects, and what to keep in mind.
+std::string comparison_text(const Comparison& comparison);
+
+}  // namespace tempolux

@@ -1,0 +1,93 @@
+// lib/report/comparison_json.cpp -- comparison.md, written.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "lib/report/comparison.h"
+
+namespace tempolux {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(std::optional<double> value) {
+  if (!value || !std::isfinite(*value)) return nullptr;
+  return *value;
+}
+
+/// NAME and NAME_standard_error; null where the figure does not exist.
+void put_estimate(Json& to, const std::string& name, const std::optional<Estimate>& estimate) {
+  to[name] = estimate ? number(estimate->value) : Json(nullptr);
+  to[name + "_standard_error"] = estimate ? number(estimate->standard_error) : Json(nullptr);
+}
+
+/// ROOT, its standard error, the mean square behind it, and whether that is settled.
+void put_squared(Json& to, const std::string& root, const std::string& squared, const SquaredFigure& figure) {
+  to[root] = number(figure.root());
+  to[root + "_standard_error"] = number(figure.root_standard_error());
+  put_estimate(to, squared, figure.squared);
+  to[root + "_resolved"] = figure.resolved();
+}
+
+Json object_json(const ObjectError& object) {
+  Json json = {{"id", object.id}, {"pixels", object.pixels}};
+  put_estimate(json, "bias", object.bias);
+  json["share_of_squared_error"] = number(object.share_of_squared_error);
+  json["few_pixels"] = object.few_pixels;
+  return json;
+}
+
+Json error_json(const FrameError& error, ComparisonMode mode) {
+  Json json = {{"pixels", error.pixels}};
+  put_squared(json, "rmse", "mse", error.squared_error);
+  if (mode == ComparisonMode::own_halves)
+    put_squared(json, "noise_of_mean", "noise_of_mean_squared", noise_of_mean(error));
+  put_estimate(json, "relmse", error.relative_squared_error);
+  put_estimate(json, "bias", error.bias);
+  json["psnr_db"] = number(error.psnr_db);
+  json["mean_test"] = number(error.mean_test);
+  json["mean_reference"] = number(error.mean_reference);
+  put_estimate(json, "mean_difference", error.mean_difference);
+  json["reference_noise"] = number(error.reference_noise);
+  json["largest_difference"] = {{"value", number(error.largest.value)},
+                                {"frame", error.largest.frame},
+                                {"x", error.largest.x},
+                                {"y", error.largest.y},
+                                {"channel", error.largest.channel}};
+  json["objects"] = Json::array();
+  for (const ObjectError& object : error.objects) json["objects"].push_back(object_json(object));
+  return json;
+}
+
+const char* mode_name(ComparisonMode mode) {
+  switch (mode) {
+    case ComparisonMode::reference_halves: return "reference_halves";
+    case ComparisonMode::own_halves: return "own_halves";
+    default: return "one_reference";
+  }
+}
+
+}  // namespace
+
+std::string comparison_json(const Comparison& comparison) {
+  Json json = {{"schema", "tempolux.comparison"},
+               {"version", "1.0"},
+               {"command", comparison.command},
+               {"test", comparison.test},
+               {"references", comparison.references},
+               {"mode", mode_name(comparison.mode)},
+               {"layer", comparison.layer.empty() ? "RGB" : comparison.layer},
+               {"channels", comparison.channels},
+               {"width", comparison.width},
+               {"height", comparison.height}};
+  json["total"] = error_json(comparison.total, comparison.mode);
+  if (comparison.flicker) put_squared(json["total"], "flicker", "flicker_squared", *comparison.flicker);
+  json["frames"] = Json::array();
+  for (const Comparison::Frame& frame : comparison.frames) {
+    Json entry = {{"frame", frame.frame}};
+    entry.update(error_json(frame.error, comparison.mode));
+    json["frames"].push_back(std::move(entry));
+  }
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace tempolux

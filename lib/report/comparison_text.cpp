@@ -1,0 +1,103 @@
+// lib/report/comparison_text.cpp -- a comparison as a table to read.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "lib/report/comparison.h"
+
+namespace tempolux {
+namespace {
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char line[512];
+  std::snprintf(line, sizeof line, pattern, values...);
+  return line;
+}
+
+/// A figure in 10 columns, "-" where it does not exist.
+std::string cell(std::optional<double> value, const char* pattern = "%10.4g") {
+  return value ? format(pattern, *value) : "         -";
+}
+
+std::optional<double> value_of(const std::optional<Estimate>& estimate, double scale = 1) {
+  return estimate ? std::optional(estimate->value * scale) : std::nullopt;
+}
+
+std::optional<double> standard_error_of(const std::optional<Estimate>& estimate, double scale = 1) {
+  return estimate && estimate->standard_error ? std::optional(*estimate->standard_error * scale) : std::nullopt;
+}
+
+std::string error_line(const std::string& name, const FrameError& error) {
+  return format("%-8s", name.c_str()) + cell(error.squared_error.root()) +
+         cell(error.squared_error.root_standard_error()) + cell(value_of(error.relative_squared_error)) +
+         cell(value_of(error.bias, 100), "%10.3f") + cell(standard_error_of(error.bias, 100), "%10.3f") +
+         cell(error.psnr_db, "%10.2f") + "\n";
+}
+
+/// What a reader must know before quoting a root mean square.
+std::string caveat(const std::string& name, const SquaredFigure& figure) {
+  if (figure.resolved()) return "";
+  const std::string standard_error =
+      figure.squared.standard_error ? format("%.3g", *figure.squared.standard_error) : "unknown";
+  const std::string square = format("%s: mean square %.3g, standard error ", name.c_str(), figure.squared.value);
+  if (figure.squared.value < 0)
+    return square + standard_error + ": below what the reference resolves, reported as 0\n";
+  if (figure.squared.value == 0) return "";
+  return square + standard_error + ": not below a third of it, the figure is not settled\n";
+}
+
+std::string worst_objects(const std::vector<ObjectError>& objects) {
+  constexpr std::size_t kShown = 6;
+  std::vector<ObjectError> judged;
+  for (const ObjectError& object : objects)
+    if (object.bias && !object.few_pixels) judged.push_back(object);
+  std::ranges::stable_sort(judged, std::ranges::greater{},
+                           [](const ObjectError& object) { return std::abs(object.bias->value); });
+  std::string text;
+  if (!judged.empty()) text = format("%-8s%10s%10s%10s%10s\n", "object", "pixels", "bias %", "+-", "share %");
+  for (std::size_t i = 0; i < std::min(judged.size(), kShown); ++i) {
+    const ObjectError& object = judged[i];
+    text += format("%-8u%10llu", object.id, static_cast<unsigned long long>(object.pixels)) +
+            cell(value_of(object.bias, 100), "%10.3f") + cell(standard_error_of(object.bias, 100), "%10.3f") +
+            cell(100 * object.share_of_squared_error, "%10.1f") + "\n";
+  }
+  if (judged.size() > kShown) text += format("and %zu objects with less bias\n", judged.size() - kShown);
+  if (judged.size() < objects.size())
+    text += format("%zu objects not shown: too few pixels, or no light on them\n", objects.size() - judged.size());
+  return text;
+}
+
+}  // namespace
+
+std::string comparison_text(const Comparison& comparison) {
+  const FrameError& total = comparison.total;
+  std::string text = comparison.test + (comparison.mode == ComparisonMode::own_halves ? " and " : " against ");
+  for (std::size_t i = 0; i < comparison.references.size(); ++i)
+    text += (i ? " + " : "") + comparison.references[i];
+  text += format("\nlayer %s, %dx%d, %llu pixels counted\n",
+                 comparison.layer.empty() ? "RGB" : comparison.layer.c_str(), comparison.width, comparison.height,
+                 static_cast<unsigned long long>(total.pixels));
+
+  text += format("%-8s%10s%10s%10s%10s%10s%10s\n", "frame", "RMSE", "+-", "relMSE", "bias %", "+-", "PSNR dB");
+  for (const Comparison::Frame& frame : comparison.frames) text += error_line(std::to_string(frame.frame), frame.error);
+  if (comparison.frames.size() > 1) text += error_line("all", total);
+  if (comparison.flicker) {
+    text += format("flicker %10.4g", comparison.flicker->root()) + cell(comparison.flicker->root_standard_error()) +
+            "\n";
+    text += caveat("flicker", *comparison.flicker);
+  }
+  text += format("largest difference %.4g in channel %s at column %d, row %d of frame %d; mean difference %.4g\n",
+                 total.largest.value, total.largest.channel.empty() ? "Y" : total.largest.channel.c_str(),
+                 total.largest.x, total.largest.y, total.largest.frame, total.mean_difference.value);
+  text += worst_objects(total.objects);
+  if (comparison.mode == ComparisonMode::own_halves)
+    return text + format("noise of the mean of the two halves: RMS %.4g\n", noise_of_mean(total).root());
+  text += caveat("RMSE", total.squared_error);
+  if (total.reference_noise) text += format("noise of the reference: RMS %.4g, not part of the RMSE\n", *total.reference_noise);
+  else text += "one reference: its noise is part of the RMSE\n";
+  if (!total.bias) text += "the reference is black: no relMSE, no bias\n";
+  return text;
+}
+
+}  // namespace tempolux

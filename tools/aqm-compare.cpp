@@ -1,0 +1,214 @@
+// tools/aqm-compare.cpp -- how wrong a frame or a sequence is.
+//
+//     aqm-compare frame.exr --reference-halves ref_a.exr ref_b.exr --json - | jq .total.rmse
+//     aqm-compare out.####.exr ref.####.exr --frames 0-47 --layer indirect --difference diff.####.png
+//
+// Figures: lib/aqm/frame_error.h; JSON: formats/comparison/comparison.md.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/error.h"
+#include "lib/aqm/difference.h"
+#include "lib/aqm/identity_check.h"
+#include "lib/image/exr_io.h"
+#include "lib/report/comparison.h"
+#include "tools/tool_main.h"
+
+using namespace tempolux;
+
+namespace {
+
+struct Options {
+  std::string test, reference, layer, mask, json, difference, metric = "error";
+  std::vector<std::string> halves;
+  bool own_halves = false, perceptual = false, allow_stale = false;
+  double fail_above = -1, difference_scale = 0;
+  std::uint64_t min_object_pixels = 64;
+
+  std::vector<std::string> references() const { return halves.empty() ? std::vector{reference} : halves; }
+};
+
+std::string not_negative(const std::string& text) {
+  double value = -1;
+  const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0;
+  return good ? "" : "'" + text + "' is not a number from 0 up";
+}
+
+void declare(tools::Tool& tool, Options& o) {
+  CLI::App& app = tool.app();
+  app.add_option("test", o.test, "frame to judge, EXR, or a pattern such as f.####.exr")->required();
+  app.add_option("reference", o.reference, "its reference, unless --reference-halves is given");
+  app.add_option("--reference-halves", o.halves, "two independent halves of the reference: no noise floor")
+      ->expected(2)->type_name("FILE");
+  app.add_flag("--halves", o.own_halves, "the two frames are halves of one image: report its noise");
+  app.add_option("--layer", o.layer, "layer or channel, such as indirect, N, Z; RGB without")->type_name("NAME");
+  app.add_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count")->type_name("FILE");
+  app.add_option("--metric", o.metric, "error: RMSE, relMSE, bias, PSNR, flicker")->type_name("NAME")
+      ->capture_default_str();
+  app.add_flag("--perceptual", o.perceptual, "refused: the model of vision is not in this version");
+  tool.count_option("--min-object-pixels", o.min_object_pixels, "flag the bias of objects of fewer pixels");
+  tool.output_option(o.json, "write all figures as JSON; -: standard output", "--json");
+  tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)", "--difference");
+  app.add_option("--difference-scale", o.difference_scale, "difference at full red in the PNG; 0: automatic")
+      ->type_name("VALUE")->capture_default_str()->check(not_negative);
+  app.add_option("--fail-above", o.fail_above, "exit 1 if the RMSE is above this")->type_name("RMSE")
+      ->check(not_negative);
+  tool.leave_out_of_history(app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
+  tool.common_options(tools::uses_frames);
+}
+
+void check(const tools::Tool& tool, const Options& o, bool frames_given) {
+  if (o.perceptual || o.metric == "aqm")
+    throw InputError((o.perceptual ? "--perceptual" : "--metric aqm") +
+                     std::string(": the model of vision is not in this version; leave it out for the error figures"));
+  if (o.metric != "error") throw InputError("--metric " + o.metric + ": unknown; there is: error");
+  if (o.reference.empty() == o.halves.empty())
+    throw InputError("give the reference either as second file or as --reference-halves A B");
+  if (o.own_halves && !o.halves.empty()) throw InputError("--halves: judges two files, without --reference-halves");
+  if (!o.halves.empty() && (o.halves[0] == o.halves[1] || o.test == o.halves[0] || o.test == o.halves[1]))
+    throw InputError("--reference-halves: the same file twice; the halves must be independent of each other and of x");
+  if (frames_given && tool.common().frames.size() > 1 && !tools::has_frame_pattern(o.test))
+    throw InputError(o.test + ": --frames names several frames; give a pattern such as f.####.exr");
+  if (frames_given && tool.common().frames.size() > 1 && !o.difference.empty() &&
+      !tools::has_frame_pattern(o.difference))
+    throw InputError("--difference " + o.difference + ": give a pattern such as d.####.png for several frames");
+  if (!frames_given && tools::has_frame_pattern(o.test))
+    throw InputError(o.test + ": a pattern of frames; say which with --frames, such as 0-47");
+  if (!o.difference.empty() && !o.difference.ends_with(".exr") && !o.difference.ends_with(".png"))
+    throw InputError("--difference " + o.difference + ": the name must end in .exr or .png");
+}
+
+/// The files of one frame, loaded.
+struct LoadedFrame {
+  Image test, reference, second, mask;
+  ComparedInputs inputs;
+};
+
+void load_frame(tools::Tool& tool, const Options& o, std::optional<int> frame, LoadedFrame& loaded) {
+  const auto load = [&](const std::string& pattern, Image& image) -> NamedImage {
+    const std::string file = frame ? tools::frame_name(pattern, *frame) : pattern;
+    image = load_exr(file, {.allow_nan = true});
+    tool.depends_on(file);
+    return {&image, file};
+  };
+  const std::vector<std::string> references = o.references();
+  loaded.inputs.layer = o.layer == "RGB" ? "" : o.layer;
+  loaded.inputs.test = load(o.test, loaded.test);
+  loaded.inputs.reference = load(references[0], loaded.reference);
+  if (references.size() > 1) loaded.inputs.second = load(references[1], loaded.second);
+  if (!o.mask.empty()) loaded.inputs.mask = load(o.mask, loaded.mask);
+}
+
+/// Refuses frames of different scene states; warns once per run about frames that do not say theirs.
+class IdentityGuard {
+ public:
+  IdentityGuard(tools::Tool& tool, bool allow_stale) : tool_(tool), allow_stale_(allow_stale) {}
+  void check(const ComparedInputs& inputs) {
+    for (const NamedImage* reference : {&inputs.reference, &inputs.second}) {
+      if (!reference->image) continue;
+      const IdentityMatch match = match_identities(*inputs.test.image, *reference->image);
+      const std::string pair = inputs.test.name + " and " + reference->name;
+      if (!match.different.empty() && !allow_stale_)
+        throw InputError(pair + ": made for different states of the scene (" + match.different +
+                         "); render one of them again, or give --allow-stale");
+      if (!match.different.empty()) warn_once(pair + ": different states of the scene: " + match.different);
+      if (!match.known) warn_once(pair + ": do not both say which scene they show; compared unseen");
+    }
+  }
+
+ private:
+  void warn_once(const std::string& message) {
+    if (!warned_) tool_.warn(message);
+    warned_ = true;
+  }
+  tools::Tool& tool_;
+  bool allow_stale_, warned_ = false;
+};
+
+/// Writes the difference as EXR or PNG; `scale` 0 is chosen by the first frame and kept.
+void write_difference(tools::Tool& tool, const Compared& pair, std::optional<int> frame, double& scale,
+                      tools::Output output) {
+  if (output.path().ends_with(".exr")) {
+    Image image = difference_image(pair);
+    image.text["tempolux:history"] = tool.history_line(frame);
+    save_exr(output.temporary_path(), image);
+  } else {
+    if (scale == 0) scale = difference_scale(pair);
+    save_png(output.temporary_path(), difference_picture(pair, scale));
+  }
+  output.commit();
+}
+
+Comparison description(const tools::Tool& tool, const Options& o) {
+  Comparison comparison;
+  comparison.command = tool.history_line();
+  comparison.command.pop_back();  // LF
+  comparison.test = o.test;
+  comparison.references = o.references();
+  comparison.layer = o.layer == "RGB" ? "" : o.layer;
+  comparison.mode = !o.halves.empty() ? ComparisonMode::reference_halves
+                    : o.own_halves    ? ComparisonMode::own_halves
+                                      : ComparisonMode::one_reference;
+  return comparison;
+}
+
+int frame_number(const Image& image) {
+  const auto found = image.numbers.find("tempolux:frame");
+  return found == image.numbers.end() ? 0 : int(found->second);
+}
+
+int compare(tools::Tool& tool, const Options& o, bool frames_given) {
+  check(tool, o, frames_given);
+  std::optional<tools::Output> json, difference;
+  const auto difference_output = [&](std::optional<int> frame) {
+    return tools::Output(frame ? tools::frame_name(o.difference, *frame) : o.difference, tool.common().no_clobber);
+  };
+  std::vector<std::optional<int>> frames{std::nullopt};
+  if (frames_given) frames.assign(tool.common().frames.begin(), tool.common().frames.end());
+  if (!o.json.empty()) json.emplace(o.json, tool.common().no_clobber, tools::Output::Kind::text);
+  if (!o.difference.empty()) difference = difference_output(frames.front());
+
+  ComparisonBuilder builder(description(tool, o), o.min_object_pixels);
+  IdentityGuard guard(tool, o.allow_stale);
+  double scale = o.difference_scale;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    tool.stats().phase("load");
+    LoadedFrame loaded;
+    load_frame(tool, o, frames[i], loaded);
+    guard.check(loaded.inputs);
+    tool.stats().phase("compare");
+    const Compared pair = compare_layers(loaded.inputs);
+    builder.add(pair, frames[i].value_or(frame_number(loaded.test)), loaded.inputs.test.name);
+    tool.stats().phase("write");
+    if (difference && i) difference = difference_output(frames[i]);
+    if (difference) write_difference(tool, pair, frames[i], scale, std::move(*difference));
+    tool.progress(double(i + 1) / double(frames.size()));
+  }
+  const Comparison result = builder.finish();
+
+  const std::string text = comparison_json(result);
+  if (json) json->write(text.data(), text.size()), json->commit();
+  tool.stats().count("frames", double(frames.size()));
+  tool.stats().count("pixels", double(result.total.pixels));
+  tool.stats().set("rmse", result.total.squared_error.root());
+  std::string table = comparison_text(result);
+  char line[80];
+  std::snprintf(line, sizeof line, ": red +%g, blue -%g\n", scale, scale);
+  if (o.difference.ends_with(".png")) table += o.difference + line;
+  if (!tool.common().quiet) std::fputs(table.c_str(), json && json->is_stdout() ? stderr : stdout);
+  const bool fails = o.fail_above >= 0 && result.total.squared_error.root() > o.fail_above;
+  return fails ? tools::exit_differs : tools::exit_ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tools::Tool tool("aqm-compare", "Say how wrong a frame or a sequence is.", argc, argv);
+  Options options;
+  declare(tool, options);
+  return tool.run([&] { return compare(tool, options, tool.app().get_option("--frames")->count() > 0); });
+}
