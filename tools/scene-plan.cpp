@@ -6,14 +6,12 @@
 // untouched, except plan.mk, which is what make asks to be newer than the scene. Format: formats/plan/plan.md.
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "formats/error.h"
 #include "lib/plan/plan_files.h"
-#include "lib/scene/gltf_load.h"
-#include "tools/tool_main.h"
+#include "tools/scene_input.h"
 
 using namespace tempolux;
 
@@ -47,13 +45,12 @@ int main(int argc, char** argv) {
     tools::Output makefile(folder + "/plan.mk", false, tools::Output::Kind::text);
 
     tool.stats().phase("load");
-    const Scene scene = load_gltf(scene_file, {.allow_outside = tool.common().allow_outside});
-    for (const std::string& file : scene.files) tool.depends_on(file);
-    for (const std::string& warning : scene.warnings) tool.warn(warning);
+    const tools::SceneInput input(tool, scene_file);
+    const Scene& scene = input.scene();
 
     tool.stats().phase("plan");
-    const TimeOptions time{tool.common().fps, tool.common().segment_length, tool.common().light_units};
-    const Plan plan = make_plan(scene, tool.common().frames, scene.camera_node(tool.common().camera), time);
+    const int camera = scene.camera_node(tool.common().camera);
+    const Plan plan = make_plan(scene, tool.common().frames, camera, input.time());
     for (const std::string& warning : plan.warnings) tool.warn(scene_file + ": " + warning);
 
     tool.stats().phase("write");

@@ -1,0 +1,203 @@
+// lib/plan/plan.cpp -- compare the frames of each segment by content.
+#include "lib/plan/plan.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "formats/hash.h"
+#include "lib/light/lights.h"
+#include "lib/material/bsdf.h"
+
+namespace tempolux {
+namespace {
+
+/// Hash of what a segment freezes beyond its static geometry: a photon's probability, weights, distance scales.
+std::string frozen_hash(const Scene& scene, const Segment& segment, const TimeOptions& options) {
+  const EmissionTable table = build_emission_table(scene, segment, options);
+  Hasher hasher;
+  hasher.add_array(std::span<const double>(table.probability));
+  hasher.add(table.sphere_centre);
+  hasher.add(table.sphere_radius);
+  hasher.add(segment.origin);
+  hasher.add(segment.world_bounds.lower);
+  hasher.add(segment.world_bounds.upper);
+  return hasher.hex();
+}
+
+std::vector<MovingNode> moving_nodes(const Scene& scene, const Segment& segment) {
+  std::vector<MovingNode> moves;
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+    if (!segment.node_moves[i]) continue;
+    const Node& node = scene.nodes[i];
+    moves.push_back({node.name.empty() ? "node " + std::to_string(node.source_index) : node.name,
+                     segment.why_moves[i],
+                     node.mesh >= 0     ? "geometry"
+                     : node.light >= 0  ? "light"
+                     : node.camera >= 0 ? "camera"
+                                        : ""});
+  }
+  return moves;
+}
+
+/// Whether anything but cameras moves, so that frames of the segment can differ in light.
+bool light_transport_moves(const std::vector<MovingNode>& moves) {
+  return std::ranges::any_of(moves, [](const MovingNode& node) {
+    return node.carries == "geometry" || node.carries == "light";
+  });
+}
+
+/// The frames of a segment, evaluated; `asked` may reach beyond the animation's ends.
+std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const std::set<int>& asked, int camera_node,
+                                         bool light_moves) {
+  const Segment& segment = stage.segment();
+  std::set<int> numbers = asked;
+  for (int f = segment.first; f <= segment.last; ++f) numbers.insert(f);
+
+  std::vector<PlannedFrame> frames;
+  std::map<std::pair<std::string, std::string>, int> first_with;  // light transport -> first frame that has it
+  for (const int number : numbers) {
+    PlannedFrame frame;
+    frame.frame = number;
+    frame.evaluated = std::clamp(number, segment.first, segment.last);
+    frame.asked = asked.contains(number);
+    if (!frame.asked && !light_moves && !frames.empty()) {  // nothing to find out
+      frame.moving_geometry = frames.front().moving_geometry;
+      frame.lights = frames.front().lights;
+    } else {
+      const SceneFrame state = stage.at(frame.evaluated);
+      frame.moving_geometry = state.hashes.moving_geometry;
+      frame.lights = state.hashes.lights;
+      if (frame.asked) frame.camera = camera_hash(state.camera(camera_node));
+    }
+    frames.push_back(std::move(frame));
+  }
+  for (PlannedFrame& frame : frames)  // frames of the animation first: those beyond its ends show one of them
+    if (frame.frame == frame.evaluated)
+      frame.lit_frame = first_with.try_emplace({frame.moving_geometry, frame.lights}, frame.frame).first->second;
+  for (PlannedFrame& frame : frames)
+    if (frame.frame != frame.evaluated) frame.lit_frame = first_with.at({frame.moving_geometry, frame.lights});
+  return frames;
+}
+
+bool cameras_differ(const std::vector<PlannedFrame>& frames) {
+  std::set<std::string> hashes;
+  for (const PlannedFrame& frame : frames)
+    if (frame.asked) hashes.insert(frame.camera);
+  return hashes.size() > 1;
+}
+
+/// The frames asked for, grouped by the segment that holds them.
+std::vector<std::pair<Segment, std::set<int>>> by_segment(const Scene& scene, const std::vector<int>& frames,
+                                                          const TimeOptions& options) {
+  std::vector<std::pair<Segment, std::set<int>>> groups;
+  for (const int frame : std::set<int>(frames.begin(), frames.end())) {
+    if (groups.empty() || frame > groups.back().first.last) {
+      Segment segment = segment_of(scene, frame, options);
+      if (groups.empty() || segment.first != groups.back().first.first)
+        groups.emplace_back(std::move(segment), std::set<int>{});
+    }
+    groups.back().second.insert(frame);
+  }
+  return groups;
+}
+
+PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const std::set<int>& asked, int camera_node,
+                            const TimeOptions& options) {
+  const SegmentScene stage(scene, segment, options);
+  const SceneFrame begin = stage.at(segment.first);
+  PlannedSegment planned;
+  planned.first = segment.first;
+  planned.last = segment.last;
+  planned.static_geometry = begin.hashes.static_geometry;
+  planned.materials = begin.hashes.materials;
+  planned.frozen = frozen_hash(scene, segment, options);
+  planned.moves = moving_nodes(scene, segment);
+  planned.frames = planned_frames(stage, asked, camera_node, light_transport_moves(planned.moves));
+  planned.camera_moves = cameras_differ(planned.frames);
+  return planned;
+}
+
+/// Materials that some triangle of the scene has.
+std::set<std::uint32_t> used_materials(const Scene& scene) {
+  std::set<std::uint32_t> used;
+  for (const Node& node : scene.nodes)
+    if (node.mesh >= 0)
+      for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)
+        if (!primitive.triangles.empty()) used.insert(primitive.material);
+  return used;
+}
+
+/// "1 frame", "3 frames".
+std::string counted(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+/// "12 of 14 materials have a Lambert lobe".
+std::string share(std::size_t count, std::size_t of, const std::string& what) {
+  return std::to_string(count) + " of " + std::to_string(of) + (of == 1 ? " material has " : " materials have ") + what;
+}
+
+/// How many states of light transport the frames asked for have.
+std::size_t lit_state_count(const Plan& plan) {
+  std::size_t count = 0;
+  for (const PlannedSegment& segment : plan.segments) {
+    std::set<int> states;
+    for (const PlannedFrame& frame : segment.frames)
+      if (frame.asked) states.insert(frame.lit_frame);
+    count += states.size();
+  }
+  return count;
+}
+
+/// The stages, and by which fact each is needed or not.
+void plan_stages(const Scene& scene, Plan& plan) {
+  const std::set<std::uint32_t> used = used_materials(scene);
+  std::size_t diffuse = 0, specular = 0;
+  for (const std::uint32_t material : used) {
+    const Bsdf bsdf(scene.materials[material]);
+    diffuse += bsdf.has_diffuse();
+    specular += bsdf.has_specular();
+  }
+  const std::string lambert = share(diffuse, used.size(), "a Lambert lobe, where photons are recorded");
+  const std::string other = share(specular, used.size(), "a lobe beside Lambert's: mirror or gloss");
+  const std::string frames = counted(plan.frames.size(), "frame") + " asked for";
+
+  const bool indirect = diffuse > 0, caustic = indirect && specular > 0;
+  plan.photon_kinds = caustic ? "caustic,indirect" : indirect ? "indirect" : "";
+  plan.stages = {
+      {"photon-trace", indirect,
+       indirect ? frames + ", " + counted(lit_state_count(plan), "state") + " of light transport" : lambert},
+      {"photon-trace --kinds indirect", indirect, lambert},
+      {"photon-trace --kinds caustic", caustic, indirect ? other : lambert},
+      {"photon-trace --kinds direct", false, "frame-render samples the lights for direct light"},
+      {"frame-render", true, frames}};
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options) {
+  if (frames.empty()) throw std::invalid_argument("make_plan: no frames");
+  require_lights(scene);
+  Plan plan;
+  const Node& camera = scene.nodes.at(std::size_t(camera_node));
+  plan.camera = camera.name.empty() ? "node " + std::to_string(camera.source_index) : camera.name;
+  plan.time = options;
+  std::set<int> seen;
+  for (const int frame : frames)
+    if (seen.insert(frame).second) plan.frames.push_back(frame);
+
+  std::size_t beyond = 0;
+  for (const auto& [segment, asked] : by_segment(scene, plan.frames, options)) {
+    plan.segments.push_back(plan_segment(scene, segment, asked, camera_node, options));
+    for (const PlannedFrame& frame : plan.segments.back().frames) beyond += frame.frame != frame.evaluated;
+  }
+  if (beyond > 0)
+    plan.warnings.push_back(counted(beyond, "frame") + " outside the animation: the nearest end is shown");
+  plan_stages(scene, plan);
+  return plan;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,67 @@
+// lib/plan/plan.h -- what a range of frames needs, and which frames can share it (architecture.md 4 and 8).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lib/scene/at_frame.h"
+
+namespace tempolux {
+
+/// A node that moves in a segment.
+struct MovingNode {
+  std::string name;                 ///< its name in the scene, or "node N"
+  std::string why;                  ///< what differs: "translation of MovingBox"
+  std::string carries;              ///< "geometry", "light", "camera", or "" (only its children matter)
+};
+
+/// What is known of one frame. Two frames of one segment with equal `lit_frame` have the same light transport.
+struct PlannedFrame {
+  int frame = 0;                    ///< its number, as asked for
+  bool asked = false;               ///< in the range of the plan; the others only complete their segment
+  int evaluated = 0;                ///< the frame whose state it shows: `frame`, or the animation's nearest end
+  int lit_frame = 0;                ///< first frame of the segment with the same light transport
+  std::string camera;               ///< hash of the chosen camera; empty if not asked
+  std::string moving_geometry;      ///< hashes, as in SceneHashes
+  std::string lights;
+};
+
+/// A segment that holds some of the frames asked for, with all frames it has.
+struct PlannedSegment {
+  int first = 0, last = 0;
+  std::string static_geometry, materials;  ///< hashes, as in SceneHashes
+  std::string frozen;               ///< hash of what is frozen over the segment: emission table, bounds, origin
+  bool camera_moves = false;        ///< the camera differs between two of the frames asked for
+  std::vector<MovingNode> moves;
+  std::vector<PlannedFrame> frames; ///< all of the segment, in order; those beyond the animation after them
+};
+
+/// Whether a stage of the pipeline has work, and the fact that decides it.
+struct Stage {
+  std::string name;
+  bool needed = false;
+  std::string because;
+};
+
+struct Plan {
+  std::string camera;               ///< name of the camera's node
+  TimeOptions time;
+  std::vector<int> frames;          ///< those asked for, in the order asked, each once
+  std::vector<PlannedSegment> segments;  ///< by first frame
+  std::vector<Stage> stages;
+  std::string photon_kinds;         ///< what photon-trace has to record: "caustic,indirect"; "" if no photons
+  std::vector<std::string> warnings;
+};
+
+/// Evaluates the segments that hold `frames` and compares their states by content: hashes decide, neither
+/// file times nor what the file calls an animation. A frame beyond the animation shows the animation's nearest
+/// end and is warned about.
+///
+/// `camera_node` is an index into Scene::nodes (Scene::camera_node). Time is linear in what moves, times the
+/// frames of the segments, and in what stands, times the segments. Throws InputError for a scene without
+/// light or one that cannot be evaluated, std::invalid_argument for an empty `frames`.
+Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options);
+
+}  // namespace tempolux

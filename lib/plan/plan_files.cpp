@@ -1,0 +1,130 @@
+// lib/plan/plan_files.cpp -- formats/plan/plan.md, written.
+#include "lib/plan/plan_files.h"
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "formats/error.h"
+
+namespace tempolux {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json frame_json(const PlannedFrame& frame, bool photons) {
+  Json json = {{"frame", frame.frame}, {"asked", frame.asked}};
+  if (frame.evaluated != frame.frame) json["shows"] = frame.evaluated;
+  if (photons) json["photons"] = frame.lit_frame;
+  json["hashes"] = {{"moving_geometry", frame.moving_geometry}, {"lights", frame.lights}};
+  if (frame.asked) json["hashes"]["camera"] = frame.camera;
+  return json;
+}
+
+Json segment_json(const PlannedSegment& segment, bool photons) {
+  Json json = {{"first", segment.first}, {"last", segment.last}, {"camera_moves", segment.camera_moves}};
+  json["moves"] = Json::array();
+  for (const MovingNode& node : segment.moves)
+    json["moves"].push_back({{"node", node.name}, {"carries", node.carries}, {"why", node.why}});
+  json["hashes"] = {{"static_geometry", segment.static_geometry},
+                    {"materials", segment.materials},
+                    {"frozen", segment.frozen}};
+  json["frames"] = Json::array();
+  for (const PlannedFrame& frame : segment.frames) json["frames"].push_back(frame_json(frame, photons));
+  return json;
+}
+
+/// Frames at which photons are to be traced: one per state of light transport among those asked for.
+std::set<int> photon_frames(const Plan& plan) {
+  std::set<int> frames;
+  if (plan.photon_kinds.empty()) return frames;
+  for (const PlannedSegment& segment : plan.segments)
+    for (const PlannedFrame& frame : segment.frames)
+      if (frame.asked) frames.insert(frame.lit_frame);
+  return frames;
+}
+
+template <class Frames>
+std::string variable(const std::string& name, const Frames& frames) {
+  std::string line = name + " :=";
+  for (const int frame : frames) line.append(1, ' ').append(frame_digits(frame));
+  return line.append(1, '\n');
+}
+
+/// A file name as a prerequisite.
+std::string escaped_for_make(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    if (c == ' ' || c == '#' || c == '%' || c == ':') text += '\\';
+    if (c == '$') text += '$';
+    text += c;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string frame_digits(int frame) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%04d", frame);
+  return text.data();
+}
+
+std::string plan_json(const Plan& plan, const std::string& scene_name, const std::string& history) {
+  const bool photons = !plan.photon_kinds.empty();
+  Json json = {{"format", "tempolux plan"}, {"version", "1.0"}, {"history", history}, {"scene", scene_name},
+               {"camera", plan.camera},     {"fps", plan.time.fps}, {"segment_length", plan.time.segment_length},
+               {"light_units", plan.time.light_units}, {"frames", plan.frames}, {"photon_kinds", plan.photon_kinds}};
+  json["stages"] = Json::array();
+  for (const Stage& stage : plan.stages)
+    json["stages"].push_back({{"stage", stage.name}, {"needed", stage.needed}, {"because", stage.because}});
+  json["segments"] = Json::array();
+  for (const PlannedSegment& segment : plan.segments) json["segments"].push_back(segment_json(segment, photons));
+  json["warnings"] = plan.warnings;
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string plan_makefile(const Plan& plan, const std::string& folder, const std::vector<std::string>& scene_files) {
+  if (folder.find_first_of(" \t\n#%:$\\*?[]|;&'\"()<>`~=") != std::string::npos)
+    throw InputError(folder + ": make cannot use files in a folder of this name; choose another with -o");
+  const bool photons = !plan.photon_kinds.empty();
+  std::string text = "# Written by scene-plan; formats/plan/plan.md says what each variable is.\n";
+  text += variable("plan_frames", plan.frames) + variable("plan_photons", photon_frames(plan));
+  text += "plan_kinds := " + plan.photon_kinds + "\n";
+  for (const std::string& file : scene_files)  // the empty rule: a file that is gone asks for a new plan
+    text += folder + "/plan.mk: " + escaped_for_make(file) + "\n" + escaped_for_make(file) + ":\n";
+  for (const PlannedSegment& segment : plan.segments) {
+    const std::string first = frame_digits(segment.first);
+    text += "\n# frames " + std::to_string(segment.first) + " to " + std::to_string(segment.last) + "\n";
+    for (const PlannedFrame& frame : segment.frames) {
+      const std::string digits = frame_digits(frame.frame);
+      text += "light_" + digits + " := $(addprefix " + folder + "/state/,static." + first + " materials." + first +
+              " frozen." + first + " moving." + digits + " lights." + digits + ")\n";
+      if (!frame.asked) continue;
+      text += "camera_" + digits + " := " + folder + "/state/camera." + digits + "\n";
+      if (photons) text += "photons_" + digits + " := " + frame_digits(frame.lit_frame) + "\n";
+    }
+  }
+  return text;
+}
+
+std::vector<PlanFile> state_files(const Plan& plan) {
+  std::vector<PlanFile> files;
+  const auto add = [&](const char* concern, int frame, const std::string& hash) {
+    files.push_back({std::string("state/") + concern + "." + frame_digits(frame), hash + "\n"});
+  };
+  for (const PlannedSegment& segment : plan.segments) {
+    add("static", segment.first, segment.static_geometry);
+    add("materials", segment.first, segment.materials);
+    add("frozen", segment.first, segment.frozen);
+    for (const PlannedFrame& frame : segment.frames) {
+      add("moving", frame.frame, frame.moving_geometry);
+      add("lights", frame.frame, frame.lights);
+      if (frame.asked) add("camera", frame.frame, frame.camera);
+    }
+  }
+  return files;
+}
+
+}  // namespace tempolux
