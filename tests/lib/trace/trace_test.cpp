@@ -1,0 +1,132 @@
+// Rays against triangles: nearest hit, two trees, refused rays, no self hits, no leaks.
+#include "lib/trace/trace.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "lib/core/random.h"
+#include "tests/support/scenes.h"
+
+namespace tempolux {
+namespace {
+
+using test::HandMadeScene;
+using test::matte;
+
+Vec3 random_point(std::uint32_t i, std::uint32_t k, float size) {
+  const PathRandom random(17, i);
+  const Vec2 a = random.get2(k, Purpose::test);
+  return Vec3{a.x - 0.5f, a.y - 0.5f, random.get1(k, Purpose::test, 1) - 0.5f} * size;
+}
+
+/// Moeller and Trumbore in double.
+double brute_force(const SceneFrame& frame, const Ray& ray) {
+  double nearest = INFINITY;
+  for (const Surface& surface : frame.surfaces)
+    for (const auto& t : surface.primitive->triangles) {
+      const Vec3d a(surface.positions[t[0]]), e1 = Vec3d(surface.positions[t[1]]) - a, e2 = Vec3d(surface.positions[t[2]]) - a;
+      const Vec3d d(ray.direction), o = Vec3d(ray.origin) - a, p = cross(d, e2);
+      const double det = dot(e1, p), u = dot(o, p) / det, v = dot(d, cross(o, e1)) / det, s = dot(e2, cross(o, e1)) / det;
+      if (det != 0 && u >= 0 && v >= 0 && u + v <= 1 && s > 0) nearest = std::min(nearest, s);
+    }
+  return nearest;
+}
+
+TEST(Tracer, NearestHitOfBothTreesAgreesWithBruteForce) {
+  HandMadeScene scene;
+  for (std::uint32_t i = 0; i < 60; ++i)
+    scene.add({random_point(i, 0, 4), random_point(i, 1, 4), random_point(i, 2, 4)}, {{0, 1, 2}}, matte(Rgb(0.5f)), i % 2 == 1);
+  const SceneFrame& frame = scene.frame();
+  const Tracer tracer(frame);
+  int hits = 0, differing = 0;
+  for (std::uint32_t i = 0; i < 5000; ++i) {
+    const Ray ray{random_point(i, 5, 6), normalize(random_point(i, 6, 1)), 0, INFINITY};
+    Hit hit;
+    const bool found = tracer.intersect(ray, hit);
+    const double expected = brute_force(frame, ray);
+    if (found != (expected < INFINITY)) { ++differing; continue; }  // rays along edges: rounding decides
+    EXPECT_EQ(tracer.occluded(ray), found);
+    if (!found) continue;
+    ++hits;
+    EXPECT_NEAR(double(hit.t), expected, 1e-5 * (1 + expected));
+    const SurfacePoint point = tracer.surface_point(hit);
+    EXPECT_LT(length(point.position - (ray.origin + ray.direction * hit.t)), 2e-5f);
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_LE(differing, 2);
+}
+
+TEST(Tracer, TheStaticSurfaceWinsATie) {
+  HandMadeScene scene;
+  scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.1f)), true);
+  scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.9f)), false);
+  const Tracer tracer(scene.frame());
+  Hit hit;
+  ASSERT_TRUE(tracer.intersect({{0.25f, 1, 0.125f}, {0, -1, 0}, 0, INFINITY}, hit));
+  EXPECT_EQ(tracer.surface_point(hit).object, 1u);
+}
+
+TEST(Tracer, RaysThatAreNotFiniteAreMissesAndCounted) {
+  HandMadeScene scene;
+  scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
+  const Tracer tracer(scene.frame());
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = INFINITY;
+  const Ray bad[] = {{{nan, 0, 0}, {1, 0, 0}, 0, inf}, {{0, 0, 0}, {nan, 0, 0}, 0, inf}, {{0, 0, 0}, {inf, 0, 0}, 0, inf},
+                     {{0, 0, 0}, {1, 0, 0}, -1, inf},  {{0, 0, 0}, {1, 0, 0}, nan, inf}, {{0, 0, 0}, {1, 0, 0}, 0, nan},
+                     {{1e30f, 0, 0}, {1, 0, 0}, 0, inf}, {{0, 0, 0}, {1e30f, 0, 0}, 0, inf}};
+  for (const Ray& ray : bad) {
+    Hit hit;
+    EXPECT_FALSE(tracer.intersect(ray, hit));
+    EXPECT_FALSE(tracer.intersect_static(ray, hit));
+    EXPECT_TRUE(tracer.occluded(ray));
+  }
+  EXPECT_EQ(tracer.refused_ray_count(), 3 * std::size(bad));
+}
+
+/// At every scale and offset a ray that leaves a wall of a closed room meets another wall, never its own
+/// and never nothing: no self hits, no leaks at edges.
+TEST(Tracer, ARoomIsClosedAtEveryScale) {
+  for (float scale : {1e-4f, 1.0f, 1e6f}) {
+    HandMadeScene scene;
+    scene.add_room(Vec3{-1, -1.5f, -2} * scale, Vec3{1, 1.5f, 2} * scale, matte(Rgb(0.5f)));
+    const SceneFrame& frame = scene.frame();
+    const Tracer tracer(frame);
+    const test::AreaSampler area(frame);
+    int lost = 0, own = 0;
+    constexpr int kRays = 200000;
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+      const PathRandom random(5, i);
+      Vec3 position, normal;
+      area.sample(random.get1(0, Purpose::test), random.get2(1, Purpose::test), position, normal);
+      SurfacePoint from;
+      from.position = position;
+      from.normal_geometric = from.normal = normal;
+      from.offset = 0x1p-20f * 2 * scale;
+      const Vec3 travel = Frame(normal).to_world(sample_hemisphere_cos(random.get2(2, Purpose::test)));
+      Hit hit;
+      if (!tracer.intersect(spawn_ray(from, travel), hit)) { ++lost; continue; }
+      const SurfacePoint to = tracer.surface_point(hit);
+      own += dot(to.normal_geometric, normal) > 0.5f;  // the same wall
+    }
+    EXPECT_EQ(lost, 0) << scale;
+    EXPECT_EQ(own, 0) << scale;
+  }
+}
+
+TEST(Tracer, AShadowRayIsFreeBetweenTwoWallsAndBlockedByAThird) {
+  HandMadeScene scene;
+  scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
+  scene.add_quad({-0.5f, 0, 0.5f}, {0.5f, 0, 0.5f}, {0.5f, 0, -0.5f}, {-0.5f, 0, -0.5f}, matte(Rgb(0.5f)));
+  const Tracer tracer(scene.frame());
+  Hit hit;
+  ASSERT_TRUE(tracer.intersect({{0.75f, 0, 0.7f}, {0, -1, 0}, 0, INFINITY}, hit));
+  const SurfacePoint floor = tracer.surface_point(hit);
+  EXPECT_FALSE(tracer.occluded(spawn_shadow_ray(floor, {0.7f, 1, 0.7f}, 1e-6f)));
+  ASSERT_TRUE(tracer.intersect({{0.25f, -0.5f, 0.1f}, {0, -1, 0}, 0, INFINITY}, hit));
+  EXPECT_TRUE(tracer.occluded(spawn_shadow_ray(tracer.surface_point(hit), {0.2f, 1, 0.1f}, 1e-6f)));
+}
+
+}  // namespace
+}  // namespace tempolux
