@@ -103,7 +103,8 @@ bool scaled(std::string_view digits, std::uint64_t factor, std::uint64_t& value)
   while (fraction != 0 && fraction % 10 == 0) fraction /= 10, power /= 10;
   if (fraction == 0) power = 1;
   if (factor % power * fraction % power != 0) return false;
-  const std::uint64_t rest = factor / power * fraction + factor % power * fraction / power;   // fits: 2^40, 10^9
+  // No product reaches 2^64: factor <= 2^40, fraction < power <= 10^9.
+  const std::uint64_t rest = factor / power * fraction + factor % power * fraction / power;
   value = integer * factor + rest;
   return value < kLimit;
 }
@@ -178,22 +179,24 @@ std::uint64_t parse_count(const std::string& text) {
 
 std::string format_count(std::uint64_t count) {
   if (count != 0)
-    for (const auto& [factor, suffix] : {std::pair{1'000'000'000ull, "G"}, {1'000'000ull, "M"}, {1'000ull, "k"}})
+    for (const auto& [factor, suffix] : {std::pair{1'000'000'000u, "G"}, {1'000'000u, "M"}, {1'000u, "k"}})
       if (count % factor == 0) return std::to_string(count / factor) + suffix;
   return std::to_string(count);
 }
 
 std::uint64_t parse_bytes(const std::string& text) {
   const std::size_t digits = end_of_digits(text);
-  std::string suffix = text.substr(digits);
+  const std::string suffix = text.substr(digits);
   int power = 0;
   if (!suffix.empty() && suffix != "B") {
     const std::size_t letter = std::string_view("KMGT").find(suffix.front() == 'k' ? 'K' : suffix.front());
     const std::string tail = suffix.substr(1);
-    power = letter != std::string_view::npos && (tail.empty() || tail == "B" || tail == "iB") ? int(letter) + 1 : -1;
+    const bool known = letter != std::string_view::npos && (tail.empty() || tail == "B" || tail == "iB");
+    power = known ? int(letter) + 1 : -1;
   }
   std::uint64_t bytes = 0;
-  if (power < 0 || !scaled(std::string_view(text).substr(0, digits), std::uint64_t{1} << (10 * power), bytes))
+  const std::string_view number = std::string_view(text).substr(0, digits);
+  if (power < 0 || !scaled(number, std::uint64_t{1} << (10 * power), bytes))
     bad(text, "not a size; write bytes such as 500000, 64KiB, 300MiB or 2GiB");
   return bytes;
 }

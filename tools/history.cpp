@@ -11,7 +11,8 @@ namespace {
 std::string quoted(const std::string& word) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("_.,:=+@%/#-").find(c) != std::string_view::npos || (static_cast<unsigned char>(c) >= 0x80);
+           std::string_view("_.,:=+@%/#-").find(c) != std::string_view::npos ||
+           static_cast<unsigned char>(c) >= 0x80;
   };
   if (!word.empty() && std::ranges::all_of(word, plain)) return word;
   std::string text = "'";
@@ -26,7 +27,8 @@ std::string without_folder(const std::string& name) {
   const std::size_t end = name.find_last_not_of('/');
   if (end == std::string::npos) return name;
   const std::size_t slash = name.rfind('/', end);
-  return name.substr(slash == std::string::npos ? 0 : slash + 1, slash == std::string::npos ? end + 1 : end - slash);
+  const std::size_t begin = slash == std::string::npos ? 0 : slash + 1;
+  return name.substr(begin, end + 1 - begin);
 }
 
 /// The longest common name: "photons" of "-n,--photons".
@@ -35,7 +37,13 @@ std::string option_name(const CLI::Option& option) {
   return "-" + option.get_snames().front();
 }
 
-bool is_positional(const CLI::Option& option) { return option.get_lnames().empty() && option.get_snames().empty(); }
+bool has_name(const CLI::Option& option, const std::string& name) {
+  return std::ranges::find(option.get_lnames(), name) != option.get_lnames().end();
+}
+
+bool is_positional(const CLI::Option& option) {
+  return option.get_lnames().empty() && option.get_snames().empty();
+}
 
 /// A file name in a make rule.
 std::string make_word(const std::string& name) {
@@ -61,7 +69,8 @@ std::string Tool::history_line(std::optional<int> frame) const {
     if (is_positional(*option) && !state_->left_out_of_history.contains(option)) add(*option);
   for (const CLI::Option* option : options) {
     if (is_positional(*option) || state_->left_out_of_history.contains(option)) continue;
-    if (option == state_->frames_option && frame) {
+    if (has_name(*option, "output")) continue;
+    if (frame && (has_name(*option, "frames") || has_name(*option, "frame"))) {
       line += " --frame " + std::to_string(*frame);
     } else if (option->count() > 0) {
       line += " " + option_name(*option);

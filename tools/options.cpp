@@ -84,7 +84,7 @@ int add_library(dl_phdr_info* info, std::size_t, void* names) {
   if (!info->dlpi_name || info->dlpi_name[0] != '/') return 0;
   std::error_code error;
   const std::string file = std::filesystem::canonical(info->dlpi_name, error).filename().string();
-  for (const char* usual : {"libc.", "libc-", "libm.", "libm-", "libstdc++", "libgcc_s", "ld-", "libdl", "libpthread"})
+  for (const char* usual : {"libc.", "libc-", "libm.", "libm-", "libstdc++", "libgcc_s", "ld-"})
     if (file.starts_with(usual)) return 0;
   if (!file.empty()) *static_cast<std::string*>(names) += " " + file;
   return 0;
@@ -97,8 +97,8 @@ std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<H
 std::string version_text(const std::string& tool) {
   std::string libraries;
   dl_iterate_phdr(add_library, &libraries);
-  return tool + " (tempolux) " TEMPOLUX_VERSION "\ncompiler: " __VERSION__ "\nlibraries: CLI11-" CLI11_VERSION +
-         libraries + "\n";
+  return tool + " (tempolux) " TEMPOLUX_VERSION "\ncompiler: " __VERSION__
+         "\nlibraries: CLI11-" CLI11_VERSION + libraries + '\n';
 }
 
 void Tool::common_options(unsigned flags) {
@@ -109,10 +109,9 @@ void Tool::common_options(unsigned flags) {
     return option;
   };
   if (flags & uses_frames)
-    state_->frames_option =
-        parsed_option(app, "--frame,--frames", "frame, or frames such as 0-47, 0-47x2 or 1,5,9", "0",
-                      [&common](const std::string& text) { common.frames = parse_frames(text); })
-            ->type_name("FRAMES");
+    parsed_option(app, "--frames,--frame", "frame, or frames such as 0-47, 0-47x2 or 1,5,9", "0",
+                  [&common](const std::string& text) { common.frames = parse_frames(text); })
+        ->type_name("FRAMES");
   if (flags & uses_camera)
     app.add_option("--camera", common.camera, "name of the camera; auto: the first of the scene")
         ->type_name("NAME")->capture_default_str();
@@ -120,7 +119,8 @@ void Tool::common_options(unsigned flags) {
     app.add_option("--seed", common.seed, "seed of the random numbers, 0 to 2^64-1")
         ->type_name("N")->capture_default_str()
         ->check([](const std::string& text) -> std::string {
-          return text.find_first_not_of("0123456789") == std::string::npos ? "" : "'" + text + "' is no whole number";
+          const bool whole = text.find_first_not_of("0123456789") == std::string::npos;
+          return whole ? "" : "'" + text + "' is not a whole number";
         });
     app.add_option("--seed-mode", common.seed_mode, "fixed: one seed for all frames; frame: another for each")
         ->type_name("MODE")->capture_default_str()->check(CLI::IsMember({"fixed", "frame"}));
@@ -136,14 +136,17 @@ void Tool::common_options(unsigned flags) {
     left_out(app.add_option("--state", common.state_files,
                             "state files of scene-plan, listed by --depfile instead of the scene's files"))
         ->type_name("FILE");
-    left_out(app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
-    left_out(app.add_flag("--allow-outside", common.allow_outside, "follow file names that leave the scene's folder"));
+    left_out(app.add_flag("--allow-stale", common.allow_stale,
+                          "use inputs made for another state of the scene"));
+    left_out(app.add_flag("--allow-outside", common.allow_outside,
+                          "follow file names that leave the scene's folder"));
   }
   left_out(app.add_option("--threads", common.threads, "threads; 0: all processors this process may use"))
       ->type_name("N")->capture_default_str()->envname("TEMPOLUX_THREADS")
       ->check(number_between(0, 4096, "from 0 to 4096"));
   left_out(bytes_option("--max-memory", common.max_memory_bytes, "limit of memory, such as 300MiB; 0: none"));
-  left_out(app.add_option("--stats", common.stats_file, "write seconds, counts and memory as JSON; -: standard output"))
+  left_out(app.add_option("--stats", common.stats_file,
+                          "write seconds, counts and memory as JSON; -: standard output"))
       ->type_name("FILE");
   left_out(app.add_option("--depfile", common.dep_file, "write a make rule: outputs depend on inputs"))
       ->type_name("FILE");

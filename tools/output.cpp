@@ -84,7 +84,8 @@ std::string reason_and_remedy(int error) {
 }
 
 [[noreturn]] void fail(const std::string& path, const char* what, int error) {
-  throw ResourceError((path == "-" ? "standard output" : path) + ": " + what + ": " + reason_and_remedy(error));
+  const std::string name = path == "-" ? "standard output" : path;
+  throw ResourceError(name + ": " + what + ": " + reason_and_remedy(error));
 }
 
 bool same_bytes(const std::string& a, const std::string& b) {

@@ -41,7 +41,7 @@ Json number(double value) {
 }
 
 /// Seconds to the microsecond: more is noise.
-double rounded(double seconds) { return std::round(seconds * 1e6) * 1e-6; }
+double rounded(double seconds) { return std::round(seconds * 1e6) / 1e6; }
 
 }  // namespace
 

@@ -20,7 +20,6 @@ struct Tool::State {
   Common common;
   Stats stats;
   std::set<const CLI::Option*> left_out_of_history;
-  const CLI::Option* frames_option = nullptr;
 
   struct Dependency {
     std::string file;

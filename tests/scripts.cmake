@@ -1,0 +1,18 @@
+# Tests that are not one GoogleTest program of formats or lib. One block each; scripts get the folder of the
+# tools as their first argument and run in a scratch folder of their own.
+file(GLOB cli_tests CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} cli/*_test.cpp)
+foreach(source ${cli_tests})
+  tempolux_test(${source} DEPENDS tempolux_tool_main nlohmann_json::nlohmann_json)
+endforeach()
+
+# cli/probe.cpp is a tool that does nothing but what all tools share; the scripts use it next to the real ones.
+add_executable(tool-probe cli/probe.cpp)
+target_link_libraries(tool-probe PRIVATE tempolux_options tempolux_tool_main)
+set_target_properties(tool-probe PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+
+file(GLOB cli_scripts CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} cli/*_check.sh)
+foreach(script ${cli_scripts})
+  get_filename_component(name ${script} NAME_WE)
+  add_test(NAME cli.${name} COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cli/run.sh ${CMAKE_BINARY_DIR} ${name})
+  set_tests_properties(cli.${name} PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
+endforeach()
