@@ -1,11 +1,13 @@
 // lib/scene/gltf_load.cpp
 #include "lib/scene/gltf_load.h"
 
-#include <filesystem>
-#include <stdexcept>
+#include <algorithm>
+#include <exception>
+#include <new>
 
 #include "formats/error.h"
 #include "lib/scene/gltf_check.h"
+#include "lib/scene/gltf_gate.h"
 
 namespace tempolux {
 namespace gltf {
@@ -14,49 +16,101 @@ void fail(const std::string& file, const std::string& place, const std::string& 
   throw InputError(file + ": " + place + ": " + what);
 }
 
-std::string place_of(const char* array, std::size_t index, const std::string& name) {
-  const std::string place = std::string(array) + "[" + std::to_string(index) + "]";
-  return name.empty() ? place : place + " \"" + name.substr(0, 60) + "\"";
+std::string one_line(std::string text, std::size_t length) {
+  text = text.substr(0, std::min(length, text.find('\n')));
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
+  return text;
 }
 
-}  // namespace gltf
+std::string place_of(const char* array, std::size_t index, const std::string& name) {
+  const std::string place = std::string(array) + "[" + std::to_string(index) + "]";
+  return name.empty() ? place : place + " \"" + one_line(name, 60) + "\"";
+}
+
+void Import::ignore_extension(const std::string& name, const char* of) {
+  const auto& declared = model.extensionsUsed;
+  if (std::find(declared.begin(), declared.end(), name) == declared.end()) ignore(one_line(name, 80) + of);
+}
 
 namespace {
 
-/// tinygltf wants to decode images; nothing here needs their pixels.
+// tinygltf's file callbacks: the only names it can ask for are those of buffers that passed the gate.
+
+const ByteRange* range_named(const std::string& name, void* gated) {
+  const std::vector<ByteRange>& buffers = static_cast<const Gated*>(gated)->buffers;
+  for (std::size_t i = 0; i < buffers.size(); ++i)
+    if (name == buffer_name(i)) return &buffers[i];
+  return nullptr;
+}
+
+bool buffer_exists(const std::string& name, void* gated) { return range_named(name, gated) != nullptr; }
+
+std::string same_name(const std::string& name, void*) { return name; }
+
+bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::string& name, void* gated) {
+  const ByteRange* range = range_named(name, gated);
+  if (range) *out = read_range(*range);
+  return range != nullptr;
+}
+
+bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
+
+/// Images never reach tinygltf; should one, its pixels are not decoded.
 bool decode_nothing(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int,
                     void*) {
   return true;
 }
 
-}  // namespace
-
-Scene load_gltf(const std::string& path, const GltfOptions&) {
+tinygltf::Model parse(const std::string& path, Gated& gated) {
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader(decode_nothing, nullptr);
+  parser.SetFsCallbacks({buffer_exists, same_name, read_buffer, write_nothing, &gated});
   tinygltf::Model model;
   std::string error, warning;
-  const bool binary = std::filesystem::path(path).extension() == ".glb";
-  const bool loaded = binary ? parser.LoadBinaryFromFile(&model, &error, &warning, path)
-                             : parser.LoadASCIIFromFile(&model, &error, &warning, path);
-  if (!loaded) gltf::fail(path, "glTF", error);
+  if (!parser.LoadASCIIFromString(&model, &error, &warning, gated.json.data(), unsigned(gated.json.size()), ""))
+    fail(path, "glTF", error.empty() ? "cannot be read" : one_line(error, 200));
+  return model;
+}
 
+/// Geometry may be this much larger than the bytes it comes from: 8-bit indices and positions grow twelvefold.
+constexpr std::uint64_t kGrowth = 32, kSmallScene = 64u << 20;
+
+Scene import_scene(const std::string& path, const GltfOptions& options) {
+  Gated gated = pass_gate(path, options);
+  const tinygltf::Model model = parse(path, gated);
   Scene scene;
   scene.path = path;
-  scene.files.push_back(path);
-  std::uint64_t bytes = 0;
-  for (const tinygltf::Buffer& buffer : model.buffers) bytes += buffer.data.size();
-  gltf::Import import{model, scene, 32 * bytes + (64u << 20)};
-  gltf::check_accessors(import);
-  gltf::import_nodes(import);
-  gltf::import_materials(import);
-  gltf::import_lights(import);
-  gltf::import_cameras(import);
-  gltf::import_meshes(import);
-  gltf::import_animations(import);
+  scene.files = gated.files;
+  scene.warnings = gated.warnings;
+  Import import{model, scene, kGrowth * gated.byte_count + kSmallScene};
+  check_accessors(import);
+  import_nodes(import);
+  import_materials(import);
+  import_lights(import);
+  import_cameras(import);
+  import_meshes(import);
+  import_animations(import);
   for (const auto& [what, count] : import.ignored)
     scene.warnings.push_back(path + ": ignored: " + what + (count > 1 ? ", " + std::to_string(count) + " times" : ""));
   return scene;
+}
+
+}  // namespace
+}  // namespace gltf
+
+Scene load_gltf(const std::string& path, const GltfOptions& options) {
+  try {
+    return gltf::import_scene(path, options);
+  } catch (const InputError&) {
+    throw;
+  } catch (const ResourceError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw ResourceError(path + ": not enough memory to load the scene");
+  } catch (const std::exception& error) {
+    throw InputError(path + ": cannot be read: " + gltf::one_line(error.what(), 200));
+  }
 }
 
 }  // namespace tempolux

@@ -87,7 +87,7 @@ void read_extension(Import& import, const std::string& name, const Value& value,
   } else if (name == "KHR_materials_unlit") {
     import.ignore("KHR_materials_unlit (the material is lit like any other)");
   } else {
-    import.ignore(name + " of materials");
+    import.ignore_extension(name, " of materials");
   }
 }
 

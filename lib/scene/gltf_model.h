@@ -16,6 +16,9 @@ namespace tempolux::gltf {
 /// Throws InputError "FILE: PLACE: WHAT".
 [[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what);
 
+/// The first line of a text from a file or a library, at most `length` bytes, without control characters.
+std::string one_line(std::string text, std::size_t length);
+
 /// A place in the file: `meshes[3]`, or `meshes[3] "Wall"` if it has a name.
 std::string place_of(const char* array, std::size_t index, const std::string& name = {});
 
@@ -35,6 +38,8 @@ struct Import {
   /// than its own size can mean.
   void take_memory(std::uint64_t bytes, const std::string& place);
   void ignore(const std::string& what, std::size_t count = 1) { ignored[what] += count; }
+  /// An extension that nothing here reads; those that the file declares have been warned about by the gate.
+  void ignore_extension(const std::string& name, const char* of);
 };
 
 /// Makes a quaternion x y z w unit; false if it is zero or not finite.

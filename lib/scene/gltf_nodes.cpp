@@ -65,7 +65,7 @@ Node read_node(Import& import, std::uint32_t index, int parent) {
   node.light = light_of(import, source, place);
   if (source.skin >= 0) import.ignore("skins (meshes stay in their rest shape)");
   for (const auto& [name, value] : source.extensions)
-    if (name != "KHR_lights_punctual") import.ignore(name + " of nodes");
+    if (name != "KHR_lights_punctual") import.ignore_extension(name, " of nodes");
   return node;
 }
 

@@ -1,0 +1,44 @@
+// lib/scene/gltf_gate.h -- what a glTF file must pass before tinygltf sees it.
+//
+// tinygltf is a parser, not a validator: it recurses as deep as the JSON nests, opens any path a URI names and
+// takes wrong types for missing ones. So the JSON is parsed here first, with limits, checked, and handed on
+// rewritten: images gone, every buffer's URI replaced by the name of a byte range that the gate has approved.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lib/scene/gltf_load.h"
+
+namespace tempolux::gltf {
+
+/// Bytes of a regular file that hold one buffer.
+struct ByteRange {
+  std::string path;
+  std::uint64_t offset = 0, length = 0;
+};
+
+/// A file that passed.
+struct Gated {
+  std::string json;                   ///< buffers are named by buffer_name(index) or are base64 data URIs
+  std::vector<ByteRange> buffers;     ///< by index of the buffer; length 0: a data URI
+  std::vector<std::string> files;     ///< the scene file and every file a buffer lies in, each once
+  std::uint64_t byte_count = 0;       ///< size of the JSON and of all buffers
+  std::vector<std::string> warnings;  ///< what the file has and nothing here reads
+};
+
+/// The name a buffer has in Gated::json.
+std::string buffer_name(std::size_t index);
+
+/// Reads the JSON of a .gltf or .glb file (told apart by content) and checks, in this order: size, GLB
+/// chunks, nesting (64 levels) and number of JSON values, types of all properties that are read, version,
+/// required extensions, and where URIs lead: relative, inside the scene's folder (symbolic links resolved),
+/// regular files that are long enough. Throws InputError.
+Gated pass_gate(const std::string& path, const GltfOptions& options);
+
+/// Reads a range; throws InputError if the file ends first.
+std::vector<unsigned char> read_range(const ByteRange& range);
+
+}  // namespace tempolux::gltf

@@ -1,0 +1,20 @@
+// lib/scene/gltf_json.h -- JSON of a glTF file with its types checked; private to the gate.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+namespace tempolux::gltf {
+
+using Json = nlohmann::json;
+
+/// Parses text after a first pass that counts: at most 64 levels and 8 million values, so that neither
+/// stack nor memory depend on what a hostile file asks for. Throws InputError with the line.
+Json parse_json(std::string_view text, const std::string& file);
+
+/// Checks that every property of glTF 2.0 that is read later has its type, and that required ones are
+/// there; whole numbers written with a fraction (3.0) become integers. Throws InputError naming the place.
+void check_types(Json& document, const std::string& file);
+
+}  // namespace tempolux::gltf
