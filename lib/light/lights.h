@@ -1,8 +1,10 @@
 // lib/light/lights.h -- all lights of a frame behind one sampling interface.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "lib/core/vec.h"
@@ -10,9 +12,9 @@
 
 namespace tempolux {
 
-/// One slot of the emission table: an emissive triangle (one side counts once, both sides twice the flux) or
-/// a punctual light. Slots and probabilities are frozen over a segment: a lamp that dims or moves keeps its
-/// slot and changes the photon's weight.
+/// One slot of the emission table: an emissive triangle (both sides, twice the flux, if its material is double
+/// sided) or a punctual light. Slots and probabilities are frozen over a segment: a lamp that dims or moves
+/// keeps its slot and changes the photon's weight.
 struct EmissionSlot {
   enum class Kind : std::uint8_t { triangle, point, spot, directional };
   Kind kind = Kind::triangle;
@@ -21,16 +23,22 @@ struct EmissionSlot {
   double probability = 0;                        ///< of being chosen for a photon; sums to 1 over the table
 };
 
-/// The frozen probabilities of a segment: one per slot, from the maximum flux over the segment's frames
-/// (luminance; a directional light's flux is its irradiance times the area pi R^2 of the scene sphere's disc).
+/// What is frozen over a segment. Slots are the triangles of `surfaces`, one after the other, then the
+/// frame's punctual lights; probability is proportional to the maximum flux over the segment's frames
+/// (luminance, but at least 5 % of the largest channel, so that blue lamps count; a directional light's flux is
+/// its irradiance times the area pi R^2 of the scene sphere's disc).
 struct EmissionTable {
-  std::vector<double> probability;               ///< by slot; empty if the scene has no light
+  std::vector<std::uint32_t> surfaces;           ///< that emit at some frame: indices into SceneFrame::surfaces
+  std::vector<double> probability;               ///< by slot, sums to 1; equal if nothing ever emits
   Vec3d sphere_centre{};                         ///< scene sphere over the segment, scene space, m
   double sphere_radius = 0;
 };
 
-/// Evaluates the segment's frames as needed (only lights; a scene whose lights do not move costs one frame).
+/// Of all frames of the segment if something that emits moves, else of one.
 EmissionTable build_emission_table(const Scene& scene, const Segment& segment, const TimeOptions& options);
+/// Of frames already evaluated, all of one segment (the same surfaces and lights in the same order); at
+/// least one. To be the segment's table they must be all frames at which an emitter's size differs.
+EmissionTable build_emission_table(std::span<const SceneFrame> frames);
 
 struct LightSample {
   Vec3 wi{};                    ///< unit, from the point towards the light
@@ -74,8 +82,14 @@ class Lights {
   /// one-sided emitter.
   Rgb emitted(std::uint32_t surface, Vec3 normal_geometric, Vec3 wo) const;
 
-  /// A photon from the frozen table: u[0] chooses the slot and, stretched, the first coordinate on it; u[1]
-  /// the second; u[2], u[3] the direction. flux = (what the slot emits at this frame) / probability.
+  /// A photon from the frozen table: u[0] chooses the slot and, stretched, is the first coordinate on it, u[1]
+  /// the second; u[2], u[3] the direction (of a two-sided triangle the lower half of u[2] leaves the front).
+  /// Point and spot lights have no place to choose and take u[0], u[1] for the direction, directional lights
+  /// for the place on the scene sphere's disc. All maps keep neighbours together. Not for an empty table.
+  ///
+  /// flux = (what the slot emits at this frame) / probability: the mean over u is total_flux(). Triangle: pi L A
+  /// (twice if two-sided), by the cosine; point: 4 pi I, uniform; spot: as its intensity; directional: E pi R^2,
+  /// origin on the disc of radius R outside the scene. Zero flux for what emits nothing at this frame.
   PhotonEmission emit(const double u[4]) const;
 
  private:

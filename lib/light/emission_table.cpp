@@ -1,0 +1,75 @@
+// The emission table of a segment, and the slots it stands for.
+#include <algorithm>
+#include <vector>
+
+#include "lib/core/check.h"
+#include "lib/light/lights.h"
+#include "lib/light/punctual.h"
+#include "lib/light/triangle_light.h"
+
+namespace tempolux {
+namespace {
+
+double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }
+
+/// Largest weight of each slot so far: those of a frame joined to `weights`.
+void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vector<double>& weights) {
+  std::size_t slot = 0;
+  const auto join = [&](Rgbd flux) {
+    if (slot == weights.size()) weights.push_back(0);
+    weights[slot] = std::max(weights[slot], emission_weight(flux));
+    ++slot;
+  };
+  for (const std::uint32_t s : table.surfaces) {
+    const Surface& surface = frame.surfaces[s];
+    const Material& material = frame.materials[surface.material];
+    for (std::uint32_t t = 0; t < surface.primitive->triangles.size(); ++t)
+      join(TriangleLight(surface, t, material).flux());
+  }
+  for (const PlacedLight& placed : frame.lights) join(punctual_flux(placed.light, table.sphere_radius));
+}
+
+bool anything_that_emits_moves(const SceneFrame& frame) {
+  for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s)
+    if (frame.materials[frame.surfaces[s].material].emissive()) return true;
+  return false;  // the flux of punctual lights does not depend on where they are
+}
+
+}  // namespace
+
+EmissionTable build_emission_table(std::span<const SceneFrame> frames) {
+  TEMPOLUX_CHECK(!frames.empty());
+  const SceneFrame& any = frames.front();
+  EmissionTable table;
+  if (!any.bounds.empty()) {
+    table.sphere_centre = (Vec3d(any.bounds.lower) + Vec3d(any.bounds.upper)) * 0.5;
+    table.sphere_radius = 0.5 * length(Vec3d(any.bounds.upper) - Vec3d(any.bounds.lower)) * (1 + 1e-5);
+  }
+  for (std::uint32_t s = 0; s < any.surfaces.size(); ++s) {
+    const bool emits = std::any_of(frames.begin(), frames.end(), [&](const SceneFrame& f) {
+      return f.materials[f.surfaces[s].material].emissive();
+    });
+    if (emits) table.surfaces.push_back(s);
+  }
+  std::vector<double> weights;
+  for (const SceneFrame& frame : frames) {
+    TEMPOLUX_CHECK(frame.surfaces.size() == any.surfaces.size() && frame.lights.size() == any.lights.size());
+    join_weights(frame, table, weights);
+  }
+  double total = 0;
+  for (const double w : weights) total += w;
+  for (double& w : weights) w = total > 0 ? w / total : 1.0 / double(weights.size());
+  table.probability = std::move(weights);
+  return table;
+}
+
+EmissionTable build_emission_table(const Scene& scene, const Segment& segment, const TimeOptions& options) {
+  const SegmentScene stage(scene, segment, options);
+  std::vector<SceneFrame> frames;
+  frames.push_back(stage.at(segment.first));
+  if (anything_that_emits_moves(frames.front()))
+    for (int f = segment.first + 1; f <= segment.last; ++f) frames.push_back(stage.at(f));
+  return build_emission_table(frames);
+}
+
+}  // namespace tempolux

@@ -1,0 +1,62 @@
+// lib/light/light_tree.h -- a tree over many lights that chooses one for a point in O(log n).
+//
+// Conty Estevez & Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", PACM CGIT 1(2),
+// 2018; bounds and cosines as in pbrt-v4, section 12.6.3.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lib/core/vec.h"
+
+namespace tempolux {
+
+/// What is known of one light, or of all lights below a node.
+struct LightBounds {
+  Box3 box;
+  Vec3 axis{0, 0, 1};     ///< unit: middle of the normals
+  double weight = 0;      ///< greatest irradiance at 1 m, facing it: L A, or I; summed over lights
+  float cos_spread = 1;   ///< all normals are within this angle of the axis
+  float cos_reach = 0;    ///< and shine no farther than this angle from their normal (at most pi/2)
+  bool two_sided = false; ///< some shine backwards as well
+};
+
+class LightTree {
+ public:
+  /// Weights must be positive and finite, boxes finite.
+  explicit LightTree(const std::vector<LightBounds>& lights);
+
+  bool empty() const { return nodes_.empty(); }
+  struct Choice {
+    std::uint32_t light = 0;
+    double probability = 0;  ///< of the light, at this point and normal
+  };
+  /// Walks down by the importance of both children: an upper bound of weight cos cos / distance^2. `normal`:
+  /// unit, or zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at a
+  /// node of which no light can reach the point.
+  bool choose(Vec3 point, Vec3 normal, float u, Choice& choice) const;
+  /// Probability with which choose() takes this light. [1]
+  double probability(Vec3 point, Vec3 normal, std::uint32_t light) const;
+
+ private:
+  struct Node {
+    Vec3 centre{};
+    float radius2 = 0;           ///< of the box's sphere, squared
+    Vec3 axis{};
+    float cos_spread = 1, sin_spread = 0, cos_reach = 0;
+    double weight = 0;           ///< in parts of the whole tree's
+    std::uint32_t index = 0;     ///< the light of a leaf; else the second child, the first being next
+    bool leaf = false, two_sided = false;
+  };
+  struct Item;
+  LightBounds build(std::vector<Item>& items, std::size_t first, std::size_t last, std::uint64_t trail,
+                    int depth);
+  static std::size_t split(std::vector<Item>& items, std::size_t first, std::size_t last, bool by_cost);
+  static double importance(const Node& node, Vec3 point, Vec3 normal);
+
+  std::vector<Node> nodes_;
+  std::vector<std::uint64_t> trail_;  ///< by light: bit d is set if it is below the second child at depth d
+};
+
+}  // namespace tempolux

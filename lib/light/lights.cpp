@@ -1,0 +1,305 @@
+#include "lib/light/lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/check.h"
+#include "lib/core/frame.h"
+#include "lib/core/sampling.h"
+#include "lib/light/light_tree.h"
+#include "lib/light/punctual.h"
+#include "lib/light/triangle_light.h"
+
+namespace tempolux {
+namespace {
+
+EmissionSlot::Kind slot_kind(PunctualLight::Kind kind) {
+  switch (kind) {
+    case PunctualLight::Kind::point: return EmissionSlot::Kind::point;
+    case PunctualLight::Kind::spot: return EmissionSlot::Kind::spot;
+    case PunctualLight::Kind::directional: return EmissionSlot::Kind::directional;
+  }
+  return EmissionSlot::Kind::point;
+}
+
+LightBounds bounds_of(const TriangleLight& t) {
+  LightBounds b;
+  b.box.add(t.corner);
+  b.box.add(t.corner + t.edge1);
+  b.box.add(t.corner + t.edge2);
+  b.axis = t.normal;
+  b.weight = double(max_component(t.radiance)) * t.area;
+  b.two_sided = t.two_sided;
+  return b;
+}
+
+LightBounds bounds_of(const PlacedLight& placed) {
+  LightBounds b;
+  b.box.add(placed.position);
+  b.axis = placed.direction;
+  b.weight = max_component(placed.light.intensity);
+  b.cos_spread = -1;
+  if (placed.light.kind == PunctualLight::Kind::spot) {
+    // The cone's axis is a normal; its light reaches as far as the outer angle.
+    b.cos_spread = std::cos(std::min(placed.light.inner_cone_rad, placed.light.outer_cone_rad));
+    b.cos_reach = std::max(0.0f, std::cos(placed.light.outer_cone_rad - std::acos(b.cos_spread)));
+  }
+  return b;
+}
+
+/// Irradiance of a directional light, as a weight for choosing it; 0 if it is below the surface.
+double sun_weight(const PlacedLight& placed, Vec3 normal) {
+  const double e = max_component(placed.light.intensity);
+  return normal == Vec3{} ? e : e * std::max(0.0f, -dot(normal, placed.direction));
+}
+
+/// The double u in part [first, first + width) of [0, 1), stretched to [0, 1).
+double stretch(double u, double first, double width) {
+  return std::clamp((u - first) / width, 0.0, 1 - 0x1p-53);
+}
+float to_float(double u) { return std::min(float(u), kOneMinusEpsilon); }
+
+}  // namespace
+
+struct Lights::Impl {
+  const SceneFrame* frame;
+  Vec3 sphere_centre;
+  double sphere_radius;
+  std::vector<EmissionSlot> slots;
+  std::vector<TriangleLight> triangles;          // of the first slots, same order
+  std::vector<double> cumulative;                // of the probabilities; by slot its upper end
+  std::vector<std::uint32_t> first_slot;         // by surface; kNone: emits nothing
+  std::vector<std::uint32_t> tree_index;         // by slot: its light in the tree, kNone: emits nothing
+  std::vector<std::uint32_t> tree_slot;          // and back
+  std::vector<std::uint32_t> suns;               // indices of directional lights that shine
+  LightTree tree{{}};
+
+  Impl(const SceneFrame& frame_, const EmissionTable& table);
+  void add_slots(const EmissionTable& table);
+  void build_tree();
+
+  double sun_share(Vec3 normal, double& total) const;
+  bool sample_sun(Vec3 point, Vec3 normal, double u, double share, double total, LightSample& s) const;
+  bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;
+  void emit_triangle(const TriangleLight& t, const double u[4], PhotonEmission& e) const;
+  void emit_punctual(const PlacedLight& placed, const double u[4], PhotonEmission& e) const;
+};
+
+Lights::Impl::Impl(const SceneFrame& frame_, const EmissionTable& table)
+    : frame(&frame_), sphere_centre(Vec3(table.sphere_centre)), sphere_radius(table.sphere_radius) {
+  add_slots(table);
+  build_tree();
+}
+
+void Lights::Impl::add_slots(const EmissionTable& table) {
+  first_slot.assign(frame->surfaces.size(), kNone);
+  for (const std::uint32_t s : table.surfaces) {
+    const Surface& surface = frame->surfaces[s];
+    first_slot[s] = std::uint32_t(slots.size());
+    for (std::uint32_t t = 0; t < surface.primitive->triangles.size(); ++t) {
+      slots.push_back({EmissionSlot::Kind::triangle, s, t, kNone, 0});
+      triangles.emplace_back(surface, t, frame->materials[surface.material]);
+    }
+  }
+  for (std::uint32_t i = 0; i < frame->lights.size(); ++i)
+    slots.push_back({slot_kind(frame->lights[i].light.kind), kNone, 0, i, 0});
+  TEMPOLUX_CHECK(slots.size() == table.probability.size());
+  double sum = 0;
+  cumulative.reserve(slots.size());
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    slots[i].probability = table.probability[i];
+    cumulative.push_back(sum += table.probability[i]);
+  }
+}
+
+void Lights::Impl::build_tree() {
+  std::vector<LightBounds> bounds;
+  tree_index.assign(slots.size(), kNone);
+  for (std::uint32_t i = 0; i < slots.size(); ++i) {
+    if (i < triangles.size()) {
+      if (!triangles[i].emits()) continue;
+      bounds.push_back(bounds_of(triangles[i]));
+    } else {
+      const PlacedLight& placed = frame->lights[slots[i].light];
+      if (!(max_component(placed.light.intensity) > 0)) continue;
+      if (slots[i].kind == EmissionSlot::Kind::directional) {
+        suns.push_back(slots[i].light);
+        continue;
+      }
+      bounds.push_back(bounds_of(placed));
+    }
+    tree_index[i] = std::uint32_t(tree_slot.size());
+    tree_slot.push_back(i);
+  }
+  tree = LightTree(bounds);
+}
+
+Lights::Lights(const SceneFrame& frame, const EmissionTable& table)
+    : impl_(std::make_unique<Impl>(frame, table)) {}
+Lights::~Lights() = default;
+Lights::Lights(Lights&&) noexcept = default;
+
+bool Lights::empty() const { return impl_->slots.empty(); }
+std::size_t Lights::count() const { return impl_->slots.size(); }
+const std::vector<EmissionSlot>& Lights::slots() const { return impl_->slots; }
+
+Rgbd Lights::total_flux() const {
+  Rgbd sum;
+  for (const TriangleLight& t : impl_->triangles) sum += t.flux();
+  for (const PlacedLight& placed : impl_->frame->lights) sum += punctual_flux(placed.light, impl_->sphere_radius);
+  return sum;
+}
+
+/// Probability of choosing a directional light: n of n + 1, the tree counting as one. total: their weights.
+double Lights::Impl::sun_share(Vec3 normal, double& total) const {
+  total = 0;
+  if (suns.empty()) return 0;
+  int count = 0;
+  for (const std::uint32_t i : suns) {
+    const double w = sun_weight(frame->lights[i], normal);
+    total += w;
+    count += w > 0;
+  }
+  return tree.empty() && count > 0 ? 1 : double(count) / (count + 1);
+}
+
+bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double share, double total,
+                              LightSample& s) const {
+  const PlacedLight* chosen = nullptr;
+  double weight = 0, left = u * total;
+  for (const std::uint32_t i : suns) {
+    const double w = sun_weight(frame->lights[i], normal);
+    if (!(w > 0)) continue;
+    chosen = &frame->lights[i];
+    weight = w;
+    if (left < w) break;
+    left -= w;
+  }
+  if (!chosen) return false;
+  s.wi = -chosen->direction;
+  s.position = point + s.wi * float(sphere_radius > 0 ? 2 * sphere_radius : 1);
+  s.radiance = Rgb(Rgbd(chosen->light.intensity) / (share * weight / total));
+  s.delta = true;
+  return true;
+}
+
+/// A point or spot light.
+bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double probability,
+                                 LightSample& s) const {
+  const Vec3d to = Vec3d(placed.position) - Vec3d(point);
+  const double distance = length(to);
+  if (!(distance > 0)) return false;
+  // Nearer than a millionth of the scene, the light is as bright as there.
+  const double nearest = std::max(distance, 1e-6 * sphere_radius);
+  s.wi = Vec3(to / distance);
+  s.position = placed.position;
+  double falloff = 1;
+  if (placed.light.kind == PunctualLight::Kind::spot)
+    falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + to / distance));
+  s.radiance = Rgb(Rgbd(placed.light.intensity) * (falloff / (nearest * nearest * probability)));
+  s.delta = true;
+  return falloff > 0;
+}
+
+bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
+  const Impl& m = *impl_;
+  sample = {};
+  double total = 0;
+  const double share = m.sun_share(normal, total);
+  if (u_choice < share)
+    return m.sample_sun(point, normal, u_choice / share, share, total, sample) && is_finite(sample.radiance);
+  if (m.tree.empty()) return false;
+  LightTree::Choice choice;
+  const float left = to_float(stretch(u_choice, share, 1 - share));
+  if (!m.tree.choose(point, normal, left, choice)) return false;
+  const double probability = choice.probability * (1 - share);
+  const std::uint32_t slot = m.tree_slot[choice.light];
+  if (slot >= m.triangles.size())
+    return m.sample_placed(m.frame->lights[m.slots[slot].light], point, probability, sample) &&
+           is_finite(sample.radiance);
+  const TriangleLight& t = m.triangles[slot];
+  TrianglePoint on_triangle;
+  if (!sample_triangle(t, point, u, on_triangle)) return false;
+  const double pdf = probability * on_triangle.pdf_solid_angle;
+  sample.wi = on_triangle.wi;
+  sample.position = on_triangle.position;
+  sample.position_offset = t.offset;
+  sample.radiance = Rgb(Rgbd(t.radiance) / pdf);
+  sample.pdf_solid_angle = float(pdf);
+  return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.radiance);
+}
+
+float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle,
+                              Vec3 on_light, Vec3) const {
+  const Impl& m = *impl_;
+  if (m.first_slot[surface] == kNone) return 0;
+  const std::uint32_t slot = m.first_slot[surface] + triangle, light = m.tree_index[slot];
+  if (light == kNone) return 0;
+  const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
+  if (!(on_triangle > 0)) return 0;
+  double total = 0;
+  const double share = m.sun_share(normal, total);
+  const float pdf = float(on_triangle * (1 - share) * m.tree.probability(point, normal, light));
+  return pdf < INFINITY ? pdf : 0;
+}
+
+Rgb Lights::emitted(std::uint32_t surface, Vec3 normal_geometric, Vec3 wo) const {
+  const Material& material = impl_->frame->materials[impl_->frame->surfaces[surface].material];
+  return material.double_sided || dot(normal_geometric, wo) > 0 ? material.emission : Rgb(0.0f);
+}
+
+void Lights::Impl::emit_triangle(const TriangleLight& t, const double u[4], PhotonEmission& e) const {
+  // Heitz' map from square to triangle, as sample_triangle, in double.
+  double b1 = u[0], b2 = u[1];
+  if (b2 > b1) b1 *= 0.5, b2 -= b1;
+  else b2 *= 0.5, b1 -= b2;
+  const bool back = t.two_sided && u[2] >= 0.5;
+  const double u2 = t.two_sided ? stretch(u[2], back ? 0.5 : 0, 0.5) : u[2];
+  e.origin = t.point(b1, b2);
+  e.normal = back ? -t.normal : t.normal;
+  e.origin_offset = t.offset;
+  e.travel = t.area > 0 ? normalize(Frame(e.normal).to_world(sample_hemisphere_cos({to_float(u2), to_float(u[3])})))
+                        : Vec3{0, 0, 1};
+}
+
+void Lights::Impl::emit_punctual(const PlacedLight& placed, const double u[4], PhotonEmission& e) const {
+  if (placed.light.kind != PunctualLight::Kind::directional) {
+    // No position to choose: its two numbers are the direction's.
+    e.origin = placed.position;
+    e.travel = sample_punctual_direction(placed, u[0], u[1]);
+    return;
+  }
+  const Vec2 disc = sample_disc_concentric({to_float(u[0]), to_float(u[1])});
+  const Frame frame_of_light(placed.direction);
+  const float r = float(sphere_radius);
+  e.travel = placed.direction;
+  e.origin = sphere_centre + frame_of_light.to_world({disc.x * r, disc.y * r, -r});
+}
+
+PhotonEmission Lights::emit(const double u[4]) const {
+  const Impl& m = *impl_;
+  TEMPOLUX_CHECK(!m.slots.empty());
+  // The first slot whose part of [0, 1) ends beyond u[0]; rounding may leave the sum a little below 1.
+  const auto found = std::upper_bound(m.cumulative.begin(), m.cumulative.end(), u[0]);
+  std::size_t slot = std::min(std::size_t(found - m.cumulative.begin()), m.slots.size() - 1);
+  while (slot > 0 && !(m.slots[slot].probability > 0)) --slot;
+  const double below = slot > 0 ? m.cumulative[slot - 1] : 0;
+  const double probability = m.slots[slot].probability;
+  const double stretched[4] = {stretch(u[0], below, probability), u[1], u[2], u[3]};
+  PhotonEmission e;
+  e.slot = std::uint32_t(slot);
+  Rgbd flux;
+  if (slot < m.triangles.size()) {
+    flux = m.triangles[slot].flux();
+    m.emit_triangle(m.triangles[slot], stretched, e);
+  } else {
+    const PlacedLight& placed = m.frame->lights[m.slots[slot].light];
+    flux = punctual_flux(placed.light, m.sphere_radius);
+    m.emit_punctual(placed, stretched, e);
+  }
+  e.flux = Rgb(flux / probability);
+  if (!is_finite(e.flux)) e.flux = Rgb(0.0f);
+  return e;
+}
+
+}  // namespace tempolux
