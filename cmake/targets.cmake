@@ -4,6 +4,7 @@ add_library(tempolux_options INTERFACE)
 target_include_directories(tempolux_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(tempolux_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+  -Wno-restrict                # false alarms of GCC 12 on std::string (bug 105651)
   -ffp-contract=off            # the same bits on every machine of one instruction set
   -fno-math-errno -fno-trapping-math
   $<IF:$<BOOL:${TEMPOLUX_NATIVE}>,-march=native,-march=x86-64-v3>
