@@ -6,6 +6,8 @@
 // untouched, except plan.mk, which is what make asks to be newer than the scene. Format: formats/plan/plan.md.
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -25,9 +27,12 @@ void make_folder(const std::string& folder) {
 
 /// Returns true if the file was new or different.
 bool write_if_changed(const std::string& path, const std::string& content) {
+  std::ifstream present(path, std::ios::binary);
+  if (present && std::string(std::istreambuf_iterator<char>(present), {}) == content) return false;
   tools::Output output(path, false, tools::Output::Kind::text);
   output.write(content.data(), content.size());
-  return output.commit_if_changed();
+  output.commit();
+  return true;
 }
 
 }  // namespace

@@ -25,15 +25,13 @@ void SceneInput::enter_segment(int frame) {
 }
 
 SceneFrame SceneInput::at(int frame) {
-  const int last = int(scene_.duration_s * time_.fps + 0.5);
-  if (frame < 0 || (frame > last && last > 0)) {
-    const int clamped = frame < 0 ? 0 : last;
-    if (!warned_range_)
-      tool_.warn(scene_.path + ": frame " + std::to_string(frame) + " is outside the animation (0-" +
-                 std::to_string(last) + "); using frame " + std::to_string(clamped));
+  const int nearest = frame_in_animation(scene_, frame, time_);
+  if (nearest != frame && !warned_range_) {
+    tool_.warn(scene_.path + ": frame " + std::to_string(frame) + " is outside the animation; using frame " +
+               std::to_string(nearest));
     warned_range_ = true;
-    frame = clamped;
   }
+  frame = nearest;
   enter_segment(frame);
   return segment_->at(frame);
 }

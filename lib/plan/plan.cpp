@@ -2,6 +2,7 @@
 #include "lib/plan/plan.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -49,19 +50,17 @@ bool light_transport_moves(const std::vector<MovingNode>& moves) {
   });
 }
 
-/// The frames of a segment, evaluated; `asked` may reach beyond the animation's ends.
-std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const std::set<int>& asked, int camera_node,
-                                         bool light_moves) {
-  const Segment& segment = stage.segment();
+/// The frames of a segment, evaluated, in order; of the frames asked for some may lie beyond the animation.
+std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const Scene& scene, const std::set<int>& asked,
+                                         int camera_node, bool light_moves, const TimeOptions& options) {
   std::set<int> numbers = asked;
-  for (int f = segment.first; f <= segment.last; ++f) numbers.insert(f);
+  for (int f = stage.segment().first; f <= stage.segment().last; ++f) numbers.insert(f);
 
   std::vector<PlannedFrame> frames;
-  std::map<std::pair<std::string, std::string>, int> first_with;  // light transport -> first frame that has it
   for (const int number : numbers) {
     PlannedFrame frame;
     frame.frame = number;
-    frame.evaluated = std::clamp(number, segment.first, segment.last);
+    frame.evaluated = frame_in_animation(scene, number, options);
     frame.asked = asked.contains(number);
     if (!frame.asked && !light_moves && !frames.empty()) {  // nothing to find out
       frame.moving_geometry = frames.front().moving_geometry;
@@ -74,12 +73,20 @@ std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const std::s
     }
     frames.push_back(std::move(frame));
   }
-  for (PlannedFrame& frame : frames)  // frames of the animation first: those beyond its ends show one of them
-    if (frame.frame == frame.evaluated)
-      frame.lit_frame = first_with.try_emplace({frame.moving_geometry, frame.lights}, frame.frame).first->second;
-  for (PlannedFrame& frame : frames)
-    if (frame.frame != frame.evaluated) frame.lit_frame = first_with.at({frame.moving_geometry, frame.lights});
   return frames;
+}
+
+/// Sets lit_frame of all frames: the first frame of the same content, in whichever segment.
+void share_light(std::vector<PlannedSegment>& segments) {
+  std::map<std::array<std::string, 5>, int> first_with;
+  const auto content = [](const PlannedSegment& s, const PlannedFrame& f) {
+    return std::array{s.static_geometry, s.materials, s.frozen, f.moving_geometry, f.lights};
+  };
+  for (const PlannedSegment& segment : segments)
+    for (const PlannedFrame& frame : segment.frames)
+      if (frame.frame == frame.evaluated) first_with.try_emplace(content(segment, frame), frame.frame);
+  for (PlannedSegment& segment : segments)
+    for (PlannedFrame& frame : segment.frames) frame.lit_frame = first_with.at(content(segment, frame));
 }
 
 bool cameras_differ(const std::vector<PlannedFrame>& frames) {
@@ -94,11 +101,9 @@ std::vector<std::pair<Segment, std::set<int>>> by_segment(const Scene& scene, co
                                                           const TimeOptions& options) {
   std::vector<std::pair<Segment, std::set<int>>> groups;
   for (const int frame : std::set<int>(frames.begin(), frames.end())) {
-    if (groups.empty() || frame > groups.back().first.last) {
-      Segment segment = segment_of(scene, frame, options);
-      if (groups.empty() || segment.first != groups.back().first.first)
-        groups.emplace_back(std::move(segment), std::set<int>{});
-    }
+    const int evaluated = frame_in_animation(scene, frame, options);
+    if (groups.empty() || evaluated > groups.back().first.last)
+      groups.emplace_back(segment_of(scene, evaluated, options), std::set<int>{});
     groups.back().second.insert(frame);
   }
   return groups;
@@ -115,7 +120,7 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const st
   planned.materials = begin.hashes.materials;
   planned.frozen = frozen_hash(scene, segment, options);
   planned.moves = moving_nodes(scene, segment);
-  planned.frames = planned_frames(stage, asked, camera_node, light_transport_moves(planned.moves));
+  planned.frames = planned_frames(stage, scene, asked, camera_node, light_transport_moves(planned.moves), options);
   planned.camera_moves = cameras_differ(planned.frames);
   return planned;
 }
@@ -142,14 +147,11 @@ std::string share(std::size_t count, std::size_t of, const std::string& what) {
 
 /// How many states of light transport the frames asked for have.
 std::size_t lit_state_count(const Plan& plan) {
-  std::size_t count = 0;
-  for (const PlannedSegment& segment : plan.segments) {
-    std::set<int> states;
+  std::set<int> states;
+  for (const PlannedSegment& segment : plan.segments)
     for (const PlannedFrame& frame : segment.frames)
       if (frame.asked) states.insert(frame.lit_frame);
-    count += states.size();
-  }
-  return count;
+  return states.size();
 }
 
 /// The stages, and by which fact each is needed or not.
@@ -194,6 +196,7 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
     plan.segments.push_back(plan_segment(scene, segment, asked, camera_node, options));
     for (const PlannedFrame& frame : plan.segments.back().frames) beyond += frame.frame != frame.evaluated;
   }
+  share_light(plan.segments);
   if (beyond > 0)
     plan.warnings.push_back(counted(beyond, "frame") + " outside the animation: the nearest end is shown");
   plan_stages(scene, plan);

@@ -17,12 +17,12 @@ struct MovingNode {
   std::string carries;              ///< "geometry", "light", "camera", or "" (only its children matter)
 };
 
-/// What is known of one frame. Two frames of one segment with equal `lit_frame` have the same light transport.
+/// What is known of one frame. Frames with equal `lit_frame` have the same light transport.
 struct PlannedFrame {
   int frame = 0;                    ///< its number, as asked for
   bool asked = false;               ///< in the range of the plan; the others only complete their segment
   int evaluated = 0;                ///< the frame whose state it shows: `frame`, or the animation's nearest end
-  int lit_frame = 0;                ///< first frame of the segment with the same light transport
+  int lit_frame = 0;                ///< first frame of the plan's segments with the same light transport
   std::string camera;               ///< hash of the chosen camera; empty if not asked
   std::string moving_geometry;      ///< hashes, as in SceneHashes
   std::string lights;

@@ -21,15 +21,15 @@ int floor_to_multiple(int value, int step) {
 }
 
 /// The frame from which on everything rests: that of the last key, or the next if it lies between frames.
-int last_frame(const Scene& scene, double fps) {
-  const double frame = std::ceil(scene.duration_s * fps - 1e-3);
+int last_frame(const Scene& scene, const TimeOptions& options) {
+  const double frame = std::ceil(scene.duration_s * options.fps - 1e-3);
   return frame < 1e9 ? int(frame) : 1'000'000'000;
 }
 
 void set_borders(const Scene& scene, int frame, const TimeOptions& options, Segment& segment) {
   segment.first = floor_to_multiple(frame, options.segment_length);
   segment.last = segment.first + options.segment_length - 1;
-  const int last = last_frame(scene, options.fps);
+  const int last = last_frame(scene, options);
   if (last == 0 || segment.first > last || segment.last <= last) return;
   (frame <= last ? segment.last : segment.first) = frame <= last ? last : last + 1;
 }
@@ -101,6 +101,11 @@ Vec3d scene_origin(const Box3d& bounds) {
 }
 
 }  // namespace
+
+int frame_in_animation(const Scene& scene, int frame, const TimeOptions& options) {
+  const int last = last_frame(scene, options);
+  return last > 0 && frame > last ? last : std::max(frame, 0);
+}
 
 Segment segment_of(const Scene& scene, int frame, const TimeOptions& options) {
   if (!(options.fps > 0) || options.segment_length < 1)
