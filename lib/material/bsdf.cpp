@@ -30,6 +30,7 @@ Rgb dielectric_f0(const Material& m) {
 Bsdf::Bsdf(const Material& material) {
   const float metallic = material.metallic;
   rho_ = material.base_color * (1 - metallic);
+  lambert_ = metallic < 1;
   diffuse_ = max_component(rho_) > 0;
   f90_ = material.specular * (1 - metallic) + metallic;
   if (!(f90_ > 0)) return;  // specular = metallic = 0: matte, F0 is 0 as well

@@ -34,7 +34,9 @@ class Bsdf {
  public:
   explicit Bsdf(const Material& material);
 
-  bool has_diffuse() const { return diffuse_; }
+  /// Does light arrive at a Lambert lobe here? True of a black one too: what it receives can be measured.
+  bool has_lambert() const { return lambert_; }
+  bool has_diffuse() const { return diffuse_; }   ///< a Lambert lobe that reflects
   bool has_specular() const { return specular_; }
   bool specular_is_delta() const { return delta_; }
   /// rho of the Lambert lobe, before coupling.
@@ -86,7 +88,7 @@ class Bsdf {
   float mean_lost_ = 0;             ///< 1 - E_mean
   float mean_albedo_ = 0;           ///< A_mean of the channel with the largest F0
   float coupling_scale_ = 1;        ///< 1 / sqrt(1 - A_mean)
-  bool diffuse_ = false, specular_ = false, delta_ = false;
+  bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
 };
 
 inline constexpr float kMirrorRoughness = 0.02f;  ///< below: a delta mirror

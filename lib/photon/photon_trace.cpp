@@ -112,7 +112,7 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
     const PathKind kind = kind_after(diffuse_seen, specular_seen);
     const bool wanted = kind == PathKind::direct ? options_.store_direct
                         : kind == PathKind::caustic ? options_.store_caustic : options_.store_indirect;
-    if (wanted && bsdf.has_diffuse() && at.shading_correction > 0) {
+    if (wanted && bsdf.has_lambert() && at.shading_correction > 0) {
       const Rgb stored = flux * (bsdf.arrival_weight(at.wi_local.z) * at.shading_correction);
       const Vec3 p = point.position, n = at.normal_geometric;
       batch.block.photons.push_back({{p.x, p.y, p.z}, {stored.r, stored.g, stored.b},

@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <atomic>
 #include <string>
 
@@ -14,6 +15,10 @@ namespace {
 /// Rays leave a surface this fraction of the largest coordinate of its triangle above it: 16 ulp of float32,
 /// four times the rounding of a point made from barycentrics and of Embree's own arithmetic.
 constexpr float kOffsetScale = 0x1p-20f;
+
+/// Points keep this much of each corner (4e-6 of the triangle's height away from its edges): rounding at an
+/// edge must not put a point behind the neighbouring wall, from where the next ray would leave a closed room.
+constexpr float kSmallestBarycentric = 0x1p-18f;
 
 /// Finite, t_min >= 0, and small enough that Embree's squared lengths stay finite.
 bool usable(const Ray& ray) {
@@ -157,30 +162,35 @@ SurfacePoint Tracer::surface_point(const Hit& hit) const {
   const Surface& surface = impl_->frame->surfaces[hit.surface];
   const auto& corner = surface.primitive->triangles[hit.triangle];
   const Vec3 a = surface.positions[corner[0]], b = surface.positions[corner[1]], c = surface.positions[corner[2]];
-  const float w = 1 - hit.u - hit.v;
+  float u = std::max(hit.u, kSmallestBarycentric), v = std::max(hit.v, kSmallestBarycentric);
+  float w = std::max(1 - hit.u - hit.v, kSmallestBarycentric);
+  const float scale = 1 / (u + v + w);
+  u *= scale;
+  v *= scale;
+  w *= scale;
 
   SurfacePoint point;
-  point.position = a * w + b * hit.u + c * hit.v;
+  point.position = a * w + b * u + c * v;
   point.normal_geometric = normalize(cross(b - a, c - a));
   if (surface.flipped) point.normal_geometric = -point.normal_geometric;
   point.normal = point.normal_geometric;
   if (!surface.normals.empty()) {
-    const Vec3 n = normalize(surface.normals[corner[0]] * w + surface.normals[corner[1]] * hit.u +
-                             surface.normals[corner[2]] * hit.v);
+    const Vec3 n = normalize(surface.normals[corner[0]] * w + surface.normals[corner[1]] * u +
+                             surface.normals[corner[2]] * v);
     if (length2(n) > 0) point.normal = dot(n, point.normal_geometric) < 0 ? -n : n;
   }
   if (!surface.primitive->uvs.empty()) {
     const auto& uv = surface.primitive->uvs;
-    point.uv = {uv[corner[0]].x * w + uv[corner[1]].x * hit.u + uv[corner[2]].x * hit.v,
-                uv[corner[0]].y * w + uv[corner[1]].y * hit.u + uv[corner[2]].y * hit.v};
+    point.uv = {uv[corner[0]].x * w + uv[corner[1]].x * u + uv[corner[2]].x * v,
+                uv[corner[0]].y * w + uv[corner[1]].y * u + uv[corner[2]].y * v};
   }
   point.offset = kOffsetScale * max_component(max(max(abs(a), abs(b)), abs(c)));
   point.surface = hit.surface;
   point.triangle = hit.triangle;
   point.object = surface.object;
   point.material = surface.material;
-  point.u = hit.u;
-  point.v = hit.v;
+  point.u = u;
+  point.v = v;
   return point;
 }
 

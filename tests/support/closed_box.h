@@ -18,7 +18,7 @@ inline const char* name_of(Shape shape) {
 struct ClosedBox {
   HandMadeScene scene;
   Rgb flux;                       ///< F, W
-  EmissionTable table{{1.0}, {}, 10};
+  EmissionTable table;
 
   ClosedBox(Shape shape, float rho, Rgb intensity = Rgb(1.0f, 2.0f, 0.5f)) : flux(intensity * (4 * kPi)) {
     const Material material = matte(Rgb(rho));
@@ -26,6 +26,7 @@ struct ClosedBox {
     if (shape == Shape::corridor) scene.add_room({-5, -0.5f, -0.5f}, {5, 0.5f, 0.5f}, material);
     if (shape == Shape::sphere) scene.add_hollow_sphere({}, 1, 12, material);
     scene.add_point_light({0.13f, 0.21f, -0.17f}, intensity);
+    table = build_emission_table({&scene.frame(), 1});
   }
 };
 

@@ -105,7 +105,7 @@ TEST(PhotonMap, BytesAreEqualForAnyNumberOfThreads) {
   for (int threads : {1, 2, 3, 7}) {
     const ThreadLimit limit(threads);
     std::string bytes;
-    write_photon_map(photons, options, {}, [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, {});
+    write_photon_map(photons, options, formats::PhotonHeader(), [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, {});
     if (first.empty()) first = bytes;
     EXPECT_TRUE(bytes == first) << threads << " threads";
   }

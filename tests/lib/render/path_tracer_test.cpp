@@ -68,7 +68,7 @@ TEST(PathTracer, FurnaceIsUniform) {
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f, 0.8f, 0.2f), Rgb(1.0f)));
   const SceneFrame& frame = scene.frame();
   const Tracer tracer(frame);
-  const Lights lights(frame, EmissionTable{std::vector<double>(12, 1.0 / 12), {}, 4});
+  const Lights lights(frame, build_emission_table({&frame, 1}));
   RayCounts counts;
   Estimate mean[3];
   for (int i = 0; i < 60000; ++i) {
@@ -109,7 +109,7 @@ TEST(PathTracer, PlaneUnderAPointLightIsExact) {
   scene.add_point_light({0, 2, 0}, Rgb(10.0f));
   const SceneFrame& frame = scene.frame();
   const Tracer tracer(frame);
-  const Lights lights(frame, EmissionTable{{1.0}, {}, 10});
+  const Lights lights(frame, build_emission_table({&frame, 1}));
   RayCounts counts;
   for (float x : {0.0f, 0.7f, 3.0f}) {
     const Ray ray{{x, 4, 0.1f}, {0, -1, 0}, 0, INFINITY};
