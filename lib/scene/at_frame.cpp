@@ -116,10 +116,13 @@ PlacedCamera place_camera(const Scene& scene, std::size_t n, Vec3d origin, const
 }  // namespace
 
 SegmentScene::SegmentScene(const Scene& scene, Segment segment, const TimeOptions& options)
-    : scene_(&scene), segment_(std::move(segment)), options_(options) {
+    : scene_(&scene),
+      segment_(std::move(segment)),
+      options_(options),
+      animator_(std::make_shared<const Animator>(scene)) {
   if (options.light_units != "raw" && options.light_units != "spec")
     throw std::invalid_argument("light units are raw or spec");
-  const std::vector<Affine> world = world_from_node(scene, segment_.first, options);
+  const std::vector<Affine> world = animator_->world_from_node(segment_.first / options_.fps);
   static_surfaces_ = place_surfaces(scene, segment_, world, false);
   if (!segment_.world_bounds.empty()) {
     bounds_.add(Vec3(segment_.world_bounds.lower - segment_.origin));
@@ -133,7 +136,7 @@ SegmentScene::SegmentScene(const Scene& scene, Segment segment, const TimeOption
 SceneFrame SegmentScene::at(int frame) const {
   if (frame < segment_.first || frame > segment_.last)
     throw std::invalid_argument("frame " + std::to_string(frame) + " is not in the segment");
-  const std::vector<Affine> world = world_from_node(*scene_, frame, options_);
+  const std::vector<Affine> world = animator_->world_from_node(frame / options_.fps);
   SceneFrame at;
   at.scene = scene_;
   at.frame = frame;

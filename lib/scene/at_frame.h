@@ -13,6 +13,8 @@
 
 namespace tempolux {
 
+class Animator;
+
 /// An interval of frames over which "static" means static (architecture.md 4). Both ends belong to it.
 struct Segment {
   int first = 0, last = 0;
@@ -28,6 +30,10 @@ struct TimeOptions {
   int segment_length = 24;                  ///< frames; borders at multiples of it
   std::string light_units = "raw";          ///< raw, or spec: punctual lights divided by 683
 };
+
+/// `frame`, or the animation's nearest end if it lies outside: 0, or the frame of the last key (the next if that
+/// lies between frames). Without animation every frame from 0 on is inside. What tools evaluate for a frame.
+int frame_in_animation(const Scene& scene, int frame, const TimeOptions& options);
 
 /// The segment that holds `frame`: [k length, (k+1) length - 1] cut to the frames of the animation
 /// (cut at frame 0 and at the last frame of the scene's animation; one frame if nothing is animated is
@@ -137,6 +143,7 @@ class SegmentScene {
   const Scene* scene_;
   Segment segment_;
   TimeOptions options_;
+  std::shared_ptr<const Animator> animator_;
   std::vector<Surface> static_surfaces_;
   Box3 bounds_;
   std::string static_hash_, materials_hash_, media_hash_;

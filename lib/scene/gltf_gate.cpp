@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <set>
 
 #include "formats/error.h"
 #include "lib/scene/gltf_json.h"
@@ -23,7 +24,7 @@ constexpr std::uint64_t kMaxJsonBytes = 1ull << 30;
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kChunkJson = 0x4e4f534a, kChunkBin = 0x004e4942;
 
 // Read in full, or read as far as this version renders it (gltf_material.cpp says what is left out).
-constexpr std::array kKnown{"KHR_lights_punctual",         "KHR_materials_emissive_strength",
+const std::set<std::string> kKnown{"KHR_lights_punctual",         "KHR_materials_emissive_strength",
                             "KHR_materials_specular",      "KHR_materials_ior",
                             "KHR_mesh_quantization",       "KHR_materials_transmission",
                             "KHR_materials_volume",        "KHR_materials_unlit",
@@ -147,10 +148,6 @@ void check_version(const Json& document, const std::string& path) {
   }
 }
 
-bool is_known(const std::string& extension) {
-  return std::find(kKnown.begin(), kKnown.end(), extension) != kKnown.end();
-}
-
 std::vector<std::string> names(const Json& document, const char* key) {
   return document.contains(key) ? document[key].get<std::vector<std::string>>() : std::vector<std::string>{};
 }
@@ -175,18 +172,21 @@ bool needs_draco(const Json& document) {
   return false;
 }
 
-void check_extensions(const Json& document, const std::string& path, Gated& gated) {
+void check_extensions(Json& document, const std::string& path, Gated& gated) {
   for (const std::string& name : names(document, "extensionsRequired")) {
     const auto remedy = std::find_if(kRemedies.begin(), kRemedies.end(), [&](const Remedy& r) { return name == r.extension; });
-    if (is_known(name) && (remedy == kRemedies.end() || !needs_draco(document))) continue;
+    if (kKnown.contains(name) && (remedy == kRemedies.end() || !needs_draco(document))) continue;
     fail(path, "extensionsRequired", name.substr(0, 80) + " is not supported; " +
                                          (remedy != kRemedies.end() ? remedy->what : "export without it"));
   }
   if (needs_draco(document))
     fail(path, "meshes", std::string("KHR_draco_mesh_compression is not supported; ") + kDracoRemedy);
-  std::string ignored;
+  std::set<std::string> unknown;
+  prune(document, kKnown, unknown, path);
   for (const std::string& name : names(document, "extensionsUsed"))
-    if (!is_known(name)) ignored += (ignored.empty() ? "" : ", ") + name.substr(0, 80);
+    if (!kKnown.contains(name)) unknown.insert(name);
+  std::string ignored;
+  for (const std::string& name : unknown) ignored += (ignored.empty() ? "" : ", ") + name.substr(0, 80);
   if (!ignored.empty()) gated.warnings.push_back(path + ": ignored extensions: " + ignored);
 }
 

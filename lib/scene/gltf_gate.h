@@ -2,7 +2,8 @@
 //
 // tinygltf is a parser, not a validator: it recurses as deep as the JSON nests, opens any path a URI names and
 // takes wrong types for missing ones. So the JSON is parsed here first, with limits, checked, and handed on
-// rewritten: images gone, every buffer's URI replaced by the name of a byte range that the gate has approved.
+// rewritten: images, extras and unknown extensions gone, every buffer's URI replaced by the name of a byte range
+// that the gate has approved.
 #pragma once
 
 #include <cstdint>

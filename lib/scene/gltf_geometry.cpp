@@ -99,7 +99,6 @@ void note_ignored(Import& import, const tinygltf::Primitive& source) {
     if (name == "COLOR_0") import.ignore("vertex colours");
     if (name == "TEXCOORD_1") import.ignore("second texture coordinates");
   }
-  for (const auto& [name, value] : source.extensions) import.ignore_extension(name, " of primitives");
 }
 
 /// Empty triangles if there is nothing to draw in it.

@@ -224,6 +224,38 @@ void check_object(Json& object, const Rules& rules, const std::string& place, co
     if (!value.is_object()) fail(file, inside("extensions." + name.substr(0, 60)), "must be an object");
 }
 
+// ---- pruning --------------------------------------------------------------------------------------------
+
+constexpr std::size_t kMaxExtensionValues = 1'000'000;
+
+std::size_t value_count(const Json& value) {
+  std::size_t count = 1;
+  if (value.is_structured())
+    for (const Json& inside : value) count += value_count(inside);
+  return count;
+}
+
+/// Returns the number of values kept inside extensions. Recursion is bounded by parse_json's depth limit.
+std::size_t prune_value(Json& value, const std::set<std::string>& known, std::set<std::string>& unknown) {
+  std::size_t kept = 0;
+  if (value.is_object()) {
+    value.erase("extras");
+    if (const auto extensions = value.find("extensions"); extensions != value.end()) {
+      for (auto it = extensions->begin(); it != extensions->end();) {
+        if (known.contains(it.key())) {
+          kept += value_count(*it++);
+        } else {
+          unknown.insert(it.key());
+          it = extensions->erase(it);
+        }
+      }
+    }
+  }
+  if (value.is_structured())
+    for (Json& inside : value) kept += prune_value(inside, known, unknown);
+  return kept;
+}
+
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& file) {
@@ -238,5 +270,11 @@ Json parse_json(std::string_view text, const std::string& file) {
 }
 
 void check_types(Json& document, const std::string& file) { check_object(document, kRoot, "", file); }
+
+void prune(Json& document, const std::set<std::string>& known, std::set<std::string>& unknown,
+           const std::string& file) {
+  if (prune_value(document, known, unknown) > kMaxExtensionValues)
+    fail(file, "extensions", "hold more than " + std::to_string(kMaxExtensionValues) + " values");
+}
 
 }  // namespace tempolux::gltf

@@ -28,11 +28,6 @@ std::string place_of(const char* array, std::size_t index, const std::string& na
   return name.empty() ? place : place + " \"" + one_line(name, 60) + "\"";
 }
 
-void Import::ignore_extension(const std::string& name, const char* of) {
-  const auto& declared = model.extensionsUsed;
-  if (std::find(declared.begin(), declared.end(), name) == declared.end()) ignore(one_line(name, 80) + of);
-}
-
 namespace {
 
 // tinygltf's file callbacks: the only names it can ask for are those of buffers that passed the gate.

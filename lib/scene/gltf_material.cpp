@@ -15,6 +15,9 @@ using tinygltf::Value;
 
 constexpr double kNoUpper = std::numeric_limits<float>::max();
 
+/// Blender writes inner = outer for a spot without a soft edge, which glTF forbids: the edge gets a width.
+constexpr double kSharpestCone = 0.9999;
+
 /// A number brought into [lower, upper], with a warning if it was outside; fails if it is not finite.
 float limited(Import& import, double value, double lower, double upper, const std::string& place) {
   if (!std::isfinite(value)) import.fail(place, "is not finite");
@@ -86,8 +89,6 @@ void read_extension(Import& import, const std::string& name, const Value& value,
     import.ignore("KHR_materials_volume (absorption inside glass)");
   } else if (name == "KHR_materials_unlit") {
     import.ignore("KHR_materials_unlit (the material is lit like any other)");
-  } else {
-    import.ignore_extension(name, " of materials");
   }
 }
 
@@ -127,9 +128,9 @@ PunctualLight read_light(Import& import, std::size_t index) {
   if (!is_finite(light.intensity)) import.fail(place, "color times intensity is not finite");
   if (light.kind == PunctualLight::Kind::spot) {
     const double outer = source.spot.outerConeAngle, inner = source.spot.innerConeAngle;
-    if (!(outer > 0 && outer <= std::numbers::pi / 2 + 1e-6 && inner >= 0 && inner < outer))
+    if (!(outer > 0 && outer <= std::numbers::pi / 2 + 1e-6 && inner >= 0 && inner <= outer))
       import.fail(place + ".spot", "cone angles must be 0 <= inner < outer <= pi/2");
-    light.inner_cone_rad = float(inner);
+    light.inner_cone_rad = float(std::min(inner, outer * kSharpestCone));
     light.outer_cone_rad = float(outer);
   }
   if (source.range > 0) import.ignore("range of lights (light follows the inverse square)");

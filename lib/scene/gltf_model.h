@@ -38,8 +38,6 @@ struct Import {
   /// than its own size can mean.
   void take_memory(std::uint64_t bytes, const std::string& place);
   void ignore(const std::string& what, std::size_t count = 1) { ignored[what] += count; }
-  /// An extension that nothing here reads; those that the file declares have been warned about by the gate.
-  void ignore_extension(const std::string& name, const char* of);
 };
 
 /// Makes a quaternion x y z w unit; false if it is zero or not finite.

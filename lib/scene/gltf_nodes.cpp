@@ -64,8 +64,6 @@ Node read_node(Import& import, std::uint32_t index, int parent) {
   node.camera = checked_index(import, source.camera, import.model.cameras.size(), place + ".camera");
   node.light = light_of(import, source, place);
   if (source.skin >= 0) import.ignore("skins (meshes stay in their rest shape)");
-  for (const auto& [name, value] : source.extensions)
-    if (name != "KHR_lights_punctual") import.ignore_extension(name, " of nodes");
   return node;
 }
 
