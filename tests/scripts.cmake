@@ -16,3 +16,6 @@ foreach(script ${cli_scripts})
   add_test(NAME cli.${name} COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cli/run.sh ${CMAKE_BINARY_DIR} ${name})
   set_tests_properties(cli.${name} PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
 endforeach()
+
+add_test(NAME formats.read_photons COMMAND sh formats/read_photons_test.sh $<TARGET_FILE:photons_test>
+         WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
