@@ -19,7 +19,8 @@ std::string reason_of(int error) { return std::strerror(error); }
 
 }  // namespace
 
-ByteReader::ByteReader(const std::string& path) : name_(path == "-" ? "<stdin>" : path), buffer_(kBufferSize) {
+ByteReader::ByteReader(const std::string& path)
+    : name_(path == "-" ? "<stdin>" : path), buffer_(kBufferSize) {
   file_ = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file_ < 0) throw InputError(name_ + ": cannot open: " + reason_of(errno) + "; check the name");
   struct stat info {};
@@ -65,14 +66,16 @@ void ByteReader::read(void* data, std::size_t size, const char* what) {
       done += got;
     }
   }
-  if (done < size) fail(offset_ + done, std::string("ends inside ") + what, "the file is incomplete: make it again");
+  if (done < size)
+    fail(offset_ + done, std::string("ends inside ") + what, "the file is incomplete: make it again");
   offset_ += size;
 }
 
 void ByteReader::expect(std::uint64_t size, const char* what) {
   if (known_size_ && (offset_ > size_ || size > size_ - offset_))
-    fail(offset_, std::string("ends inside ") + what + ": " + std::to_string(size) + " bytes should follow, " +
-                      std::to_string(size_ - std::min(size_, offset_)) + " are left",
+    fail(offset_,
+         std::string("ends inside ") + what + ": " + std::to_string(size) + " bytes should follow, " +
+             std::to_string(size_ - std::min(size_, offset_)) + " are left",
          "the file is incomplete: make it again");
 }
 

@@ -51,7 +51,8 @@ __attribute__((target("pclmul"))) inline __m128i load(const unsigned char* p) {
 
 /// x moved forward by the distance whose remainders are in k, plus the 16 bytes that lie there.
 __attribute__((target("pclmul"))) inline __m128i fold(__m128i x, __m128i k, __m128i next) {
-  return _mm_xor_si128(_mm_xor_si128(_mm_clmulepi64_si128(x, k, 0x00), _mm_clmulepi64_si128(x, k, 0x11)), next);
+  return _mm_xor_si128(_mm_xor_si128(_mm_clmulepi64_si128(x, k, 0x00), _mm_clmulepi64_si128(x, k, 0x11)),
+                       next);
 }
 
 /// As advance(), for size >= 64.

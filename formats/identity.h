@@ -18,7 +18,8 @@ struct Identity {
 };
 
 /// Which concerns differ between what a file says and what the scene is, of those named in `concerns`
-/// ("static_geometry", "moving_geometry", "materials", "lights", "media"). Unknown on either side never differs.
+/// ("static_geometry", "moving_geometry", "materials", "lights", "media"; another: std::invalid_argument).
+/// Unknown on either side never differs. Frames are not compared: which may differ, the reader knows.
 std::vector<std::string> stale_concerns(const Identity& file, const Identity& scene,
                                         const std::vector<std::string_view>& concerns);
 

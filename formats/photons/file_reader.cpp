@@ -15,7 +15,9 @@ T get(const unsigned char* bytes) {
   return value;
 }
 
-bool has_mark(const unsigned char* bytes, std::string_view mark) { return std::memcmp(bytes, mark.data(), 4) == 0; }
+bool has_mark(const unsigned char* bytes, std::string_view mark) {
+  return std::memcmp(bytes, mark.data(), 4) == 0;
+}
 
 /// Makes room for exactly `count` values without touching those of a buffer that already has as many.
 template <class T>
@@ -66,13 +68,16 @@ bool FileReader::read_block(PhotonBlock& block) {
       read_end();
       return false;
     }
-    if (!has_mark(head.data(), kBlockMark) || has_ledger_) bytes_.fail(start, "not the mark of a block that may stand here");
+    if (!has_mark(head.data(), kBlockMark) || has_ledger_)
+      bytes_.fail(start, "not the mark of a block that may stand here");
     bytes_.read(&head[4], kBlockHeadSize - 4, "the head of a block");
     block.group = get<std::uint32_t>(&head[4]);
     const auto count = get<std::uint32_t>(&head[8]);
     if (block.group >= header_.group_count)
-      bytes_.fail(start + 4, "group " + std::to_string(block.group) + " of " + std::to_string(header_.group_count));
-    if (block.group < last_group_) bytes_.fail(start + 4, "group " + std::to_string(block.group) + " after a later one");
+      bytes_.fail(start + 4,
+                  "group " + std::to_string(block.group) + " of " + std::to_string(header_.group_count));
+    if (block.group < last_group_)
+      bytes_.fail(start + 4, "group " + std::to_string(block.group) + " after a later one");
     if (count > kMaxBlockCount) bytes_.fail(start + 8, "block of " + std::to_string(count) + " photons");
     read_body(block, count, crc32(head.data(), 12), get<std::uint32_t>(&head[12]));
     last_group_ = block.group;
@@ -103,7 +108,8 @@ void FileReader::read_body(PhotonBlock& block, std::size_t count, std::uint32_t 
 
 void FileReader::check_body(const PhotonBlock& block, std::uint64_t start) const {
   if (const auto bad = find_bad_photon(block.photons, rules_))
-    bytes_.fail(start + 32 * bad->index, "photon " + std::to_string(bad->index) + " of the block: " + std::string(bad->reason),
+    bytes_.fail(start + 32 * bad->index,
+                "photon " + std::to_string(bad->index) + " of the block: " + std::string(bad->reason),
                 "correct the program that wrote it");
   if (const auto bad = find_bad_direction(block.directions))
     bytes_.fail(start + 32 * block.photons.size() + 4 * bad->index,
@@ -119,7 +125,8 @@ void FileReader::read_ledger() {
   const auto count = get<std::uint32_t>(&head[4]);
   const std::size_t expected = is_overlay() ? groups_.size() : header_.group_count;
   if (count != expected)
-    bytes_.fail(start - 8, "ledger of " + std::to_string(count) + " groups instead of " + std::to_string(expected));
+    bytes_.fail(start - 8,
+                "ledger of " + std::to_string(count) + " groups instead of " + std::to_string(expected));
   bytes_.expect(std::uint64_t(count) * kLedgerEntrySize, "the ledger");
   std::uint32_t crc = crc32(head.data(), 8);
   std::array<unsigned char, kLedgerEntrySize> entry{};
@@ -135,7 +142,8 @@ void FileReader::read_ledger() {
   if (crc != get<std::uint32_t>(&head[8])) bytes_.fail(start - 4, "wrong checksum of the ledger");
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t at = start + i * kLedgerEntrySize;
-    if (ledger_[i].group != (is_overlay() ? groups_[i] : i)) bytes_.fail(at, "the ledger's groups are not those of the file");
+    if (ledger_[i].group != (is_overlay() ? groups_[i] : i))
+      bytes_.fail(at, "the ledger's groups are not those of the file");
     check_flux(ledger_[i].emitted, at + 4, "emitted flux");
     check_flux(ledger_[i].escaped, at + 28, "escaped flux");
     check_flux(ledger_[i].absorbed, at + 52, "absorbed flux");
@@ -157,8 +165,8 @@ void FileReader::read_end() {
   std::memcpy(totals_.escaped_flux.data(), &end[60], 24);
   std::memcpy(totals_.absorbed_flux.data(), &end[84], 24);
   if (totals_.photon_count != photon_count_)
-    bytes_.fail(start + 4, "end block counts " + std::to_string(totals_.photon_count) + " photons, the file has " +
-                               std::to_string(photon_count_));
+    bytes_.fail(start + 4, "end block counts " + std::to_string(totals_.photon_count) +
+                               " photons, the file has " + std::to_string(photon_count_));
   if (totals_.stored_flux != stored_flux_.rounded())
     bytes_.fail(start + 12, "stored flux is not the sum of the photons' flux");
   check_flux(totals_.emitted_flux, start + 36, "emitted flux");

@@ -60,7 +60,8 @@ bool parse_numbers(std::string_view text, T* numbers, std::size_t count) {
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 bool is_printable(std::string_view text) { return std::none_of(text.begin(), text.end(), is_control); }
 bool is_hash(std::string_view text) {
-  return text.size() <= 128 && !text.empty() && std::all_of(text.begin(), text.end(), [](char c) { return c > 0x20 && c < 0x7f; });
+  return text.size() <= 128 && !text.empty() &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c > 0x20 && c < 0x7f; });
 }
 bool is_digest(std::string_view text) {
   return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == text.npos;
@@ -71,7 +72,8 @@ bool is_base_name(std::string_view text) {
 
 /// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
 std::string_view fault_of(const PhotonHeader& h) {
-  if (h.map != "global" && h.map != "static" && h.map != "dynamic") return "map is not global, static or dynamic";
+  if (h.map != "global" && h.map != "static" && h.map != "dynamic")
+    return "map is not global, static or dynamic";
   if (parse_kinds(h.kinds) == 0) return "kinds is not a list of direct, caustic, indirect, volume";
   if (h.columns >= kColumnsNames.size()) return "columns are not known";
   for (double x : h.origin)
@@ -83,7 +85,8 @@ std::string_view fault_of(const PhotonHeader& h) {
     if (!hash.empty() && !h.identity.known()) return "identity hashes without frames";
   }
   if (h.base_name.empty() != h.base_digest.empty()) return "base and base-digest do not stand together";
-  if (!h.base_name.empty() && !is_base_name(h.base_name)) return "base is not the name of a file without folder";
+  if (!h.base_name.empty() && !is_base_name(h.base_name))
+    return "base is not the name of a file without folder";
   if (!h.base_name.empty() && !is_digest(h.base_digest)) return "base-digest is not 32 hexadecimal digits";
   return "";
 }
@@ -96,7 +99,8 @@ Line take_line(std::string_view key, std::string_view value, PhotonHeader& h) {
   if (key == "map") return h.map = value, Line::good;
   if (key == "kinds") return h.kinds = value, Line::good;
   if (key == "columns") {
-    h.columns = std::uint32_t(std::find(kColumnsNames.begin(), kColumnsNames.end(), value) - kColumnsNames.begin());
+    h.columns =
+        std::uint32_t(std::find(kColumnsNames.begin(), kColumnsNames.end(), value) - kColumnsNames.begin());
     return Line::good;
   }
   if (key == "origin") return result(parse_numbers(value, h.origin.data(), 3));
@@ -163,7 +167,8 @@ std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_u
     if (last == text.npos) return HeaderError{first, "header line without LF"};
     const std::string_view line = text.substr(first, last - first);
     const std::size_t colon = line.find(": ");
-    if (colon == line.npos || !is_printable(line)) return HeaderError{first, "header line is not \"key: value\""};
+    if (colon == line.npos || !is_printable(line))
+      return HeaderError{first, "header line is not \"key: value\""};
     const std::string_view key = line.substr(0, colon);
     if (key != "history" && std::find(seen.begin(), seen.end(), key) != seen.end())
       return HeaderError{first, "header key twice: " + std::string(key)};
@@ -182,6 +187,8 @@ std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_u
   return std::nullopt;
 }
 
-RecordRules rules_of(const PhotonHeader& header) { return {parse_kinds(header.kinds), header.map == "dynamic"}; }
+RecordRules rules_of(const PhotonHeader& header) {
+  return {parse_kinds(header.kinds), header.map == "dynamic"};
+}
 
 }  // namespace tempolux::formats::photons

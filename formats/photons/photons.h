@@ -55,7 +55,7 @@ struct PhotonHeader {
   std::uint32_t columns = 0;                  ///< PhotonColumns
   std::uint32_t group_count = 1;              ///< N_g: photon i is of group i mod N_g
   std::uint64_t emitted_count = 0;            ///< paths started, over all groups
-  std::string map = "global";                 ///< "global", "static" or "dynamic" (only there flux may be < 0)
+  std::string map = "global";                 ///< "global", "static" or "dynamic" (there flux may be < 0)
   std::string kinds = "direct,caustic,indirect";  ///< which kinds were stored
   /// Of an overlay: the file it changes, and that file's digest. Groups not in this file come from the base.
   std::string base_name, base_digest;
@@ -90,15 +90,15 @@ struct PhotonTotals {
 };
 
 /// Writes one .photons stream front to back; never seeks, so a pipe will do. A mistake of the caller (groups
-/// that descend, a photon out of the format's range, a kind the header does not name) is std::invalid_argument:
-/// nothing that a reader would refuse is written.
+/// that descend, a photon out of the format's range, a kind the header does not name) is
+/// std::invalid_argument: nothing that a reader would refuse is written.
 class PhotonWriter {
  public:
   /// `sink` is called with pieces of the file, in order; it throws if it cannot write.
   PhotonWriter(std::function<void(const void*, std::size_t)> sink, const PhotonHeader& header);
   ~PhotonWriter();
-  /// Appends photons of one group as one or more blocks; an empty block of an overlay says "none now", that of
-  /// another file is left out.
+  /// Appends photons of one group as one or more blocks; an empty block of an overlay says "none now", that
+  /// of another file is left out.
   void write(const PhotonBlock& block);
   /// A block already encoded by encode_block(block, header.columns), so that checksums are made in parallel.
   /// Serial cost beside the sink: the exact sum and the range check of the photons, 2 ns each.
@@ -129,9 +129,9 @@ class PhotonReader {
   ~PhotonReader();
   /// Of an overlay: its own (identity, history and emitted_count of the whole map).
   const PhotonHeader& header() const;
-  /// Next block that has photons; false once the end block has been read and checked. An overlay's base (found
-  /// beside it) is opened, its digest checked at its end, and its untouched groups are delivered too: the
-  /// caller sees one map.
+  /// Next block that has photons; false once the end block has been read and checked. An overlay's base
+  /// (found beside it) is opened, its digest checked at its end, and its untouched groups are delivered too:
+  /// the caller sees one map.
   bool read_block(PhotonBlock& block);
   /// After the last block. Of an overlay: of the whole map.
   const PhotonTotals& totals() const;

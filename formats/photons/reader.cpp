@@ -36,8 +36,8 @@ class Digest {
       return header.columns & bit ? std::string("#").append(hash.hex()) : std::string("none");
     };
     return hash_hex("photons: 1\nmap: " + header.map + "\norigin: " + origin + "\ngroups: " +
-                    std::to_string(header.group_count) + " #" + groups_.hex() + "\nrecords: #" + records_.hex() +
-                    "\ndirection: " + column(column_direction, directions_) +
+                    std::to_string(header.group_count) + " #" + groups_.hex() + "\nrecords: #" +
+                    records_.hex() + "\ndirection: " + column(column_direction, directions_) +
                     "\nalbedo: " + column(column_albedo, albedos_) + "\n");
   }
 
@@ -62,7 +62,8 @@ class Digest {
 std::string folder_of(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }
 
 /// The ledger of a map: of two lists, groups ascending, the overlay's entry if both have one.
-std::vector<GroupFlux> merge_ledgers(const std::vector<GroupFlux>& overlay, const std::vector<GroupFlux>& base) {
+std::vector<GroupFlux> merge_ledgers(const std::vector<GroupFlux>& overlay,
+                                     const std::vector<GroupFlux>& base) {
   std::vector<GroupFlux> merged;
   std::set_union(overlay.begin(), overlay.end(), base.begin(), base.end(), std::back_inserter(merged),
                  [](const GroupFlux& a, const GroupFlux& b) { return a.group < b.group; });
@@ -97,9 +98,10 @@ void PhotonReader::State::open_base(const std::string& path) {
   base = std::make_unique<FileReader>(folder_of(path) + file.header().base_name);
   if (base->is_overlay()) file.fail("its base is an overlay itself", "make it again upon a whole map");
   const PhotonHeader &a = file.header(), &b = base->header();
-  if (a.map != b.map || rules_of(a).kinds != rules_of(b).kinds || a.columns != b.columns || a.origin != b.origin ||
-      a.group_count != b.group_count)
-    file.fail("its base " + a.base_name + " has another map, kinds, columns, origin or groups", "make it again");
+  if (a.map != b.map || rules_of(a).kinds != rules_of(b).kinds || a.columns != b.columns ||
+      a.origin != b.origin || a.group_count != b.group_count)
+    file.fail("its base " + a.base_name + " has another map, kinds, columns, origin or groups",
+              "make it again");
   base_digest.emplace();
   has_next = file.read_block(next);
   has_next_base = advance_base();
@@ -177,7 +179,8 @@ const std::vector<GroupFlux>& PhotonReader::ledger() const {
 }
 
 std::string PhotonReader::digest() const {
-  if (!state_->ended || !state_->digest) throw std::logic_error("PhotonReader: digest before the end or not asked for");
+  if (!state_->ended || !state_->digest)
+    throw std::logic_error("PhotonReader: digest before the end or not asked for");
   return state_->digest->hex(header());
 }
 
@@ -191,7 +194,8 @@ PhotonMap load_photons(const std::string& path) {
   map.header = reader.header();
   map.photons.reserve(reader.photon_count_bound());
   PhotonBlock block;
-  while (reader.read_block(block)) map.photons.insert(map.photons.end(), block.photons.begin(), block.photons.end());
+  while (reader.read_block(block))
+    map.photons.insert(map.photons.end(), block.photons.begin(), block.photons.end());
   map.totals = reader.totals();
   return map;
 }

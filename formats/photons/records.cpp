@@ -2,7 +2,9 @@
 #include <immintrin.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "formats/photons/layout.h"
 
@@ -35,13 +37,16 @@ std::array<float, 3> decode_normal(std::array<std::uint16_t, 2> code) {
 namespace photons {
 namespace {
 
+/// Below zero by its bits: the same where denormal numbers count as zero.
+bool is_negative(float x) { return std::signbit(x) && std::bit_cast<std::uint32_t>(x) != 0x80000000u; }
+
 /// The reason why this photon is refused; "" if it is good. The predicate of the format.
 std::string_view fault_of(const Photon& photon, const RecordRules& rules) {
   for (float x : photon.position)
     if (!std::isfinite(x)) return "position is not finite";
   for (float x : photon.flux) {
     if (!std::isfinite(x)) return "flux is not finite";
-    if (x < 0 && !rules.signed_flux) return "flux is negative, which only map dynamic allows";
+    if (is_negative(x) && !rules.signed_flux) return "flux is negative, which only map dynamic allows";
   }
   if (photon.normal[0] == 0xffff || photon.normal[1] == 0xffff) return "normal is above 65534";
   const auto kind = static_cast<unsigned>(photon.kind);
@@ -54,9 +59,11 @@ std::string_view fault_of(const Photon& photon, const RecordRules& rules) {
 bool any_bad(std::span<const Photon> photons, const RecordRules& rules) {
   const int exponent = 0x7f800000, none = 1;   // exponent & anything is never 1
   const __m256i mask = _mm256_setr_epi32(exponent, exponent, exponent, exponent, exponent, exponent, 0, 0);
-  const __m256i infinite = _mm256_setr_epi32(exponent, exponent, exponent, exponent, exponent, exponent, none, none);
+  const __m256i infinite =
+      _mm256_setr_epi32(exponent, exponent, exponent, exponent, exponent, exponent, none, none);
   const int sign = rules.signed_flux ? 0 : -1;
-  const __m256 flux = _mm256_castsi256_ps(_mm256_setr_epi32(0, 0, 0, sign, sign, sign, 0, 0));
+  const __m256i flux = _mm256_setr_epi32(0, 0, 0, sign, sign, sign, 0, 0);
+  const __m256i minus_zero = _mm256_set1_epi32(std::numeric_limits<int>::min());
   const __m256i normal = _mm256_setr_epi32(0, 0, 0, 0, 0, 0, -1, 0);
   __m256i bad = _mm256_setzero_si256();
   std::uint64_t bad_kind = 0;
@@ -64,8 +71,8 @@ bool any_bad(std::span<const Photon> photons, const RecordRules& rules) {
   for (const Photon& photon : photons) {
     const __m256i words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(&photon));
     bad = _mm256_or_si256(bad, _mm256_cmpeq_epi32(_mm256_and_si256(words, mask), infinite));
-    const __m256 negative = _mm256_cmp_ps(_mm256_castsi256_ps(words), _mm256_setzero_ps(), _CMP_LT_OQ);
-    bad = _mm256_or_si256(bad, _mm256_castps_si256(_mm256_and_ps(negative, flux)));
+    const __m256i negative = _mm256_andnot_si256(_mm256_cmpeq_epi32(words, minus_zero), words);
+    bad = _mm256_or_si256(bad, _mm256_and_si256(_mm256_srai_epi32(negative, 31), flux));
     bad = _mm256_or_si256(bad, _mm256_and_si256(_mm256_cmpeq_epi16(words, _mm256_set1_epi16(-1)), normal));
     const auto kind = static_cast<unsigned>(photon.kind);
     bad_kind |= ((refused >> (kind & 63)) & 1) | (kind >> 6);
@@ -78,7 +85,8 @@ bool any_bad(std::span<const Photon> photons, const RecordRules& rules) {
 std::optional<RecordError> find_bad_photon(std::span<const Photon> photons, const RecordRules& rules) {
   if (!any_bad(photons, rules)) return std::nullopt;
   for (std::size_t i = 0; i < photons.size(); ++i)
-    if (const std::string_view reason = fault_of(photons[i], rules); !reason.empty()) return RecordError{i, reason};
+    if (const std::string_view reason = fault_of(photons[i], rules); !reason.empty())
+      return RecordError{i, reason};
   return std::nullopt;
 }
 

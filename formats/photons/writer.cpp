@@ -26,7 +26,9 @@ void put_flux(std::string& bytes, const std::array<double, 3>& flux) {
   for (double x : flux) put(bytes, x);
 }
 
-[[noreturn]] void refuse(const std::string& reason) { throw std::invalid_argument("PhotonWriter: " + reason); }
+[[noreturn]] void refuse(const std::string& reason) {
+  throw std::invalid_argument("PhotonWriter: " + reason);
+}
 
 /// Appends one block of at most kMaxBlockCount photons, [first, first + count) of `block`.
 void append_block(std::string& bytes, const PhotonBlock& block, std::uint32_t columns, std::size_t first,
@@ -87,7 +89,8 @@ void PhotonWriter::State::take_checksums(std::string_view bytes, const PhotonBlo
   std::size_t photon_total = 0, at = 0;
   while (at < bytes.size()) {
     std::array<std::uint32_t, 4> head{};
-    if (bytes.size() - at < kBlockHeadSize || bytes.substr(at, 4) != kBlockMark) refuse("these are not blocks");
+    if (bytes.size() - at < kBlockHeadSize || bytes.substr(at, 4) != kBlockMark)
+      refuse("these are not blocks");
     std::memcpy(head.data(), bytes.data() + at, kBlockHeadSize);
     if (head[1] != block.group) refuse("a block of another group was encoded");
     chain = crc32(&head[3], 4, chain);
@@ -101,7 +104,8 @@ void PhotonWriter::State::check_ledger(std::span<const GroupFlux> ledger) const 
   const std::size_t expected = is_overlay() ? groups.size() : header.group_count;
   if (ledger.size() != expected) refuse("the ledger does not have one entry per group");
   for (std::size_t i = 0; i < ledger.size(); ++i)
-    if (ledger[i].group != (is_overlay() ? groups[i] : i)) refuse("the ledger's groups are not those of the file");
+    if (ledger[i].group != (is_overlay() ? groups[i] : i))
+      refuse("the ledger's groups are not those of the file");
 }
 
 void PhotonWriter::State::check_totals(const PhotonTotals& totals) const {
@@ -176,7 +180,8 @@ PhotonTotals PhotonWriter::finish(const PhotonTotals& given, std::span<const Gro
   const bool has_ledger = !ledger.empty() || s.is_overlay();
   if (has_ledger) {
     s.check_ledger(ledger);
-    for (const GroupFlux& group : ledger) s.check_totals({0, {}, group.emitted, group.escaped, group.absorbed});
+    for (const GroupFlux& group : ledger)
+      s.check_totals({0, {}, group.emitted, group.escaped, group.absorbed});
     add_up(ledger, totals);
   }
   s.check_totals(totals);

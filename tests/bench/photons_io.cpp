@@ -43,7 +43,8 @@ double median(std::vector<double> values) {
 /// A sink that writes to a new file.
 class OutputFile {
  public:
-  explicit OutputFile(const std::string& path) : file_(::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644)) {}
+  explicit OutputFile(const std::string& path)
+      : file_(::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0644)) {}
   ~OutputFile() { ::close(file_); }
   void write(const void* data, std::size_t size) {
     if (::write(file_, data, size) != ssize_t(size)) std::perror("write"), std::exit(3);
@@ -56,7 +57,9 @@ class OutputFile {
 std::vector<PhotonBlock> make_blocks(std::size_t count) {
   std::vector<PhotonBlock> blocks((count + 16383) / 16384);
   std::uint32_t state = 1;
-  const auto uniform = [&state] { return float((state = state * 1664525u + 1013904223u) >> 8) / 16777216.0f; };
+  const auto uniform = [&state] {
+    return float((state = state * 1664525u + 1013904223u) >> 8) / 16777216.0f;
+  };
   for (PhotonBlock& block : blocks) {
     block.photons.resize(std::min<std::size_t>(16384, count - std::size_t(&block - blocks.data()) * 16384));
     for (Photon& p : block.photons) {
@@ -125,10 +128,12 @@ int main(int argc, char** argv) {
     read.push_back(seconds_of([&] { (void)load_photons(path); }));
   }
   ::unlink(path.c_str());
-  std::printf("{\"photons\": %zu, \"write_gb_per_s\": %.3f, \"raw_write_gb_per_s\": %.3f, \"write_ratio\": %.3f,\n"
-              " \"read_gb_per_s\": %.3f, \"raw_read_gb_per_s\": %.3f, \"read_ratio\": %.3f,\n"
-              " \"crc_folded_gb_per_s\": %.2f, \"crc_tables_gb_per_s\": %.2f}\n",
-              count, bytes / median(write) * 1e-9, bytes / median(raw_write) * 1e-9, median(raw_write) / median(write),
-              bytes / median(read) * 1e-9, bytes / median(raw_read) * 1e-9, median(raw_read) / median(read),
-              crc32_has_folding() ? crc_gb_per_s(crc32_folded) : 0.0, crc_gb_per_s(crc32_tables));
+  std::printf(
+      "{\"photons\": %zu, \"write_gb_per_s\": %.3f, \"raw_write_gb_per_s\": %.3f, \"write_ratio\": %.3f,\n"
+      " \"read_gb_per_s\": %.3f, \"raw_read_gb_per_s\": %.3f, \"read_ratio\": %.3f,\n"
+      " \"crc_folded_gb_per_s\": %.2f, \"crc_tables_gb_per_s\": %.2f}\n",
+      count, bytes / median(write) * 1e-9, bytes / median(raw_write) * 1e-9,
+      median(raw_write) / median(write), bytes / median(read) * 1e-9, bytes / median(raw_read) * 1e-9,
+      median(raw_read) / median(read), crc32_has_folding() ? crc_gb_per_s(crc32_folded) : 0.0,
+      crc_gb_per_s(crc32_tables));
 }

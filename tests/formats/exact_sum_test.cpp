@@ -18,7 +18,8 @@ double sum_of(const std::vector<float>& values) {
 
 TEST(ExactSum, OfNothingAndOfOneIsThatValue) {
   EXPECT_EQ(sum_of({}), 0.0);
-  for (float value : {0.0f, -0.0f, 1.0f, -1.0f, 0.1f, 1e-45f, -1e-45f, 1.17549435e-38f, 1e38f, -3.4028235e38f})
+  for (float value :
+       {0.0f, -0.0f, 1.0f, -1.0f, 0.1f, 1e-45f, -1e-45f, 1.17549435e-38f, 1e38f, -3.4028235e38f})
     EXPECT_EQ(sum_of({value}), double(value)) << value;
   for (int e = -149; e < 128; ++e) EXPECT_EQ(sum_of({std::ldexp(1.0f, e)}), std::ldexp(1.0, e)) << e;
 }
@@ -30,7 +31,7 @@ TEST(ExactSum, LosesNothingBetweenLargeAndSmall) {
   EXPECT_EQ(sum_of({-3e38f, -1e-45f, 3e38f}), -double(1e-45f));
 }
 
-// 2^53 + 1 lies between two float64 values: the tie goes to the even one; a grain more, however small, goes up.
+// 2^53 + 1 lies between two float64 values: the tie goes to the even one, a grain more goes up.
 TEST(ExactSum, IsRoundedOnceToNearestEven) {
   const float big = 0x1p53f;
   EXPECT_EQ(sum_of({big, 1.0f}), 0x1p53);

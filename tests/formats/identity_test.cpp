@@ -8,7 +8,8 @@ namespace tempolux::formats {
 namespace {
 
 const Identity kScene{"g", "m", "a", "l", "v", 0, 23};
-const std::vector<std::string_view> kAll{"static_geometry", "moving_geometry", "materials", "lights", "media"};
+const std::vector<std::string_view> kAll{"static_geometry", "moving_geometry", "materials", "lights",
+                                         "media"};
 using Names = std::vector<std::string>;
 
 TEST(Identity, NamesJustTheConcernsThatDifferAndWereAskedFor) {

@@ -148,6 +148,7 @@ def refuse_blocks():
         block = block[:12] + struct.pack("<I", zlib.crc32(block[:12] + block[16:])) + block[16:]
         save("refuse/flux-" + name, rejoin([parts[0], block, parts[2]]))
     save("refuse/flux-negative-in-global", photons([Block(0, record(flux=(1, 1, -1e-30)))]))
+    save("refuse/flux-negative-and-denormal", photons([Block(0, record(flux=(-1e-45, 1, 1)))]))
     save("refuse/normal-above-65534", photons([Block(0, record(normal=(0, 65535)))]))
     save("refuse/direction-above-65534", photons([Block(0, record(), b"\xff\xff\0\0")], columns="direction"))
     save("refuse/kind-not-in-header", photons([Block(0, record(kind=3))]))

@@ -26,12 +26,13 @@ TEST(Normals, WorkedValuesOfTheConventions) {
 }
 
 TEST(Normals, AxesAreExact) {
-  for (Normal axis : {Normal{1, 0, 0}, Normal{-1, 0, 0}, Normal{0, 1, 0}, Normal{0, -1, 0}, Normal{0, 0, 1}, Normal{0, 0, -1}})
+  for (Normal axis : {Normal{1, 0, 0}, Normal{-1, 0, 0}, Normal{0, 1, 0}, Normal{0, -1, 0}, Normal{0, 0, 1},
+                      Normal{0, 0, -1}})
     for (int c = 0; c < 3; ++c) EXPECT_EQ(decode_normal(encode_normal(axis))[c], axis[c]);
 }
 
-// Half a step of 1/32767 in both numbers displaces the point of the octahedron by at most 0.5/32767 sqrt(6), and
-// the octahedron comes as near as 1/sqrt(3) to its centre: 1.53e-5 * 2.449 * 1.732 = 6.5e-5 rad.
+// Half a step of 1/32767 in both numbers displaces the point of the octahedron by at most 0.5/32767 sqrt(6),
+// and the octahedron comes as near as 1/sqrt(3) to its centre: 1.53e-5 * 2.449 * 1.732 = 6.5e-5 rad.
 TEST(Normals, AreOffByAtMostHalfAStep) {
   double worst = 0;
   for (int i = 0; i < 200000; ++i) {   // a spiral over the sphere

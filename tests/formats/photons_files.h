@@ -48,7 +48,8 @@ inline Contents read_all(const std::string& path) {
   Contents all{reader.header(), {}, {}, {}, {}};
   PhotonBlock block;
   while (reader.read_block(block)) {
-    if (all.groups.empty() || all.groups.back().group != block.group) all.groups.push_back({block.group, {}, {}, {}});
+    if (all.groups.empty() || all.groups.back().group != block.group)
+      all.groups.push_back({block.group, {}, {}, {}});
     PhotonBlock& group = all.groups.back();
     group.photons.insert(group.photons.end(), block.photons.begin(), block.photons.end());
     group.directions.insert(group.directions.end(), block.directions.begin(), block.directions.end());
@@ -63,8 +64,9 @@ inline Contents read_all(const std::string& path) {
 inline std::string bytes_of(const PhotonHeader& header, const std::vector<PhotonBlock>& blocks,
                             const PhotonTotals& totals = {}, const std::vector<GroupFlux>& ledger = {}) {
   std::string bytes;
-  PhotonWriter writer([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
-                      header);
+  PhotonWriter writer(
+      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
+      header);
   for (const PhotonBlock& block : blocks) writer.write(block);
   writer.finish(totals, ledger);
   return bytes;
@@ -92,13 +94,16 @@ inline Photon photon(std::uint32_t i) {
 }
 
 /// `count` photons of a group, with columns.
-inline PhotonBlock block_of(std::uint32_t group, std::uint32_t count, std::uint32_t columns, std::uint32_t first = 0) {
+inline PhotonBlock block_of(std::uint32_t group, std::uint32_t count, std::uint32_t columns,
+                            std::uint32_t first = 0) {
   PhotonBlock block;
   block.group = group;
   for (std::uint32_t i = first; i < first + count; ++i) {
     block.photons.push_back(photon(i + 1000 * group));
-    if (columns & column_direction) block.directions.push_back({std::uint16_t(i % 65535), std::uint16_t(i * 3 % 65535)});
-    if (columns & column_albedo) block.albedos.push_back({std::uint8_t(i), std::uint8_t(i * 5), std::uint8_t(i * 9), 0});
+    if (columns & column_direction)
+      block.directions.push_back({std::uint16_t(i % 65535), std::uint16_t(i * 3 % 65535)});
+    if (columns & column_albedo)
+      block.albedos.push_back({std::uint8_t(i), std::uint8_t(i * 5), std::uint8_t(i * 9), 0});
   }
   return block;
 }

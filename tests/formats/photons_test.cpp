@@ -59,7 +59,8 @@ std::string worked_example() {
     if (!here || line.rfind("    ", 0) != 0) continue;
     std::istringstream digits(line.substr(4, line.find("  ", 4) - 4));
     for (std::string word; digits >> word;)
-      for (std::size_t i = 0; i + 1 < word.size(); i += 2) bytes += char(std::stoi(word.substr(i, 2), nullptr, 16));
+      for (std::size_t i = 0; i + 1 < word.size(); i += 2)
+        bytes += char(std::stoi(word.substr(i, 2), nullptr, 16));
   }
   return bytes;
 }
@@ -68,10 +69,17 @@ std::string worked_example() {
 TEST(Photons, WorkedExampleOfThePageIsWhatTheWriterWrites) {
   PhotonHeader header;
   header.history = "example\n";
-  header.identity = {.static_geometry = "a1", .moving_geometry = "", .materials = "b2", .lights = "c3", .media = "", .first_frame = 0, .last_frame = 23};
+  header.identity = {.static_geometry = "a1",
+                     .moving_geometry = "",
+                     .materials = "b2",
+                     .lights = "c3",
+                     .media = "",
+                     .first_frame = 0,
+                     .last_frame = 23};
   header.emitted_count = 4;
   PhotonBlock block;
-  block.photons.push_back({{1, 2, 3}, {0.5f, 0.25f, 0.125f}, encode_normal({0, 1, 0}), 7, PathKind::caustic, 2});
+  block.photons.push_back(
+      {{1, 2, 3}, {0.5f, 0.25f, 0.125f}, encode_normal({0, 1, 0}), 7, PathKind::caustic, 2});
   PhotonTotals totals;
   totals.emitted_flux = {1, 1, 1};
   totals.escaped_flux = totals.absorbed_flux = {0.5, 0.5, 0.5};
@@ -105,7 +113,8 @@ TEST(Photons, EverythingComesBack) {
   EXPECT_EQ(all.header.map, "global");
   EXPECT_EQ(all.header.kinds, expected.kinds);
   ASSERT_EQ(all.groups.size(), 2u);
-  for (const auto& [i, block] : {std::pair(0, block_of(0, 3, kAllColumns)), std::pair(1, block_of(2, 2, kAllColumns))}) {
+  for (const auto& [i, block] :
+       {std::pair(0, block_of(0, 3, kAllColumns)), std::pair(1, block_of(2, 2, kAllColumns))}) {
     EXPECT_EQ(all.groups[i].group, block.group);
     EXPECT_EQ(all.groups[i].photons, block.photons);
     EXPECT_EQ(all.groups[i].directions, block.directions);
@@ -128,9 +137,11 @@ TEST(Photons, ManyPhotonsAreCutIntoBlocksAndComeBackInOrder) {
 
 TEST(Photons, BlocksEncodedElsewhereGiveTheSameFile) {
   std::string bytes;
-  PhotonWriter writer([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
-                      rich_header());
-  for (const PhotonBlock& block : {block_of(0, 2, kAllColumns), block_of(0, 1, kAllColumns, 2), block_of(2, 2, kAllColumns)})
+  PhotonWriter writer(
+      [&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); },
+      rich_header());
+  for (const PhotonBlock& block :
+       {block_of(0, 2, kAllColumns), block_of(0, 1, kAllColumns, 2), block_of(2, 2, kAllColumns)})
     writer.write_encoded(encode_block(block, kAllColumns), block);
   writer.finish({}, ledger_of({0, 1, 2}));
   EXPECT_EQ(bytes, rich_bytes());
@@ -282,7 +293,8 @@ TEST(Photons, FilesForTheSecondReader) {
   if (!name) GTEST_SKIP() << "only for read_photons_test.sh";
   const std::string folder = std::string(name) + "/";
   save(folder + "rich.photons", rich_bytes());
-  save(folder + "plain.photons", bytes_of({}, {block_of(0, 70000, 0)}, {0, {}, {0.1, 0.2, 0.3}, {0, 1e-30, 0.7}, {}}));
+  save(folder + "plain.photons",
+       bytes_of({}, {block_of(0, 70000, 0)}, {0, {}, {0.1, 0.2, 0.3}, {0, 1e-30, 0.7}, {}}));
   PhotonHeader dynamic;
   dynamic.map = "dynamic";
   PhotonBlock block = block_of(0, 1000, 0);
