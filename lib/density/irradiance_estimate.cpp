@@ -23,19 +23,21 @@ PhotonQuery make_query(Vec3 point, Vec3 normal, const IrradianceOptions& options
           .flattening = options.flattening, .kinds = options.kinds};
 }
 
-/// Sum of flux over pi radius2.
-IrradianceEstimate divide_by_disc(const PhotonIndex& index, std::span<const std::uint32_t> photons,
-                                  double radius2) {
+Rgbd sum_flux(const PhotonIndex& index, std::span<const std::uint32_t> photons) {
   Rgbd sum;
   for (std::uint32_t photon : photons) sum += Rgbd(index.flux(photon));
-  return {sum / (std::numbers::pi * radius2), float(std::sqrt(radius2)), std::uint32_t(photons.size())};
+  return sum;
+}
+
+IrradianceEstimate divide_by_disc(Rgbd flux, double radius2, std::size_t count) {
+  return {flux / (std::numbers::pi * radius2), float(std::sqrt(radius2)), std::uint32_t(count)};
 }
 
 IrradianceEstimate estimate_within(const PhotonIndex& index, PhotonQuery query, float radius,
                                    NeighbourList& scratch) {
   query.max_radius = radius;
   index.find_within(query, scratch);
-  return divide_by_disc(index, scratch.photons(), double(radius) * radius);
+  return divide_by_disc(sum_flux(index, scratch.photons()), double(radius) * radius, scratch.count());
 }
 
 }  // namespace
@@ -45,16 +47,19 @@ IrradianceEstimate estimate_irradiance(const PhotonIndex& index, Vec3 point, Vec
   require_valid(options);
   const PhotonQuery query = make_query(point, normal, options);
   index.find_nearest(query, options.neighbours, scratch);
-  const std::size_t count = scratch.count();
-  if (count < std::size_t(options.neighbours)) {
-    if (std::isfinite(options.max_radius))
-      return divide_by_disc(index, scratch.photons(), double(options.max_radius) * options.max_radius);
-    return {};
+  const std::span<const std::uint32_t> photons = scratch.photons();
+  if (photons.size() < std::size_t(options.neighbours)) {
+    const double radius = options.max_radius;
+    if (!std::isfinite(radius)) return {};
+    return divide_by_disc(sum_flux(index, photons), radius * radius, photons.size());
   }
   const float radius_floor = std::min(std::max(options.min_radius, index.resolution()), options.max_radius);
-  const double radius2 = scratch.distance2().back();
-  if (radius2 > double(radius_floor) * radius_floor)
-    return divide_by_disc(index, scratch.photons().first(count - 1), radius2);
+  const std::size_t kth = scratch.farthest();
+  const double radius2 = scratch.distance2()[kth];
+  if (radius2 > double(radius_floor) * radius_floor) {
+    const Rgbd flux = sum_flux(index, photons.first(kth)) + sum_flux(index, photons.subspan(kth + 1));
+    return divide_by_disc(flux, radius2, photons.size() - 1);
+  }
   if (!(radius_floor > 0)) return {};
   return estimate_within(index, query, radius_floor, scratch);
 }

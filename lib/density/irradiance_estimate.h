@@ -24,15 +24,16 @@ struct IrradianceEstimate {
 
 /// Irradiance at a surface point from the k nearest photons that pass the options' tests:
 ///
-///     E  =  ( sum of flux over the k-1 nearest )  /  ( pi r_k^2 )       if r_min < r_k
-///     E  =  ( sum of flux over all within R )     /  ( pi R^2 )         if fewer than k are within R = max_radius
-///     E  =  ( sum of flux over all within r_min ) /  ( pi r_min^2 )     if r_k <= r_min
+///     E  =  ( sum of flux over the k-1 nearest )  /  ( pi r_k^2 )      if r_min < r_k <= R
+///     E  =  ( sum of flux over all within R )     /  ( pi R^2 )        if fewer than k are within R
+///     E  =  ( sum of flux over all within r_min ) /  ( pi r_min^2 )    if r_k <= r_min
 ///
-/// r_min is the larger of min_radius and the index's resolution, but at most max_radius. The whole rule has no
-/// bias where photons are spread evenly: seen from a shrinking disc, (photons inside) / area is a martingale,
+/// R is max_radius; r_min the larger of min_radius and the index's resolution, but at most R. The whole rule
+/// has no bias where photons are spread evenly: in a shrinking disc (photons inside) / area is a martingale,
 /// and each of the three cases stops it at a time that depends only on what was seen so far.
 /// Without photons, E = 0. With fewer than k and no max_radius there is no area to divide by: E = 0, radius 0
-/// (the same if everything is in one point at the origin and min_radius is 0). Sums are in double.
+/// (the same if everything is in one point at the origin and min_radius is 0). Sums are in double,
+/// in the index's order: the same bits whatever `scratch` was used for.
 ///
 ///   point    m, the photons' space
 ///   normal   unit length, on the side whose irradiance is wanted

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
+#include <vector>
 
 namespace tempolux {
 namespace {
@@ -74,27 +74,28 @@ void compact(CandidateList& list, float threshold) {
   }
 }
 
-/// Of the entries equal to `value`, drops those with the highest photons until k entries are left.
+/// Of the entries equal to `value`, the largest, drops those with the highest photons until k are left.
 void drop_ties(CandidateList& list, float value, std::size_t k) {
-  std::size_t tie_begin = 0;  // moves ties to the end
+  std::vector<std::uint32_t> ties;
+  for (std::size_t i = 0; i < list.count; ++i)
+    if (list.distance2[i] == value) ties.push_back(list.photon[i]);
+  const auto last = ties.begin() + std::ptrdiff_t(ties.size() - (list.count - k) - 1);
+  std::nth_element(ties.begin(), last, ties.end());
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < list.count; ++i) {
-    if (list.distance2[i] == value) continue;
-    std::swap(list.distance2[i], list.distance2[tie_begin]);
-    std::swap(list.photon[i], list.photon[tie_begin]);
-    ++tie_begin;
+    if (list.distance2[i] == value && list.photon[i] > *last) continue;
+    list.distance2[kept] = list.distance2[i];
+    list.photon[kept++] = list.photon[i];
   }
-  std::nth_element(list.photon + tie_begin, list.photon + (k - 1), list.photon + list.count);
-  list.count = k;
+  list.count = kept;
 }
 
-void move_farthest_to_end(CandidateList& list) {
+std::size_t farthest(const CandidateList& list) {
   const float value = largest(list);
-  std::size_t farthest = list.count;
+  std::size_t place = list.count;
   for (std::size_t i = 0; i < list.count; ++i)
-    if (list.distance2[i] == value && (farthest == list.count || list.photon[i] > list.photon[farthest]))
-      farthest = i;
-  std::swap(list.distance2[farthest], list.distance2[list.count - 1]);
-  std::swap(list.photon[farthest], list.photon[list.count - 1]);
+    if (list.distance2[i] == value && (place == list.count || list.photon[i] > list.photon[place])) place = i;
+  return place;
 }
 
 void pad_with_nan(CandidateList& list) {
@@ -103,7 +104,7 @@ void pad_with_nan(CandidateList& list) {
 
 }  // namespace
 
-void keep_nearest(CandidateList& list, std::size_t k) {
+std::size_t keep_nearest(CandidateList& list, std::size_t k) {
   pad_with_nan(list);
   if (list.count > k) {
     const Threshold threshold = find_threshold(list, k);
@@ -111,7 +112,7 @@ void keep_nearest(CandidateList& list, std::size_t k) {
     if (list.count > k) drop_ties(list, threshold.value, k);
     pad_with_nan(list);
   }
-  move_farthest_to_end(list);
+  return farthest(list);
 }
 
 }  // namespace tempolux

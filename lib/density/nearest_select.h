@@ -41,8 +41,8 @@ struct CandidateList {
   }
 };
 
-/// Keeps the k nearest of the list (1 <= k <= count) by (distance2, photon), the farthest last.
-/// Distances are >= 0 and no NaN.
-void keep_nearest(CandidateList& list, std::size_t k);
+/// Keeps the k nearest of the list (1 <= k <= count) by (distance2, photon), in their order; returns the
+/// place of the farthest of them. Distances are >= 0 and no NaN.
+std::size_t keep_nearest(CandidateList& list, std::size_t k);
 
 }  // namespace tempolux

@@ -1,7 +1,7 @@
 // lib/density/photon_index.h -- photons near a point: exact k nearest and exact fixed radius.
 //
-// A balanced kd-tree whose leaves hold 32 photons, one coordinate after the other, so that eight distances are
-// computed at once. Photons are kept in tree order (neighbours in space are neighbours in memory).
+// A balanced kd-tree whose leaves hold 32 photons, one coordinate after the other, so that eight distances
+// are computed at once. Photons are kept in tree order (neighbours in space are neighbours in memory).
 #pragma once
 
 #include <array>
@@ -39,8 +39,11 @@ struct PhotonQuery {
   std::uint8_t kinds = kAllKinds;
 };
 
-/// The photons found: parallel arrays, count() long. Reuse one per thread: it keeps its memory, and the radius
-/// of its last search as a first guess for the next, which changes the speed and never the result.
+class PhotonIndex;
+
+/// The photons found: parallel arrays, count() long. Reuse one per thread: it keeps its memory, and the
+/// radius of its last search as a first guess for the next, which changes the speed and never the result;
+/// searches are fastest if successive points are close (morton_order).
 class NeighbourList {
  public:
   std::size_t count() const { return count_; }
@@ -48,16 +51,28 @@ class NeighbourList {
   std::span<const std::uint32_t> photons() const { return {photon_.data(), count_}; }
   /// Squared distances, m^2, in the metric of the query.
   std::span<const float> distance2() const { return {distance2_.data(), count_}; }
+  /// After find_nearest that found any: the place in the list of the farthest.
+  std::size_t farthest() const { return farthest_; }
   /// Puts the list into the order of (distance2, photon).
-  void sort();
+  void sort_by_distance();
 
  private:
   friend class PhotonIndex;
   friend struct PhotonSearch;
   std::vector<float> distance2_;
   std::vector<std::uint32_t> photon_;
-  std::size_t count_ = 0;
-  float guess2_ = 0;             // squared radius of the last search that found k; 0: none
+  std::vector<std::uint64_t> keys_;          // of sort_by_distance()
+  std::vector<std::uint32_t> bucket_end_;    // of sort_by_distance()
+  std::size_t count_ = 0, farthest_ = 0;
+  /// A squared radius thought to hold k photons of an index; the last few are kept.
+  struct Guess {
+    const PhotonIndex* index = nullptr;
+    int k = 0;
+    float radius2 = std::numeric_limits<float>::infinity();
+  };
+  Guess& guess_for(const PhotonIndex& index, int k);
+  std::array<Guess, 4> guesses_;
+  std::size_t oldest_guess_ = 0;
 };
 
 /// An immutable set of photons made for look-ups. Every method is thread-safe.
@@ -71,9 +86,9 @@ class PhotonIndex {
 
   std::size_t size() const { return size_; }
 
-  /// The k nearest photons that pass, or all of them if they are fewer. Of photons at equal distance the one
-  /// with the lower position in the index is nearer. The farthest comes last, the others in no order worth a name
-  /// (see NeighbourList::sort). A point that is not finite finds nothing.
+  /// The k nearest photons that pass, or all of them if they are fewer, by ascending position in the index.
+  /// Of photons at equal distance the one with the lower position is nearer. A point that is not finite
+  /// finds nothing.
   /// Throws std::invalid_argument unless 1 <= k <= kMaxNeighbours.
   void find_nearest(const PhotonQuery& query, int k, NeighbourList& found) const;
 
@@ -88,7 +103,7 @@ class PhotonIndex {
   }
   Rgb flux(std::size_t i) const { return flux_[i]; }                       ///< W; negative in dynamic maps
   std::uint16_t object(std::size_t i) const { return object_[i]; }
-  std::uint32_t source(std::size_t i) const { return source_[i]; }         ///< place in the constructor's span
+  std::uint32_t source(std::size_t i) const { return source_[i]; }   ///< place in the constructor's span
   formats::PathKind kind(std::size_t i) const;
   Vec3 normal(std::size_t i) const;   ///< as find_nearest sees it: components are multiples of 1/511
 

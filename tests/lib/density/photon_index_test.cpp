@@ -22,7 +22,8 @@ Vec2 random2(std::uint64_t i, std::uint32_t use) { return PathRandom(7, i).get2(
 
 Photon photon_at(Vec3 p, std::uint64_t i) {
   const Vec3 n = sample_sphere(random2(i, 90));
-  Photon photon{.position = {p.x, p.y, p.z}, .flux = {float(i % 17), 1, -2}, .object = std::uint16_t(i % 1000)};
+  Photon photon{.position = {p.x, p.y, p.z}, .flux = {float(i % 17), 1, -2}};
+  photon.object = std::uint16_t(i % 1000);
   photon.normal = formats::encode_normal({n.x, n.y, n.z});
   photon.kind = PathKind(i % 4);
   return photon;
@@ -100,13 +101,14 @@ void expect_exact(const PhotonIndex& index, const PhotonQuery& query, const std:
   for (int k : ks) {
     SCOPED_TRACE("k = " + std::to_string(k));
     const Found nearest(all.begin(), all.begin() + std::min<std::ptrdiff_t>(k, std::ssize(all)));
+    Found by_place = nearest;
+    std::sort(by_place.begin(), by_place.end(), [](auto a, auto b) { return a.second < b.second; });
     index.find_nearest(query, k, list);
-    if (!nearest.empty()) {
-      ASSERT_GT(list.count(), 0u);
-      EXPECT_EQ(contents(list).back(), nearest.back()) << "the farthest must be last";
-    }
-    list.sort();
+    ASSERT_EQ(contents(list), by_place);
+    if (!nearest.empty()) { EXPECT_EQ(contents(list)[list.farthest()], nearest.back()); }
+    list.sort_by_distance();
     ASSERT_EQ(contents(list), nearest);
+    if (!nearest.empty()) { EXPECT_EQ(list.farthest(), nearest.size() - 1); }
   }
 }
 
@@ -146,7 +148,8 @@ TEST(PhotonIndex, IsExactForEveryKFrom1To512) {
   NeighbourList list;
   std::vector<int> ks(512);
   for (int k = 1; k <= 512; ++k) ks[std::size_t(k - 1)] = k;
-  for (int q = 0; q < 6; ++q) expect_exact(index, query_of(Shape::clusters, std::uint64_t(q), q % 2), ks, list);
+  for (int q = 0; q < 6; ++q)
+    expect_exact(index, query_of(Shape::clusters, std::uint64_t(q), q % 2), ks, list);
 }
 
 TEST(PhotonIndex, IsExactAlongAPathOfQueriesThroughManyPhotons) {
@@ -172,7 +175,7 @@ TEST(PhotonIndex, ManyCoincidentPhotonsDoNotMakeASearchLong) {
   const PhotonIndex index(photons_of(Shape::coincident, 400000));
   NeighbourList list;
   for (int q = 0; q < 2000; ++q) index.find_nearest({.point = {0.3f, 0.4f, 0.5f}}, 50, list);
-  list.sort();
+  list.sort_by_distance();
   for (std::uint32_t i = 0; i < 50; ++i) EXPECT_EQ(list.photons()[i], i);
   EXPECT_EQ(index.source(0), 0u) << "equal points keep their order";
 }
@@ -191,7 +194,8 @@ TEST(PhotonIndex, KeepsEveryPhotonOnceWithItsData) {
     EXPECT_EQ(index.object(i), p.object);
     EXPECT_EQ(index.kind(i), p.kind);
     const auto n = formats::decode_normal(p.normal);
-    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(index.normal(i)[axis], n[std::size_t(axis)], 0.5001 / 511);
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(index.normal(i)[axis], n[std::size_t(axis)], 0.5001 / 511);
   }
 }
 
