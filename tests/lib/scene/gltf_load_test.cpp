@@ -1,0 +1,370 @@
+// tests/lib/scene/gltf_load_test.cpp -- what a glTF file says, as plain data.
+#include <cmath>
+#include <limits>
+
+#include "tests/lib/scene/gltf_maker.h"
+
+namespace tempolux {
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
+std::size_t triangle_count(const Scene& scene) {
+  std::size_t count = 0;
+  for (const Node& node : scene.nodes)
+    if (node.mesh >= 0)
+      for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives) count += primitive.triangles.size();
+  return count;
+}
+
+std::string error_of(const GltfMaker& maker) { return load_error(write_file("bad.gltf", maker.text())); }
+
+TEST(GltfLoad, AllMadeScenesLoadWithTheirTriangles) {
+  if (shared_scenes().empty()) GTEST_SKIP() << "../shared/scenes is not there";
+  const std::map<std::string, std::size_t> triangles{{"S1_cornell.glb", 52}, {"S2_cornell_moving.glb", 52},
+                                                     {"S6_smoke.glb", 52}, {"U1_point.gltf", 2}, {"U5_furnace_closed.gltf", 12}};
+  int count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(shared_scenes() / "made")) {
+    const std::string extension = entry.path().extension();
+    if (extension != ".gltf" && extension != ".glb") continue;
+    const Scene scene = load_gltf(entry.path().string());
+    EXPECT_GE(scene.camera_node("auto"), 0);
+    if (const auto known = triangles.find(entry.path().filename()); known != triangles.end()) {
+      EXPECT_EQ(triangle_count(scene), known->second) << entry.path();
+    }
+    const bool only_volume = entry.path().filename().string().starts_with("V");
+    if (!only_volume) {
+      EXPECT_NO_THROW(require_lights(scene)) << entry.path();
+    }
+    ++count;
+  }
+  EXPECT_EQ(count, 16);
+}
+
+TEST(GltfLoad, FoundFilesLoadOrSayWhatIsNotSupported) {
+  if (shared_scenes().empty()) GTEST_SKIP() << "../shared/scenes is not there";
+  int loaded = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(shared_scenes() / "found")) {
+    const std::string extension = entry.path().extension();
+    if (extension != ".gltf" && extension != ".glb") continue;
+    try {
+      load_gltf(entry.path().string());
+      ++loaded;
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_TRUE(message.find("is not supported; ") != std::string::npos || message.find("nothing to render") != std::string::npos)
+          << message;
+    }
+  }
+  EXPECT_EQ(loaded, 30);  // of 35: three compressed, one with a retired extension, one without meshes
+}
+
+TEST(GltfLoad, TheAtriumNamesItsGlassAsIgnored) {
+  if (shared_scenes().empty()) GTEST_SKIP() << "../shared/scenes is not there";
+  const Scene scene = load_gltf((shared_scenes() / "made/S4_atrium.glb").string());
+  EXPECT_TRUE(has_warning(scene, "KHR_materials_transmission"));
+  EXPECT_TRUE(has_warning(scene, "KHR_materials_volume"));
+  EXPECT_EQ(scene.warnings.size(), 2u);
+}
+
+TEST(GltfLoad, StripsAndFansBecomeTrianglesWithTheirWinding) {
+  GltfMaker maker;
+  const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 1});
+  const Json attributes = {{"POSITION", positions}};
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", attributes}, {"mode", 5}})}});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", attributes}, {"mode", 6}})}});
+  const Scene scene = maker.load();
+  // glTF 2.0, 3.7.2.1: strip p_i = {v_i, v_(i+1+i%2), v_(i+2-i%2)}, fan p_i = {v_(i+1), v_(i+2), v_0}
+  EXPECT_EQ(scene.meshes[0].primitives[0].triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
+  EXPECT_EQ(scene.meshes[1].primitives[0].triangles, (std::vector<Triangle>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
+}
+
+TEST(GltfLoad, PointsAndLinesAreIgnoredByName) {
+  GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}});
+  maker.json["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 0}}}, {"mode", 1}});
+  const Scene scene = maker.load();
+  EXPECT_EQ(scene.meshes[0].primitives.size(), 1u);
+  EXPECT_TRUE(has_warning(scene, "points and lines"));
+}
+
+TEST(GltfLoad, QuantizedAttributesBecomeNumbers) {
+  GltfMaker maker;
+  const int positions = maker.add_accessor<std::int16_t>({-32768, -32767, 0, 32767, 0, 0, 0, 16384, 0}, 5122, "VEC3", 3);
+  const int normals = maker.add_accessor<std::int8_t>({0, 0, 127, 0, 0, 127, 0, 0, 127}, 5120, "VEC3", 3);
+  const int uvs = maker.add_accessor<std::uint8_t>({0, 255, 51, 102, 0, 0}, 5121, "VEC2", 2);
+  maker.json["accessors"][positions]["normalized"] = true;
+  maker.json["accessors"][normals]["normalized"] = true;
+  maker.json["accessors"][uvs]["normalized"] = true;
+  maker.json["extensionsRequired"] = {"KHR_mesh_quantization"};
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}, {"TEXCOORD_0", uvs}}}})}});
+  const Scene scene = maker.load();
+  const Primitive& primitive = scene.meshes[0].primitives[0];
+  EXPECT_EQ(primitive.positions[0], (Vec3{-1, -1, 0}));  // the lowest integer also means -1
+  EXPECT_EQ(primitive.positions[1], (Vec3{1, 0, 0}));
+  EXPECT_EQ(primitive.positions[2].y, float(16384 / 32767.0));
+  EXPECT_EQ(primitive.normals[0], (Vec3{0, 0, 1}));
+  EXPECT_EQ(primitive.uvs[1], (Vec2{float(51 / 255.0), float(102 / 255.0)}));
+}
+
+TEST(GltfLoad, IntegersThatAreNotNormalisedKeepTheirValue) {
+  GltfMaker maker;
+  const int positions = maker.add_accessor<std::uint16_t>({0, 0, 0, 1000, 0, 0, 0, 65535, 0}, 5123, "VEC3", 3);
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}})}});
+  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions[2], (Vec3{0, 65535, 0}));
+}
+
+TEST(GltfLoad, InterleavedVerticesAreReadByTheirStride) {
+  GltfMaker maker;
+  const int positions = maker.add_vec3({0, 0, 0, 9, 9, 9, 1, 0, 0, 9, 9, 9, 0, 1, 0, 9, 9, 9});
+  maker.json["bufferViews"][0]["byteStride"] = 24;
+  maker.json["accessors"][0]["count"] = 3;
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}})}});
+  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+}
+
+TEST(GltfLoad, SparseAccessorsReplaceSomeElements) {
+  GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}});
+  const int indices = maker.add_indices({2}), values = maker.add_vec3({0, 5, 0});
+  maker.json["accessors"][0]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", maker.json["accessors"][indices]["bufferView"]}, {"componentType", 5123}}},
+      {"values", {{"bufferView", maker.json["accessors"][values]["bufferView"]}}}};
+  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 5, 0}}));
+  maker.json["accessors"][0].erase("bufferView");  // the rest is then zero
+  maker.json["accessors"][0]["count"] = 3;
+  EXPECT_CONTAINS(error_of(maker), "no node of the scene has a mesh with triangles");
+  maker.bytes.replace(maker.json["bufferViews"][1]["byteOffset"].get<std::size_t>(), 1, 1, char(3));
+  EXPECT_CONTAINS(error_of(maker), "sparse index 3 is beyond");
+}
+
+TEST(GltfLoad, MissingNormalsMeanFlatShading) {
+  GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}});
+  maker.add_node({{"mesh", maker.add_square()}});
+  const Scene scene = maker.load();
+  EXPECT_TRUE(scene.meshes[0].primitives[0].normals.empty());
+  EXPECT_EQ(scene.meshes[1].primitives[0].normals.size(), 4u);
+}
+
+TEST(GltfLoad, NormalsBecomeUnitAndZeroOnesFlat) {
+  GltfMaker maker;
+  const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const int long_ones = maker.add_vec3({0, 0, 3, 0, 3, 0, 3, 0, 0}), zero = maker.add_vec3({0, 0, 1, 0, 0, 0, 0, 0, 1});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", long_ones}}}})}});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", zero}}}})}});
+  const Scene scene = maker.load();
+  EXPECT_EQ(scene.meshes[0].primitives[0].normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}));
+  EXPECT_TRUE(scene.meshes[1].primitives[0].normals.empty());
+  EXPECT_TRUE(has_warning(scene, "normals of zero length"));
+}
+
+TEST(GltfLoad, TrianglesOfZeroAreaAreDroppedAndCounted) {
+  GltfMaker maker;
+  const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 1, 0, 0});
+  const int indices = maker.add_indices({0, 1, 2, 0, 0, 1, 0, 1, 3, 1, 4, 2, 0, 3, 2});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})}});
+  const Scene scene = maker.load();
+  // of five: two corners equal, collinear, two corners at one place
+  EXPECT_EQ(scene.meshes[0].primitives[0].triangles.size(), 2u);
+  EXPECT_TRUE(has_warning(scene, "triangles of zero area, 3 times"));
+}
+
+TEST(GltfLoad, ATinyTriangleIsNoZeroTriangle) {
+  GltfMaker maker;
+  const float e = std::ldexp(1.0f, -23);
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({1, 1, 0, 1 + e, 1, 0, 1, 1 + e, 0})}}}})}});
+  EXPECT_EQ(maker.load().meshes[0].primitives[0].triangles.size(), 1u);
+}
+
+TEST(GltfLoad, PrimitivesKeepOnlyTheVerticesTheyUse) {
+  GltfMaker maker;
+  const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 0, 0, 6, 0, 0, 5, 1, 0});
+  const int normals = maker.add_vec3({1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0});
+  const Json attributes = {{"POSITION", positions}, {"NORMAL", normals}};
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", attributes}, {"indices", maker.add_indices({5, 3, 4})}})}});
+  const Scene scene = maker.load();
+  const Primitive& primitive = scene.meshes[0].primitives[0];
+  EXPECT_EQ(primitive.positions, (std::vector<Vec3>{{5, 0, 0}, {6, 0, 0}, {5, 1, 0}}));
+  EXPECT_EQ(primitive.normals[0], (Vec3{0, 1, 0}));
+  EXPECT_EQ(primitive.triangles, (std::vector<Triangle>{{2, 0, 1}}));
+}
+
+TEST(GltfLoad, MaterialsAreReadWithTheirExtensions) {
+  GltfMaker maker;
+  maker.add_material({{"name", "M"},
+                      {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.125, 1}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.25}}},
+                      {"emissiveFactor", {1, 0.5, 0}},
+                      {"doubleSided", true},
+                      {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
+                                      {"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {1, 2, 3}}}},
+                                      {"KHR_materials_ior", {{"ior", 1.25}}},
+                                      {"KHR_materials_transmission", {{"transmissionFactor", 0.75}}}}}});
+  maker.add_node({{"mesh", maker.add_triangle(0)}});
+  maker.add_node({{"mesh", maker.add_triangle()}});
+  const Scene scene = maker.load();
+  const Material& m = scene.materials[0];
+  EXPECT_EQ(m.base_color, (Rgb{0.5f, 0.25f, 0.125f}));
+  EXPECT_EQ(m.metallic, 0.5f);
+  EXPECT_EQ(m.roughness, 0.25f);
+  EXPECT_EQ(m.emission, (Rgb{8, 4, 0}));
+  EXPECT_TRUE(m.double_sided);
+  EXPECT_EQ(m.specular, 0.5f);
+  EXPECT_EQ(m.specular_color, (Rgb{1, 2, 3}));
+  EXPECT_EQ(m.ior, 1.25f);
+  EXPECT_EQ(m.transmission, 0.75f);
+  EXPECT_EQ(scene.meshes[1].primitives[0].material, 1u);  // glTF's default material is the last
+  EXPECT_EQ(scene.materials[1], Material{});
+}
+
+TEST(GltfLoad, ReflectanceOutsideZeroToOneIsClampedWithAWarning) {
+  GltfMaker maker;
+  maker.add_material({{"name", "Bright"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1.5, -1, 0.5, 1}}}}});
+  maker.add_node({{"mesh", maker.add_triangle(0)}});
+  const Scene scene = maker.load();
+  EXPECT_EQ(scene.materials[0].base_color, (Rgb{1, 0, 0.5f}));
+  EXPECT_TRUE(has_warning(scene, "materials[0] \"Bright\".baseColorFactor: 1.5"));
+  EXPECT_EQ(scene.warnings.size(), 2u);
+}
+
+TEST(GltfLoad, WhatIsNotRenderedYetIsNamed) {
+  GltfMaker maker;
+  maker.add_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}, {"alphaMode", "MASK"},
+                      {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
+  maker.add_node({{"mesh", maker.add_triangle(0)}});
+  Json& primitive = maker.json["meshes"][0]["primitives"][0];
+  primitive["targets"] = {{{"POSITION", 0}}};
+  primitive["attributes"]["COLOR_0"] = 0;
+  maker.json["skins"] = {{{"joints", {0}}}};
+  maker.json["nodes"][0]["skin"] = 0;
+  maker.add_light({{"type", "point"}, {"range", 10}});
+  maker.animate(0, "translation", {0}, {0, 0, 0});
+  Json pointer = maker.json["animations"][0]["channels"][0];
+  pointer["target"] = {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", "/materials/0"}}}}}};
+  maker.json["animations"][0]["channels"].push_back(pointer);
+  const Scene scene = maker.load();
+  for (const char* part : {"textures", "alphaMode MASK", "KHR_materials_unlit", "morph targets", "vertex colours", "skins",
+                           "range of lights", "1 channels of KHR_animation_pointer"})
+    EXPECT_TRUE(has_warning(scene, part)) << part;
+}
+
+TEST(GltfLoad, NodesComeParentsFirstAndOnlyFromTheDefaultScene) {
+  GltfMaker maker;
+  const int leaf = maker.add_node({{"name", "leaf"}, {"mesh", maker.add_triangle()}}, false);
+  maker.add_node({{"name", "elsewhere"}, {"mesh", 0}}, false);
+  maker.add_node({{"name", "root"}, {"children", {leaf}}});
+  const Scene scene = maker.load();
+  ASSERT_EQ(scene.nodes.size(), 2u);
+  EXPECT_EQ(scene.nodes[0].name, "root");
+  EXPECT_EQ(scene.nodes[1].parent, 0);
+  EXPECT_EQ(scene.nodes[1].source_index, 0u);
+  EXPECT_EQ(scene.object_names, std::vector<std::string>{"leaf"});
+}
+
+TEST(GltfLoad, AVeryDeepHierarchyIsNoRecursion) {
+  GltfMaker maker;
+  const int mesh = maker.add_triangle();
+  constexpr int kDepth = 100'000;
+  for (int i = 0; i < kDepth; ++i) maker.json["nodes"].push_back({{"children", {i + 1}}});
+  maker.json["nodes"].push_back({{"mesh", mesh}});
+  maker.json["scenes"][0]["nodes"] = {0};
+  EXPECT_EQ(maker.load().nodes.size(), std::size_t(kDepth + 1));
+}
+
+TEST(GltfLoad, NodesWithTwoParentsOrInALoopAreRefused) {
+  GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}, {"children", {1}}});
+  maker.add_node({{"children", Json::array()}});
+  EXPECT_CONTAINS(error_of(maker), "is reached twice");
+  maker.json["scenes"][0]["nodes"] = {0};
+  EXPECT_EQ(maker.load().nodes.size(), 2u);
+  maker.json["nodes"][1]["children"] = {0};
+  EXPECT_CONTAINS(error_of(maker), "is reached twice");
+}
+
+TEST(GltfLoad, NumbersThatAreNotFiniteAreRefusedWithMeshAndAccessor) {
+  GltfMaker maker;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({0, 0, 0, 1, 0, nan, 0, 1, 0})}}}})}});
+  EXPECT_CONTAINS(error_of(maker), "meshes[0].primitives[0].POSITION: accessor 0 holds NaN");
+}
+
+TEST(GltfLoad, IndicesBeyondTheVerticesAreRefused) {
+  GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0})}}},
+                                           {"indices", maker.add_indices({0, 1, 3})}})}});
+  EXPECT_CONTAINS(error_of(maker), "index 3 is beyond the 3 vertices");
+}
+
+TEST(GltfLoad, BadAnimationsAreRefused) {
+  const auto animated = [](const char* path, std::vector<float> times, std::vector<float> values, const char* how) {
+    GltfMaker maker;
+    maker.add_node({{"mesh", maker.add_triangle()}});
+    maker.animate(0, path, times, values, how);
+    return maker;
+  };
+  EXPECT_CONTAINS(error_of(animated("translation", {0, 0}, {0, 0, 0, 1, 0, 0}, "LINEAR")), "times must increase");
+  EXPECT_CONTAINS(error_of(animated("translation", {0, 1}, {0, 0, 0}, "LINEAR")), "1 values for 2 keys");
+  EXPECT_CONTAINS(error_of(animated("translation", {0, 1}, {0, 0, 0, 1, 0, 0}, "CUBICSPLINE")), "three each");
+  EXPECT_CONTAINS(error_of(animated("rotation", {0}, {0, 0, 0, 0}, "LINEAR")), "quaternion of zero length");
+  EXPECT_CONTAINS(error_of(animated("translation", {0}, {0, 0, 0}, "WOBBLY")), "WOBBLY");
+  GltfMaker maker = animated("translation", {0}, {0, 0, 0}, "LINEAR");
+  maker.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  EXPECT_CONTAINS(error_of(maker), "given by a matrix");
+}
+
+TEST(GltfLoad, BadNodesAndLightsAreRefused) {
+  GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}, {"rotation", {0, 0, 0, 0}}});
+  EXPECT_CONTAINS(error_of(maker), "nodes[0].rotation: is not a quaternion");
+  maker.json["nodes"][0] = {{"mesh", 7}};
+  EXPECT_CONTAINS(error_of(maker), "nodes[0].mesh: index 7 does not exist");
+  maker.json["nodes"][0] = {{"mesh", 0}};
+  maker.add_light({{"type", "spot"}, {"spot", {{"innerConeAngle", 0.5}, {"outerConeAngle", 0.4}}}});
+  EXPECT_CONTAINS(error_of(maker), "cone angles");
+  maker.json["extensions"]["KHR_lights_punctual"]["lights"][0] = {{"type", "area"}};
+  EXPECT_CONTAINS(error_of(maker), "\"area\" is not point, spot or directional");
+}
+
+TEST(GltfLoad, CamerasAreFoundByNameAndTheirAbsenceSaysWhatToTick) {
+  GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}});
+  try {
+    maker.load().camera_node("auto");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_CONTAINS(error.what(), "Include > Cameras");
+  }
+  maker.add_camera({{"name", "First"}});
+  maker.add_camera({{"name", "Second"}});
+  const Scene scene = maker.load();
+  EXPECT_EQ(scene.nodes[std::size_t(scene.camera_node("auto"))].name, "First");
+  EXPECT_EQ(scene.nodes[std::size_t(scene.camera_node("Second"))].name, "Second");
+  try {
+    scene.camera_node("Third");
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_CONTAINS(error.what(), "First, Second");
+  }
+}
+
+TEST(GltfLoad, ASceneWithoutLightSaysWhatToTick) {
+  GltfMaker maker;
+  maker.add_material({{"emissiveFactor", {0, 0, 0.5}}});
+  maker.add_node({{"mesh", maker.add_triangle()}});
+  try {
+    require_lights(maker.load());
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_CONTAINS(error.what(), "Punctual Lights");
+  }
+  GltfMaker lamp = maker, emitter = maker;
+  lamp.add_light({{"type", "point"}});
+  EXPECT_NO_THROW(require_lights(lamp.load()));
+  emitter.add_node({{"mesh", emitter.add_triangle(0)}});
+  EXPECT_NO_THROW(require_lights(emitter.load()));
+}
+
+}  // namespace
+}  // namespace tempolux
