@@ -4,22 +4,52 @@
 #include <cmath>
 
 namespace tempolux {
+namespace {
 
-AlbedoPair ggx_albedo(float cos_theta, float alpha) {
-  const float roughness = std::sqrt(alpha);
-  const float rx = 1 - roughness, ry = 0.0425f - 0.0275f * roughness, rz = 1.04f - 0.572f * roughness,
-              rw = 0.022f * roughness - 0.04f;
-  const float a004 = std::min(rx * rx, std::exp2(-9.28f * cos_theta)) * rx + ry;
-  return {std::max(0.0f, -1.04f * a004 + rz), std::max(0.0f, 1.04f * a004 + rw)};
+using namespace albedo_table;
+
+/// First of four neighbours among `count` at position in [0, 1], and Lagrange's weights of the four.
+int cubic_weights(float position, int count, float weight[4]) {
+  const float at = position * float(count - 1);
+  const int first = std::clamp(int(at) - 1, 0, count - 4);
+  const float s = at - float(first), s1 = s - 1, s2 = s - 2, s3 = s - 3;
+  weight[0] = s1 * s2 * s3 * (-1.0f / 6);
+  weight[1] = s * s2 * s3 * 0.5f;
+  weight[2] = s * s1 * s3 * -0.5f;
+  weight[3] = s * s1 * s2 * (1.0f / 6);
+  return first;
 }
 
-AlbedoPair ggx_mean_albedo(float alpha) {
+constexpr float kFirstRoot = 0.14142136f;  // kMinAlpha^(1/4)
+
+}  // namespace
+
+GgxAlbedo::GgxAlbedo(float alpha) : alpha_(std::clamp(alpha, float(kMinAlpha), 1.0f)) {
+  const float position = (std::sqrt(std::sqrt(alpha_)) - kFirstRoot) / (1 - kFirstRoot);
+  row_ = cubic_weights(std::clamp(position, 0.0f, 1.0f), kRows, weight_);
+}
+
+AlbedoPair GgxAlbedo::at(float cos_theta) const {
+  const float cos = std::clamp(cos_theta, 0.0f, 1.0f), sum = cos + alpha_;
+  float across[4];
+  const int column = cubic_weights(std::sqrt(std::min(1.0f, cos * (1 + alpha_) / sum)), kColumns, across);
+  float total = 0, m = 0;
+  for (int r = 0; r < 4; ++r) {
+    const float* e = &kTotal[row_ + r][column];
+    const float* c = &kCosine[row_ + r][column];
+    total += weight_[r] * (across[0] * e[0] + across[1] * e[1] + across[2] * e[2] + across[3] * e[3]);
+    m += weight_[r] * (across[0] * c[0] + across[1] * c[1] + across[2] * c[2] + across[3] * c[3]);
+  }
+  total = std::clamp(total, 0.0f, 1.0f);
+  const float k = std::clamp(1 - m * sum, 0.0f, 1.0f), k2 = k * k, b = total * k2 * k2 * k;
+  return {total - b, b};
+}
+
+AlbedoPair GgxAlbedo::mean() const {
   AlbedoPair sum;
-  for (int i = 0; i < 8; ++i) {
-    const float mu = (float(i) + 0.5f) / 8;
-    const AlbedoPair e = ggx_albedo(mu, alpha);
-    sum.a += e.a * mu / 4;
-    sum.b += e.b * mu / 4;
+  for (int r = 0; r < 4; ++r) {
+    sum.a += weight_[r] * kMeanA[row_ + r];
+    sum.b += weight_[r] * kMeanB[row_ + r];
   }
   return sum;
 }

@@ -4,13 +4,20 @@
 #include <cmath>
 
 #include "lib/core/sampling.h"
-#include "lib/material/albedo.h"
 #include "lib/material/ggx.h"
 
 namespace tempolux {
 namespace {
 
 float power5(float x) { return x * x * x * x * x; }
+float smooth_step(float x) {
+  x = std::clamp(x, 0.0f, 1.0f);
+  return x * x * (3 - 2 * x);
+}
+/// Mean loss of GGX below which multiple reflection is left out: there f_ms is all at grazing angles, and
+/// cosine samples of it would weigh more than ten times their mean. Full at three times this.
+constexpr float kLeastLost = 0.01f;
+
 float mean(Rgb c) { return (c.r + c.g + c.b) / 3; }
 /// Schlick's Fresnel term.
 Rgb fresnel(Rgb f0, float f90, float cos_h) {
@@ -43,13 +50,14 @@ Bsdf::Bsdf(const Material& material) {
   } else {
     alpha_ = material.roughness * material.roughness;
     alpha2_ = alpha_ * alpha_;
-    const AlbedoPair m = ggx_mean_albedo(alpha_);
+    albedo_ = GgxAlbedo(alpha_);
+    const AlbedoPair m = albedo_.mean();
     const float e = m.a + m.b, lost = 1 - e;
     mean_lost_ = lost;
-    if (lost > 1e-4f) {  // below, GGX alone is as good as lossless
+    if (const float fade = smooth_step((lost - kLeastLost) / (2 * kLeastLost)); fade > 0) {
       for (int c = 0; c < 3; ++c) {
         const float f = (20 * f0_[c] + f90_) / 21;
-        multiple_[c] = f * f * e / (1 - f * lost) / lost;
+        multiple_[c] = fade * f * f * e / (1 - f * lost) / lost;
       }
     }
     mean_albedo_ = f0_max_ * m.a + f90_ * m.b + max_component(multiple_) * lost * lost;
@@ -68,7 +76,7 @@ Bsdf::Reflection Bsdf::reflection(float cos_theta) const {
     e.b = power5(std::clamp(1 - cos_theta, 0.0f, 1.0f));
     e.a = 1 - e.b;
   } else {
-    e = ggx_albedo(cos_theta, alpha_);
+    e = albedo_.at(cos_theta);
     r.lost = std::max(0.0f, 1 - (e.a + e.b));
   }
   r.single = f0_ * e.a + Rgb(f90_ * e.b);
@@ -76,10 +84,14 @@ Bsdf::Reflection Bsdf::reflection(float cos_theta) const {
   return r;
 }
 
+Rgb Bsdf::specular_albedo(float cos_o) const {
+  const Reflection r = reflection(cos_o);
+  return r.single + r.multiple;
+}
+
 float Bsdf::diffuse_coupling(float cos_theta) const {
   if (!specular_) return 1;
-  const Reflection r = reflection(cos_theta);
-  return std::max(0.0f, 1 - max_component(r.single + r.multiple)) * coupling_scale_;
+  return std::max(0.0f, 1 - max_component(specular_albedo(cos_theta))) * coupling_scale_;
 }
 
 Rgb Bsdf::diffuse_reflectance(float cos_o) const {

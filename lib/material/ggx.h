@@ -2,7 +2,7 @@
 //
 // Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007; Heitz, "Understanding
 // the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2), 2014. alpha in (0, 1], isotropic.
-// The cosines given are positive. Nothing here divides by a quantity that can vanish.
+// The cosines given are positive. Nothing here divides by what can vanish.
 #pragma once
 
 #include <algorithm>
@@ -20,13 +20,13 @@ inline float smith_root(float cos_theta, float alpha2) {
 
 /// D(h) [1/sr] of the unit half vector. From h.x and h.y, which keep their digits when h is close to z.
 inline float distribution(Vec3 h, float alpha2) {
-  const float slope = (h.x * h.x + h.y * h.y) / alpha2 + h.z * h.z;
+  const float slope = std::max(1.0f, (h.x * h.x + h.y * h.y) / alpha2 + h.z * h.z);  // zero h: wi = -wo
   return kInvPi / (alpha2 * slope * slope);
 }
 
-/// G2 / (4 cos_i cos_o) [1].
+/// G2 / (4 cos_i cos_o) [1]; held below 5e19 where both directions graze within 1e-20.
 inline float visibility(float cos_i, float cos_o, float alpha2) {
-  return 0.5f / (cos_o * smith_root(cos_i, alpha2) + cos_i * smith_root(cos_o, alpha2));
+  return 0.5f / std::max(1e-20f, cos_o * smith_root(cos_i, alpha2) + cos_i * smith_root(cos_o, alpha2));
 }
 
 /// Half vector by the density of visible normals, D(h) G1(wo) max(0, wo h) / cos_o: a uniform point of the
