@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
 
   return tool.run([&] {
     while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
+    check_folder_name(folder);
     make_folder(folder + "/state");
     tools::Output makefile(folder + "/plan.mk", false, tools::Output::Kind::text);
 

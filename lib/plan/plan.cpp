@@ -140,9 +140,9 @@ std::string counted(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-/// "12 of 14 materials have a Lambert lobe".
-std::string share(std::size_t count, std::size_t of, const std::string& what) {
-  return std::to_string(count) + " of " + std::to_string(of) + (of == 1 ? " material has " : " materials have ") + what;
+/// "12 of 14 materials reflect ...".
+std::string share(std::size_t count, std::size_t of, const std::string& how) {
+  return std::to_string(count) + " of " + counted(of, "material") + (count == 1 ? " reflects " : " reflect ") + how;
 }
 
 /// How many states of light transport the frames asked for have.
@@ -163,8 +163,8 @@ void plan_stages(const Scene& scene, Plan& plan) {
     diffuse += bsdf.has_diffuse();
     specular += bsdf.has_specular();
   }
-  const std::string lambert = share(diffuse, used.size(), "a Lambert lobe, where photons are recorded");
-  const std::string other = share(specular, used.size(), "a lobe beside Lambert's: mirror or gloss");
+  const std::string lambert = share(diffuse, used.size(), "by a Lambert lobe");
+  const std::string other = share(specular, used.size(), "by a mirror or glossy lobe");
   const std::string frames = counted(plan.frames.size(), "frame") + " asked for";
 
   const bool indirect = diffuse > 0, caustic = indirect && specular > 0;

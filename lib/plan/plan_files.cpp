@@ -85,9 +85,13 @@ std::string plan_json(const Plan& plan, const std::string& scene_name, const std
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string plan_makefile(const Plan& plan, const std::string& folder, const std::vector<std::string>& scene_files) {
+void check_folder_name(const std::string& folder) {
   if (folder.find_first_of(" \t\n#%:$\\*?[]|;&'\"()<>`~=") != std::string::npos)
     throw InputError(folder + ": make cannot use files in a folder of this name; choose another with -o");
+}
+
+std::string plan_makefile(const Plan& plan, const std::string& folder, const std::vector<std::string>& scene_files) {
+  check_folder_name(folder);
   const bool photons = !plan.photon_kinds.empty();
   std::string text = "# Written by scene-plan; formats/plan/plan.md says what each variable is.\n";
   text += variable("plan_frames", plan.frames) + variable("plan_photons", photon_frames(plan));

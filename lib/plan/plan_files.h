@@ -17,8 +17,11 @@ struct PlanFile {
 /// plan.json: everything, for people and scripts.
 std::string plan_json(const Plan& plan, const std::string& scene_name, const std::string& history);
 
+/// Throws InputError if make cannot name files in a folder of this name (blanks, '%', ':' ...).
+void check_folder_name(const std::string& folder);
+
 /// plan.mk: make variables, and plan.mk's own prerequisites, the `scene_files`. `folder` is the plan's folder
-/// as make shall name it. Throws InputError if make cannot name files in that folder (blanks, '%', ':' ...).
+/// as make shall name it; checked as above.
 std::string plan_makefile(const Plan& plan, const std::string& folder, const std::vector<std::string>& scene_files);
 
 /// state/CONCERN.FFFF: one hash per line. To be rewritten only when their content differs.
