@@ -19,3 +19,12 @@ endforeach()
 
 add_test(NAME formats.read_photons COMMAND sh formats/read_photons_test.sh $<TARGET_FILE:photons_test>
          WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+
+# Stages together, run by make at the top of the tree.
+add_test(NAME pipelines.rerun COMMAND sh tests/pipelines/rerun.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+add_test(NAME pipelines.plan_example COMMAND sh tests/pipelines/plan_example.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+add_test(NAME pipelines.plan_refuses COMMAND sh tests/pipelines/plan_refuses.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.rerun pipelines.plan_example pipelines.plan_refuses PROPERTIES TIMEOUT 300)
