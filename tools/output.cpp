@@ -108,6 +108,7 @@ bool same_bytes(const std::string& a, const std::string& b) {
 struct Ledger {
   struct Line {
     std::string path, target, temporary;
+    std::string key;                       ///< target in one spelling
     enum class Stage { open, committed, dropped } stage = Stage::open;
   };
   std::mutex mutex;
@@ -144,12 +145,15 @@ struct Output::State : std::streambuf {
       ledger().lines[ledger_line].stage = stage;
   }
   void enter_in_ledger() {
+    std::error_code unknown;
+    const std::filesystem::path whole = std::filesystem::absolute(target, unknown);
+    const std::string key = target == "-" ? "-" : std::filesystem::weakly_canonical(whole, unknown).string();
     const std::lock_guard lock(ledger().mutex);
     for (const Ledger::Line& line : ledger().lines)
-      if (line.stage == Ledger::Line::Stage::open && line.target == target)
+      if (line.stage == Ledger::Line::Stage::open && line.key == key)
         throw InputError(path + ": named for two outputs; give them different names");
     ledger_line = ledger().lines.size();
-    ledger().lines.push_back({path, target, temporary_path});
+    ledger().lines.push_back({path, target, temporary_path, key});
   }
 
   void open_output(Kind kind) {

@@ -31,7 +31,7 @@ void fail_as(const std::string& work) {
   if (work == "other-error") throw std::runtime_error("odd");
   if (work == "memory") {
     std::vector<std::unique_ptr<char[]>> blocks;
-    while (blocks.size() < 4096) {        // 4 GiB at most, should the limit not hold
+    while (blocks.size() < 4096) {   // 4 GiB at most, should the limit not hold
       blocks.push_back(std::make_unique<char[]>(1 << 20));
       blocks.back()[0] = 1;
     }
@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
         file.write(block.data(), block.size());
         tool.progress(double(written) / double(bytes));
       }
-      file.stream() << "end\n";
+      file.stream() << "\nend\n";
       if (other) {
         other->stream() << "other end\n";
         other->commit();

@@ -1,0 +1,32 @@
+# Exit codes and messages: one line, the tool, the place, the remedy.
+try() { tool-probe "$@"; echo "exit $?"; }
+try scene.glb -o a.out; cat a.out | head -c 60 | head -1
+try
+try scene.glb
+try scene.glb -o a.out --bogus
+try scene.glb -o a.out --frames 5-x
+try scene.glb -o a.out --bytes 1e6
+try scene.glb -o a.out --seed -1
+try scene.glb -o a.out --seed-mode sometimes
+try scene.glb -o a.out --threads 5000
+try scene.glb -o a.out --fps 0
+TEMPOLUX_THREADS=many tool-probe scene.glb -o a.out; echo "exit $?"
+for work in input-error caller-error resource-error system-error other-error; do
+  try scene.glb -o b.out --work $work
+done
+try scene.glb -o b.out --work memory --max-memory 300MiB
+try scene.glb -o no/such/folder/b.out
+try scene.glb -o /dev/full
+try scene.glb -o .
+try scene.glb -o ''
+try scene.glb -o a.out --no-clobber
+try scene.glb -o b.out --second ./b.out
+try scene.glb -o - --stats - | tail -1
+try scene.glb -o - --depfile d.mk --bytes 0 | tail -1
+tool-probe --help 3>&1 >/dev/full; echo "exit $?"
+tool-probe scene.glb -o - 3>&1 >/dev/full; echo "exit $?"
+tool-probe scene.glb -o - 3>&1 >&-; echo "exit $?"
+tool-probe scene.glb -o b.out --second b2.out --work input-error -q; echo "exit $?"
+tool-probe /abs/sub/scene.glb -o f.##.out --frames 3-4 --bytes 0 --threads 1 --state st/a 'st/b c' --depfile d.mk -v | sed 's/[0-9.]* s/T s/; s/([0-9.]* CPU/(T CPU/'
+cat d.mk f.03.out f.04.out
+ls -A
