@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::int32_t kLargestSide = 65536;
 constexpr std::size_t kMaxChannels = 1024, kMaxParts = 256;
+constexpr std::uint64_t kFreeDisplayBytes = 256ull << 20;
 constexpr std::uint32_t kTiledFlag = 0x200, kLongNamesFlag = 0x400, kDeepFlag = 0x800, kMultipartFlag = 0x1000;
 
 /// Compressions by their number in the file: lines of a chunk, and how many bytes of samples one byte of file can
@@ -165,6 +166,11 @@ void check_samples(const HeaderReader& in, const ExrClaims& part, std::uint64_t 
   if (bytes / kCompressions[std::size_t(part.compression)].expansion > file_size)
     in.fail("claims " + std::to_string(bytes) + " bytes of samples, more than the file's " +
             std::to_string(file_size) + " can hold; it is truncated or damaged");
+  // The display window's rest is not in the file: memory for it is given freely up to a limit, then as deflate would.
+  const std::uint64_t shown = bytes_per_pixel * std::uint64_t(part.display.width() * part.display.height());
+  if (shown > std::max(kFreeDisplayBytes, 1032 * file_size))
+    in.fail("displayWindow claims " + std::to_string(shown) + " bytes of samples around a data window of " +
+            std::to_string(bytes) + "; crop the display window");
 }
 
 }  // namespace

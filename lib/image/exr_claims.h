@@ -36,7 +36,8 @@ struct ExrClaims {
 };
 
 /// Claims of the first part. Throws InputError "FILE: byte N: WHAT; REMEDY" if any part's header is damaged or
-/// claims more than max_pixels or more than the file's bytes can hold, or if the first part is deep or subsampled.
+/// claims more than max_pixels or more than the file's bytes can hold, or if the first part is deep or subsampled, or
+/// shows its pixels in a display window of more than 256 MiB and 1032 times the file.
 ExrClaims read_exr_claims(const ByteFile& file, std::uint64_t max_pixels);
 
 }  // namespace tempolux
