@@ -35,21 +35,24 @@ std::string format_of(const ByteFile& file) {
   return "";
 }
 
-ImageModuleEntry* find_module(const std::string& path, const std::string& format, const std::vector<std::string>& folders) {
+ImageModuleEntry* find_module(const std::string& path, const std::string& format,
+                              const std::vector<std::string>& folders) {
   std::string looked;
   for (const std::string& folder : folders) {
     const std::string file = folder + "/" + kModuleFile;
     looked += (looked.empty() ? "" : ", ") + folder;
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) continue;
-    // Never unloaded: OpenImageIO's own libraries do not survive it. The loader counts and shares repeated opens.
+    // Never unloaded: OpenImageIO's own libraries do not survive it. The loader counts and shares repeated
+    // opens.
     void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     void* entry = module ? ::dlsym(module, kImageModuleSymbol) : nullptr;
     if (!entry) throw InputError(path + ": reading " + format + ": " + file + ": " + one_line(::dlerror()));
     return reinterpret_cast<ImageModuleEntry*>(entry);
   }
-  throw InputError(path + ": reading " + format + " needs " + kModuleFile + ", which was not built or not installed (looked in " +
-                   looked + "); build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG");
+  throw InputError(path + ": reading " + format + " needs " + kModuleFile +
+                   ", which was not built or not installed (looked in " + looked +
+                   "); build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG");
 }
 
 /// What the module fills.
@@ -57,7 +60,8 @@ struct Interleaved {
   std::vector<float> samples;
   int width = 0, height = 0, channels = 0, bits = 0;
 
-  static float* allocate(void* user, std::int32_t width, std::int32_t height, std::int32_t channels, std::int32_t bits) {
+  static float* allocate(void* user, std::int32_t width, std::int32_t height, std::int32_t channels,
+                         std::int32_t bits) {
     auto& self = *static_cast<Interleaved*>(user);
     self.width = width;
     self.height = height;
@@ -80,7 +84,8 @@ Image to_image(const std::string& path, const std::string& format, const Interle
   Image image;
   image.width = from.width;
   image.height = from.height;
-  image.text["tempolux:source"] = format + ", " + std::to_string(from.bits) + " bits, " + (linear ? "linear" : "sRGB to linear");
+  image.text["tempolux:source"] =
+      format + ", " + std::to_string(from.bits) + " bits, " + (linear ? "linear" : "sRGB to linear");
   for (std::size_t c = 0; c < 3; ++c) {
     std::vector<float>& values = image.add(std::string(1, "RGB"[c])).values;
     const std::size_t offset = from.channels == 1 ? 0 : c;
@@ -131,7 +136,9 @@ Image load_image(const std::string& path, const ImageReadOptions& options) {
   if (format == "exr") return load_exr(path, {options.max_pixels, false});
   if (format == "png") return load_png(path, options.max_pixels);
   if (format.empty())
-    throw InputError(path + ": byte 0: not an image we read (OpenEXR, PNG, Radiance HDR, JPEG, TIFF); convert it to EXR or PNG");
+    throw InputError(
+        path +
+        ": byte 0: not an image we read (OpenEXR, PNG, Radiance HDR, JPEG, TIFF); convert it to EXR or PNG");
   return load_by_module(path, format, options);
 }
 

@@ -1,4 +1,5 @@
-// lib/image/any_io.h -- images of any format we read: EXR and PNG here, others through a module opened at need.
+// lib/image/any_io.h -- images of any format we read: EXR and PNG here, others through a module opened at
+// need.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +10,10 @@
 
 namespace tempolux {
 
-/// Folders in which tempolux-oiio.so is looked for, best first, relative to the running program (/proc/self/exe):
-/// ../lib/tempolux and its variants where it is installed, ../modules in a build tree. The environment is not read.
+/// Folders in which tempolux-oiio.so is looked for, best first, relative to the running program
+/// (/proc/self/exe):
+/// ../lib/tempolux and its variants where it is installed, ../modules in a build tree. The environment is not
+/// read.
 std::vector<std::string> default_module_folders();
 
 struct ImageReadOptions {
@@ -18,13 +21,14 @@ struct ImageReadOptions {
   std::vector<std::string> module_folders = default_module_folders();
 };
 
-/// Reads an image as linear Rec. 709 R, G, B (and whatever else an EXR has). The first bytes decide the format, not
-/// the name: OpenEXR and PNG are read here, Radiance HDR, JPEG and TIFF by the module tempolux-oiio.so, which is
-/// loaded the first time and stays; everything else is refused. Samples of 8 or 16 bits are sRGB and become
-/// linear, float samples are linear already; "tempolux:source" says which. One channel is grey.
+/// Reads an image as linear Rec. 709 R, G, B (and whatever else an EXR has). The first bytes decide the
+/// format, not the name: OpenEXR and PNG are read here, Radiance HDR, JPEG and TIFF by the module
+/// tempolux-oiio.so, which is loaded the first time and stays; everything else is refused. Samples of 8 or 16
+/// bits are sRGB and become linear, float samples are linear already; "tempolux:source" says which. One
+/// channel is grey.
 ///
-/// Throws InputError "FILE: ...": unreadable, unknown or damaged, too large, NaN or infinite (as load_exr), or of a
-/// format whose module was not built or not installed; ResourceError without memory.
+/// Throws InputError "FILE: ...": unreadable, unknown or damaged, too large, NaN or infinite (as load_exr),
+/// or of a format whose module was not built or not installed; ResourceError without memory.
 Image load_image(const std::string& path, const ImageReadOptions& options = {});
 
 }  // namespace tempolux

@@ -43,9 +43,7 @@ void ByteFile::read_at(std::uint64_t offset, void* to, std::size_t count) const 
 }
 
 void write_bytes(const std::string& path, const void* data, std::size_t size) {
-  const auto fail = [&](int error) {
-    throw ResourceError(path + ": cannot write: " + std::strerror(error));
-  };
+  const auto fail = [&](int error) { throw ResourceError(path + ": cannot write: " + std::strerror(error)); };
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) fail(errno);
   const char* next = static_cast<const char*>(data);
@@ -65,7 +63,8 @@ void write_bytes(const std::string& path, const void* data, std::size_t size) {
 
 std::string one_line(const std::string& text) {
   std::string line = text.substr(0, 1024);
-  std::replace_if(line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 32; }, ' ');
   while (!line.empty() && (line.back() == ' ' || line.back() == '.')) line.pop_back();
   return line;
 }

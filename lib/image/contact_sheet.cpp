@@ -11,8 +11,8 @@ namespace {
 
 constexpr int kGap = 2;
 
-/// Area average of linear light; a target pixel covers (source size / target size) source pixels, parts of them
-/// by their share.
+/// Area average of linear light; a target pixel covers (source size / target size) source pixels, parts of
+/// them by their share.
 Picture shrink(const Picture& from, int width, int height) {
   std::array<float, 256> linear;
   for (std::size_t code = 0; code < linear.size(); ++code) linear[code] = srgb_to_linear(float(code) / 255);
@@ -35,7 +35,8 @@ Picture shrink(const Picture& from, int width, int height) {
         }
       const std::size_t at = 3 * (std::size_t(y) * std::size_t(width) + std::size_t(x));
       for (std::size_t c = 0; c < 3; ++c)
-        to.rgb[at + c] = std::uint8_t(std::lround(255 * linear_to_srgb(float(sum[c] / ((x1 - x0) * (y1 - y0))))));
+        to.rgb[at + c] =
+            std::uint8_t(std::lround(255 * linear_to_srgb(float(sum[c] / ((x1 - x0) * (y1 - y0))))));
     }
   }
   return to;
@@ -55,7 +56,8 @@ Picture contact_sheet(const std::vector<Picture>& pictures, int columns, int max
   int cell_width = 0, cell_height = 0;
   std::vector<Picture> small;
   for (const Picture& picture : pictures) {
-    if (picture.width < 1 || picture.height < 1) throw std::invalid_argument("contact_sheet: an empty picture");
+    if (picture.width < 1 || picture.height < 1)
+      throw std::invalid_argument("contact_sheet: an empty picture");
     small.push_back(fitted(picture, max_width));
     cell_width = std::max(cell_width, small.back().width);
     cell_height = std::max(cell_height, small.back().height);

@@ -12,14 +12,26 @@ namespace {
 constexpr std::int32_t kLargestSide = 65536;
 constexpr std::size_t kMaxChannels = 1024, kMaxParts = 256;
 constexpr std::uint64_t kFreeDisplayBytes = 256ull << 20;
-constexpr std::uint32_t kTiledFlag = 0x200, kLongNamesFlag = 0x400, kDeepFlag = 0x800, kMultipartFlag = 0x1000;
+constexpr std::uint32_t kTiledFlag = 0x200, kLongNamesFlag = 0x400, kDeepFlag = 0x800,
+                        kMultipartFlag = 0x1000;
 
-/// Compressions by their number in the file: lines of a chunk, and how many bytes of samples one byte of file can
-/// make at most: deflate 1032, run lengths 64, Pxr24 drops a quarter before deflate, Piz 410 (a run of 256 16-bit
-/// values in 10 bits), B44 11; the DWA pair 64 times deflate (one coefficient for 8x8 pixels).
-struct CompressionFacts { std::int32_t lines; std::uint64_t expansion; };
-constexpr std::array<CompressionFacts, 10> kCompressions{{{1, 1}, {1, 64}, {1, 1032}, {16, 1032}, {32, 410}, {16, 1376},
-                                                          {32, 11}, {32, 11}, {32, 66048}, {256, 66048}}};
+/// Compressions by their number in the file: lines of a chunk, and how many bytes of samples one byte of file
+/// can make at most: deflate 1032, run lengths 64, Pxr24 drops a quarter before deflate, Piz 410 (a run of
+/// 256 16-bit values in 10 bits), B44 11; the DWA pair 64 times deflate (one coefficient for 8x8 pixels).
+struct CompressionFacts {
+  std::int32_t lines;
+  std::uint64_t expansion;
+};
+constexpr std::array<CompressionFacts, 10> kCompressions{{{1, 1},
+                                                          {1, 64},
+                                                          {1, 1032},
+                                                          {16, 1032},
+                                                          {32, 410},
+                                                          {16, 1376},
+                                                          {32, 11},
+                                                          {32, 11},
+                                                          {32, 66048},
+                                                          {256, 66048}}};
 
 class HeaderReader {
  public:
@@ -42,7 +54,8 @@ class HeaderReader {
     std::memcpy(to, buffer_.data() + (position_ - buffer_start_), count);  // count is at most 16
     position_ += count;
   }
-  template <class T> T number() {
+  template <class T>
+  T number() {
     T value;
     bytes(&value, sizeof value);
     return value;
@@ -51,7 +64,8 @@ class HeaderReader {
     std::string text;
     for (char c; (c = number<char>()) != 0;) {
       text += c;
-      if (text.size() > 255) fail(std::string("name of ") + of + " longer than 255 bytes; the header is damaged");
+      if (text.size() > 255)
+        fail(std::string("name of ") + of + " longer than 255 bytes; the header is damaged");
     }
     return text;
   }
@@ -114,13 +128,15 @@ bool read_part(HeaderReader& in, ExrClaims& part, std::uint64_t& chunk_count) {
       in.bytes(kind.data(), kind.size());
       part.deep = kind.starts_with("deep");
     }
-    if (in.position() > end) in.fail_at(start, "attribute " + one_line(name) + " is longer than it says; the header is damaged");
+    if (in.position() > end)
+      in.fail_at(start, "attribute " + one_line(name) + " is longer than it says; the header is damaged");
     in.skip_to(end);
   }
   return any;
 }
 
-void check_window(const HeaderReader& in, const PixelWindow& window, const char* name, std::uint64_t max_pixels) {
+void check_window(const HeaderReader& in, const PixelWindow& window, const char* name,
+                  std::uint64_t max_pixels) {
   constexpr std::int32_t limit = 1 << 30;
   const bool sane = std::abs(std::int64_t(window.x0)) < limit && std::abs(std::int64_t(window.y0)) < limit &&
                     window.width() > 0 && window.height() > 0;
@@ -134,8 +150,8 @@ void check_window(const HeaderReader& in, const PixelWindow& window, const char*
 }
 
 /// Windows and chunks: every part's, since OpenEXR makes offset tables for all of them.
-void check_part(const HeaderReader& in, const ExrClaims& part, std::uint64_t chunk_count, std::uint64_t file_size,
-                std::uint64_t max_pixels) {
+void check_part(const HeaderReader& in, const ExrClaims& part, std::uint64_t chunk_count,
+                std::uint64_t file_size, std::uint64_t max_pixels) {
   check_window(in, part.data, "dataWindow", max_pixels);
   check_window(in, part.display, "displayWindow", max_pixels);
   if (part.channels.empty()) in.fail("no channels; there is nothing to read");
@@ -149,24 +165,27 @@ void check_part(const HeaderReader& in, const ExrClaims& part, std::uint64_t chu
           : up(part.data.height(), part.lines_per_chunk());
   // A chunk has 8 bytes in the offset table and 8 of its own before any sample.
   if (std::max(chunks, chunk_count) > file_size / 16)
-    in.fail("claims " + std::to_string(std::max(chunks, chunk_count)) + " chunks in " + std::to_string(file_size) +
-            " bytes; the file is truncated or damaged");
+    in.fail("claims " + std::to_string(std::max(chunks, chunk_count)) + " chunks in " +
+            std::to_string(file_size) + " bytes; the file is truncated or damaged");
 }
 
 void check_samples(const HeaderReader& in, const ExrClaims& part, std::uint64_t file_size) {
   if (part.deep) in.fail("deep pixels; flatten the image first");
   std::uint64_t bytes_per_pixel = 0;
   for (const auto& channel : part.channels) {
-    if (channel.type < 0 || channel.type > 2) in.fail("channel " + one_line(channel.name) + " has an unknown type");
+    if (channel.type < 0 || channel.type > 2)
+      in.fail("channel " + one_line(channel.name) + " has an unknown type");
     if (channel.x_sampling != 1 || channel.y_sampling != 1)
-      in.fail("channel " + one_line(channel.name) + " is subsampled; write it with one sample for each pixel");
+      in.fail("channel " + one_line(channel.name) +
+              " is subsampled; write it with one sample for each pixel");
     bytes_per_pixel += channel.type == 1 ? 2 : 4;
   }
   const std::uint64_t bytes = bytes_per_pixel * std::uint64_t(part.data.width() * part.data.height());
   if (bytes / kCompressions[std::size_t(part.compression)].expansion > file_size)
     in.fail("claims " + std::to_string(bytes) + " bytes of samples, more than the file's " +
             std::to_string(file_size) + " can hold; it is truncated or damaged");
-  // The display window's rest is not in the file: memory for it is given freely up to a limit, then as deflate would.
+  // The display window's rest is not in the file: memory for it is given freely up to a limit, then as
+  // deflate would.
   const std::uint64_t shown = bytes_per_pixel * std::uint64_t(part.display.width() * part.display.height());
   if (shown > std::max(kFreeDisplayBytes, 1032 * file_size))
     in.fail("displayWindow claims " + std::to_string(shown) + " bytes of samples around a data window of " +
@@ -182,7 +201,8 @@ ExrClaims read_exr_claims(const ByteFile& file, std::uint64_t max_pixels) {
   if (file.size() < 8 || in.number<std::uint32_t>() != 20000630u)
     in.fail_at(0, "not an OpenEXR file; frames are .exr files as in formats/frames/frames.md");
   const auto version = in.number<std::uint32_t>();
-  if ((version & 0xff) != 2 || (version & ~(0xffu | kTiledFlag | kLongNamesFlag | kDeepFlag | kMultipartFlag)))
+  if ((version & 0xff) != 2 ||
+      (version & ~(0xffu | kTiledFlag | kLongNamesFlag | kDeepFlag | kMultipartFlag)))
     in.fail_at(4, "OpenEXR version " + std::to_string(version) + "; version 2 is read");
 
   ExrClaims first;

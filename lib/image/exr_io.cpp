@@ -32,7 +32,7 @@
 namespace tempolux {
 namespace {
 
-constexpr int kSlabLines = 64;     // a multiple of every chunk we write
+constexpr int kSlabLines = 64;  // a multiple of every chunk we write
 constexpr float kLargestHalf = 65504;
 // OpenEXR's level 4 of deflate; the default of a later OpenEXR must not change our bytes.
 constexpr int kDeflateLevel = 4;
@@ -44,8 +44,8 @@ bool is_colour(const std::string& channel) {
 }
 
 std::string pixel_place(const std::string& path, const std::string& channel, std::size_t index, int width) {
-  return path + ": channel " + one_line(channel) + ": pixel (" + std::to_string(index % std::size_t(width)) + ", " +
-         std::to_string(index / std::size_t(width)) + "): ";
+  return path + ": channel " + one_line(channel) + ": pixel (" + std::to_string(index % std::size_t(width)) +
+         ", " + std::to_string(index / std::size_t(width)) + "): ";
 }
 
 /// First index at which `bad` holds, or values.size().
@@ -62,7 +62,8 @@ void check_writable(const std::string& path, const Image& image, bool half) {
   std::set<std::string> names;
   for (const Channel& channel : image.channels) {
     if (channel.name.empty() || channel.name.size() > 255 || !names.insert(channel.name).second)
-      throw std::invalid_argument("save_exr: channel name \"" + channel.name + "\" empty, too long or there twice");
+      throw std::invalid_argument("save_exr: channel name \"" + channel.name +
+                                  "\" empty, too long or there twice");
     if (std::max(channel.values.size(), channel.ids.size()) != image.pixel_count() ||
         (!channel.values.empty() && !channel.ids.empty()))
       throw std::invalid_argument("save_exr: channel " + channel.name + " does not have the image's size");
@@ -81,7 +82,8 @@ void check_writable(const std::string& path, const Image& image, bool half) {
     throw InputError(place + (std::isnan(value) ? "not a number" : "infinite") + "; nothing was written");
   }
   const auto check_finite = [&](const std::string& name, double value) {
-    if (!std::isfinite(value)) throw InputError(path + ": attribute " + name + ": not finite; nothing was written");
+    if (!std::isfinite(value))
+      throw InputError(path + ": attribute " + name + ": not finite; nothing was written");
   };
   for (const auto& [name, value] : image.numbers) check_finite(name, value);
   for (const auto& [name, matrix] : image.matrices)
@@ -101,9 +103,10 @@ Imf::Header make_header(const Image& image, const ExrWriteOptions& options) {
                      zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION);
   header.zipCompressionLevel() = kDeflateLevel;
   for (const Channel& channel : image.channels)
-    header.channels().insert(channel.name, Imf::Channel(!channel.ids.empty()                        ? Imf::UINT
-                                                        : options.half && is_colour(channel.name) ? Imf::HALF
-                                                                                                  : Imf::FLOAT));
+    header.channels().insert(channel.name,
+                             Imf::Channel(!channel.ids.empty()                      ? Imf::UINT
+                                          : options.half && is_colour(channel.name) ? Imf::HALF
+                                                                                    : Imf::FLOAT));
   for (const auto& [name, text] : image.text) header.insert(name, Imf::StringAttribute(text));
   for (const auto& [name, number] : image.numbers) {
     if (name == "framesPerSecond")
@@ -149,7 +152,8 @@ std::string encode_slab(const Image& image, Imf::Header header, int first, int c
   Imf::FrameBuffer lines;
   for (const Channel& channel : image.channels) {
     const Imf::PixelType type = header.channels()[channel.name].type;
-    const void* samples = type == Imf::UINT ? static_cast<const void*>(channel.ids.data() + begin) : channel.values.data() + begin;
+    const void* samples = type == Imf::UINT ? static_cast<const void*>(channel.ids.data() + begin)
+                                            : channel.values.data() + begin;
     if (type == Imf::HALF) {
       const float* values = channel.values.data() + begin;
       halves.emplace_back(values, values + width * std::size_t(count));
@@ -169,7 +173,8 @@ std::string encode_slab(const Image& image, Imf::Header header, int first, int c
   return out.bytes.substr(header_size);
 }
 
-/// Header and offset table as OpenEXR writes them, then the slabs; the table is filled in from the chunks' sizes.
+/// Header and offset table as OpenEXR writes them, then the slabs; the table is filled in from the chunks'
+/// sizes.
 std::string join_slabs(const Imf::Header& header, const std::vector<std::string>& slabs) {
   MemoryOut out;
   { Imf::OutputFile empty(out, header, 0); }
@@ -236,18 +241,25 @@ std::array<double, 16> from_imath(const Matrix& m) {
 }
 
 void read_attributes(const Imf::Header& header, Image& image) {
-  static const std::set<std::string> structural{"pixelAspectRatio", "screenWindowWidth", "type", "chunkCount", "version"};
+  static const std::set<std::string> structural{"pixelAspectRatio", "screenWindowWidth", "type", "chunkCount",
+                                                "version"};
   for (auto it = header.begin(); it != header.end(); ++it) {
     const std::string name = it.name();
     const Imf::Attribute* attribute = &it.attribute();
     if (structural.contains(name)) continue;
-    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(attribute)) image.text[name] = text->value();
-    if (const auto* d = dynamic_cast<const Imf::DoubleAttribute*>(attribute)) image.numbers[name] = d->value();
-    if (const auto* f = dynamic_cast<const Imf::FloatAttribute*>(attribute)) image.numbers[name] = double(f->value());
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(attribute))
+      image.text[name] = text->value();
+    if (const auto* d = dynamic_cast<const Imf::DoubleAttribute*>(attribute))
+      image.numbers[name] = d->value();
+    if (const auto* f = dynamic_cast<const Imf::FloatAttribute*>(attribute))
+      image.numbers[name] = double(f->value());
     if (const auto* i = dynamic_cast<const Imf::IntAttribute*>(attribute)) image.numbers[name] = i->value();
-    if (const auto* r = dynamic_cast<const Imf::RationalAttribute*>(attribute)) image.numbers[name] = double(r->value());
-    if (const auto* m = dynamic_cast<const Imf::M44fAttribute*>(attribute)) image.matrices[name] = from_imath(m->value());
-    if (const auto* m = dynamic_cast<const Imf::M44dAttribute*>(attribute)) image.matrices[name] = from_imath(m->value());
+    if (const auto* r = dynamic_cast<const Imf::RationalAttribute*>(attribute))
+      image.numbers[name] = double(r->value());
+    if (const auto* m = dynamic_cast<const Imf::M44fAttribute*>(attribute))
+      image.matrices[name] = from_imath(m->value());
+    if (const auto* m = dynamic_cast<const Imf::M44dAttribute*>(attribute))
+      image.matrices[name] = from_imath(m->value());
   }
 }
 
@@ -256,7 +268,8 @@ void read_lines(const ByteFile& file, const PixelWindow& data, Image& image, int
   FileIn in(file);
   Imf::MultiPartInputFile parts(in, 0, false);
   if (!parts.partComplete(0))
-    throw InputError(file.path() + ": offset table: lines are missing, the writer did not finish; write it again");
+    throw InputError(file.path() +
+                     ": offset table: lines are missing, the writer did not finish; write it again");
   Imf::InputPart part(parts, 0);
   if (first == 0) read_attributes(part.header(), image);
   const Imath::Box2i window({data.x0, data.y0}, {data.x1, data.y1});
@@ -264,7 +277,8 @@ void read_lines(const ByteFile& file, const PixelWindow& data, Image& image, int
   for (Channel& channel : image.channels) {
     const bool ids = !channel.ids.empty();
     void* samples = ids ? static_cast<void*>(channel.ids.data()) : channel.values.data();
-    lines.insert(channel.name, Imf::Slice::Make(ids ? Imf::UINT : Imf::FLOAT, samples, window, 4, 4 * std::size_t(image.width)));
+    lines.insert(channel.name, Imf::Slice::Make(ids ? Imf::UINT : Imf::FLOAT, samples, window, 4,
+                                                4 * std::size_t(image.width)));
   }
   part.setFrameBuffer(lines);
   part.readPixels(data.y0 + first, data.y0 + last - 1);
@@ -276,7 +290,8 @@ Image read_data_window(const ByteFile& file, const ExrClaims& claims) {
   image.height = int(claims.data.height());
   std::set<std::string> names;
   for (const auto& channel : claims.channels)
-    if (names.insert(channel.name).second) channel.type == 0 ? image.add_ids(channel.name) : image.add(channel.name);
+    if (names.insert(channel.name).second)
+      channel.type == 0 ? image.add_ids(channel.name) : image.add(channel.name);
   std::sort(image.channels.begin(), image.channels.end(),
             [](const Channel& a, const Channel& b) { return a.name < b.name; });
 
@@ -315,7 +330,8 @@ Image placed(Image&& from, const PixelWindow& data, const PixelWindow& display) 
 void check_numbers(const std::string& path, const Image& image) {
   for (const Channel& channel : image.channels) {
     const bool colour = is_colour(channel.name);
-    const std::size_t at = first_bad(channel.values, [&](float v) { return std::isnan(v) || (colour && std::isinf(v)); });
+    const std::size_t at =
+        first_bad(channel.values, [&](float v) { return std::isnan(v) || (colour && std::isinf(v)); });
     if (at < channel.values.size())
       throw InputError(pixel_place(path, channel.name, at, image.width) +
                        (std::isnan(channel.values[at]) ? "not a number" : "infinite") +
@@ -360,7 +376,8 @@ Image load_exr(const std::string& path, const ExrReadOptions& options) {
   } catch (const std::bad_alloc&) {
     throw ResourceError(path + ": not enough memory for its pixels");
   } catch (const std::exception& e) {
-    throw InputError(path + ": pixels: " + one_line(e.what()) + "; the file is damaged or truncated: write it again");
+    throw InputError(path + ": pixels: " + one_line(e.what()) +
+                     "; the file is damaged or truncated: write it again");
   }
   if (claims.data != claims.display) image = placed(std::move(image), claims.data, claims.display);
   if (!options.allow_nan) check_numbers(path, image);

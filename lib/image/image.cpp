@@ -40,7 +40,8 @@ std::array<const std::vector<float>*, 3> Image::rgb(const std::string& layer) co
     const Channel* channel = find(joined(layer, components[c]));
     if (!channel || !channel->ids.empty()) {
       std::string known;
-      for (const std::string& name : layers()) known += (known.empty() ? "" : ", ") + (name.empty() ? "RGB" : name);
+      for (const std::string& name : layers())
+        known += (known.empty() ? "" : ", ") + (name.empty() ? "RGB" : name);
       throw InputError("no colour layer \"" + (layer.empty() ? "RGB" : layer) + "\"; the image has " +
                        (known.empty() ? "none" : known));
     }
@@ -56,9 +57,8 @@ std::vector<std::string> Image::layers() const {
     if (channel.name.size() > 2 && channel.name.ends_with(".R"))
       names.insert(channel.name.substr(0, channel.name.size() - 2));
   }
-  std::erase_if(names, [&](const std::string& name) {
-    return !find(joined(name, "G")) || !find(joined(name, "B"));
-  });
+  std::erase_if(
+      names, [&](const std::string& name) { return !find(joined(name, "G")) || !find(joined(name, "B")); });
   return {names.begin(), names.end()};
 }
 

@@ -20,7 +20,7 @@ namespace {
 struct Session {
   std::jmp_buf back;
   char message[256] = "";
-  const std::uint8_t* data = nullptr;   // reading: what is left
+  const std::uint8_t* data = nullptr;  // reading: what is left
   std::size_t left = 0;
   std::vector<std::uint8_t>* out = nullptr;  // writing
 
@@ -52,7 +52,7 @@ void on_flush(png_structp) {}
 struct Raw {
   png_uint_32 width = 0, height = 0;
   int channels = 0, bits = 0;
-  double gamma = 0;                     // the gAMA chunk's, 0: none
+  double gamma = 0;  // the gAMA chunk's, 0: none
   bool srgb = false;
   std::vector<std::uint8_t> bytes;
 };
@@ -105,10 +105,13 @@ Raw read_raw(const ByteFile& file, std::uint64_t max_pixels) {
   Raw raw;
   if (!start_reading(session, handle.png, handle.info, raw)) fail(one_line(session.message));
   const std::uint64_t pixels = std::uint64_t(raw.width) * raw.height;
-  if (pixels > max_pixels) fail(std::to_string(pixels) + " pixels, over the limit of " + std::to_string(max_pixels));
-  // Deflate makes at most 1032 bytes of one; a palette's index becomes at most 4 bytes, a bit at most 8 times that.
+  if (pixels > max_pixels)
+    fail(std::to_string(pixels) + " pixels, over the limit of " + std::to_string(max_pixels));
+  // Deflate makes at most 1032 bytes of one; a palette's index becomes at most 4 bytes, a bit at most 8 times
+  // that.
   const std::size_t row = std::size_t(raw.width) * std::size_t(raw.channels * raw.bits / 8);
-  if (row * raw.height / (1032 * 32) > bytes.size()) fail("claims more pixels than its bytes can hold; it is damaged");
+  if (row * raw.height / (1032 * 32) > bytes.size())
+    fail("claims more pixels than its bytes can hold; it is damaged");
   raw.bytes.resize(row * raw.height);
   std::vector<png_bytep> rows(raw.height);
   for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = raw.bytes.data() + y * row;
@@ -120,12 +123,15 @@ Raw read_raw(const ByteFile& file, std::uint64_t max_pixels) {
 std::vector<float> linear_table(const Raw& raw, std::string& transfer) {
   const std::size_t codes = raw.bits == 16 ? 65536 : 256;
   const bool power = !raw.srgb && raw.gamma > 0 && std::abs(raw.gamma - 0.45455) > 0.005;
-  transfer = !power ? "sRGB" : raw.gamma > 0.995 && raw.gamma < 1.005 ? "linear" : "gamma " + std::to_string(raw.gamma);
+  transfer = !power                                   ? "sRGB"
+             : raw.gamma > 0.995 && raw.gamma < 1.005 ? "linear"
+                                                      : "gamma " + std::to_string(raw.gamma);
   std::vector<float> table(codes);
   for (std::size_t code = 0; code < codes; ++code) {
     const double encoded = double(code) / double(codes - 1);
-    table[code] = !power ? srgb_to_linear(float(encoded))
-                  : transfer == "linear" ? float(encoded) : float(std::pow(encoded, 1 / raw.gamma));
+    table[code] = !power                 ? srgb_to_linear(float(encoded))
+                  : transfer == "linear" ? float(encoded)
+                                         : float(std::pow(encoded, 1 / raw.gamma));
   }
   return table;
 }
@@ -175,7 +181,8 @@ Image load_png(const std::string& path, std::uint64_t max_pixels) {
   };
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {
     const float a = alpha ? float(code(i * channels + channels - 1)) / float(linear.size() - 1) : 1.0f;
-    for (std::size_t c = 0; c < 3; ++c) image.channels[c].values[i] = a * linear[code(i * channels + (grey ? 0 : c))];
+    for (std::size_t c = 0; c < 3; ++c)
+      image.channels[c].values[i] = a * linear[code(i * channels + (grey ? 0 : c))];
     if (alpha) image.channels[3].values[i] = a;
   }
   return image;

@@ -8,14 +8,14 @@
 
 namespace tempolux {
 
-/// Reads a PNG of any kind (grey, palette, 1 to 16 bits, interlaced) as linear R, G, B, premultiplied, with A if it has
-/// transparency. Samples are sRGB, or a power law where a gAMA chunk says another exponent. The text attribute
-/// "tempolux:source" says what was done. Size is checked against max_pixels and against the file's bytes first.
-/// Throws InputError "FILE: ..." for what is not a PNG, damaged or truncated.
+/// Reads a PNG of any kind (grey, palette, 1 to 16 bits, interlaced) as linear R, G, B, premultiplied, with A
+/// if it has transparency. Samples are sRGB, or a power law where a gAMA chunk says another exponent. The
+/// text attribute "tempolux:source" says what was done. Size is checked against max_pixels and against the
+/// file's bytes first. Throws InputError "FILE: ..." for what is not a PNG, damaged or truncated.
 Image load_png(const std::string& path, std::uint64_t max_pixels);
 
-/// sRGB transfer (IEC 61966-2-1), encoded [0, 1] to linear [0, 1] and back; values below 0 give 0 in the latter, above
-/// 1 give 1.
+/// sRGB transfer (IEC 61966-2-1), encoded [0, 1] to linear [0, 1] and back; values below 0 give 0 in the
+/// latter, above 1 give 1.
 float srgb_to_linear(float encoded);
 float linear_to_srgb(float linear);
 

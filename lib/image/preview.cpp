@@ -13,14 +13,16 @@
 namespace tempolux {
 namespace {
 
-constexpr double kAutoTarget = 0.9;          // where the bright end of a picture goes, before the transfer
+constexpr double kAutoTarget = 0.9;  // where the bright end of a picture goes, before the transfer
 constexpr double kAutoPercentile = 0.98;
-constexpr float kNothingDepth = 1e10f;       // what Blender writes where nothing is
+constexpr float kNothingDepth = 1e10f;  // what Blender writes where nothing is
 constexpr std::uint32_t kNothingId = 0xffffffffu;
 
 using Planes = std::vector<const std::vector<float>*>;
 
-std::string component(const std::string& layer, const char* name) { return layer.empty() ? name : layer + "." + name; }
+std::string component(const std::string& layer, const char* name) {
+  return layer.empty() ? name : layer + "." + name;
+}
 
 /// The planes LAYER.a, LAYER.b ... or none unless all are there.
 Planes planes_of(const Image& image, const std::string& layer, std::initializer_list<const char*> names) {
@@ -36,7 +38,7 @@ Planes planes_of(const Image& image, const std::string& layer, std::initializer_
 /// What a layer's name means in this image, decided once.
 struct Content {
   enum class Kind { colour, depth, vector, motion, ids } kind;
-  Planes planes;                             // 3, 2 or 1; none of ids
+  Planes planes;  // 3, 2 or 1; none of ids
   const std::vector<std::uint32_t>* ids = nullptr;
 };
 
@@ -45,7 +47,8 @@ Content find_content(const Image& image, const std::string& layer) {
   if (auto planes = planes_of(image, layer, {"R", "G", "B"}); !planes.empty()) return {Kind::colour, planes};
   if (const Channel* channel = image.find(layer)) {
     if (!channel->ids.empty()) return {Kind::ids, {}, &channel->ids};
-    const bool depth = layer == "Z" || (layer.ends_with(".Z") && !image.find(layer.substr(0, layer.size() - 1) + "X"));
+    const bool depth =
+        layer == "Z" || (layer.ends_with(".Z") && !image.find(layer.substr(0, layer.size() - 1) + "X"));
     return {depth ? Kind::depth : Kind::colour, {&channel->values}};
   }
   if (auto planes = planes_of(image, layer, {"X", "Y", "Z"}); !planes.empty()) return {Kind::vector, planes};
@@ -170,7 +173,9 @@ Picture id_picture(const Image& image, const std::vector<std::uint32_t>& ids) {
 
 }  // namespace
 
-double auto_exposure_stops(const Image& image, const std::string& layer) { return stops_of(find_content(image, layer)); }
+double auto_exposure_stops(const Image& image, const std::string& layer) {
+  return stops_of(find_content(image, layer));
+}
 
 Picture make_picture(const Image& image, const PreviewOptions& options) {
   const Content content = find_content(image, options.layer);
@@ -178,14 +183,18 @@ Picture make_picture(const Image& image, const PreviewOptions& options) {
   const auto scale = float(std::exp2(stops));
   const Planes& planes = content.planes;
   switch (content.kind) {
-    case Content::Kind::depth: return depth_picture(image, *planes[0]);
-    case Content::Kind::vector: return vector_picture(image, planes);
-    case Content::Kind::ids: return id_picture(image, *content.ids);
+    case Content::Kind::depth:
+      return depth_picture(image, *planes[0]);
+    case Content::Kind::vector:
+      return vector_picture(image, planes);
+    case Content::Kind::ids:
+      return id_picture(image, *content.ids);
     case Content::Kind::motion:
       return shade_pixels(image, [&](std::size_t i) {
         return Pixel{0.5f + 0.5f * scale * (*planes[0])[i], 0.5f + 0.5f * scale * (*planes[1])[i], 0.5f};
       });
-    case Content::Kind::colour: break;
+    case Content::Kind::colour:
+      break;
   }
   return colour_picture(image, planes, scale);
 }

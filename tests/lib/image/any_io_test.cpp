@@ -20,26 +20,28 @@ std::uint32_t crc(const std::string& bytes) {
   }
   return ~value;
 }
-std::string big_endian(std::uint32_t v) {
-  return {char(v >> 24), char(v >> 16), char(v >> 8), char(v)};
-}
+std::string big_endian(std::uint32_t v) { return {char(v >> 24), char(v >> 16), char(v >> 8), char(v)}; }
 std::string png_chunk(const std::string& type, const std::string& data) {
   return big_endian(std::uint32_t(data.size())) + type + data + big_endian(crc(type + data));
 }
 /// A PNG of one row of filtered bytes, deflated as a stored block.
-std::string png(std::uint32_t width, char bits, char colour, const std::string& samples, const std::string& extra = "") {
+std::string png(std::uint32_t width, char bits, char colour, const std::string& samples,
+                const std::string& extra = "") {
   const std::string row = '\0' + samples;
   std::uint32_t a = 1, b = 0;
   for (unsigned char byte : row) a = (a + byte) % 65521, b = (b + a) % 65521;
   const auto size = std::uint16_t(row.size());
-  const std::string data = std::string("\x78\x01\x01", 3) + raw(size) + raw(std::uint16_t(~size)) + row + big_endian(b << 16 | a);
-  return "\x89PNG\r\n\x1a\n" + png_chunk("IHDR", big_endian(width) + big_endian(1) + bits + colour + std::string(3, '\0')) + extra +
+  const std::string data =
+      std::string("\x78\x01\x01", 3) + raw(size) + raw(std::uint16_t(~size)) + row + big_endian(b << 16 | a);
+  return "\x89PNG\r\n\x1a\n" +
+         png_chunk("IHDR", big_endian(width) + big_endian(1) + bits + colour + std::string(3, '\0')) + extra +
          png_chunk("IDAT", data) + png_chunk("IEND", "");
 }
 
 /// Two pixels, RGBE: (1, 0.5, 0.25) has exponent byte 129 (2^(129-136) = 1/128) and mantissas 128, 64, 32.
 std::string tiny_hdr() {
-  return "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" + std::string("\x80\x40\x20\x81\x80\x80\x80\x8b", 8);
+  return "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" +
+         std::string("\x80\x40\x20\x81\x80\x80\x80\x8b", 8);
 }
 
 bool module_is_there() {
@@ -63,7 +65,8 @@ TEST(AnyImage, SixteenBitPngKeepsItsDigits) {
   const Folder folder;
   put_bytes(folder / "a.png", png(1, 16, 0, "\x12\x34"));
   const double encoded = 0x1234 / 65535.0;  // 0.0711: above the linear foot
-  EXPECT_NEAR(load_image(folder / "a.png").find("G")->values[0], std::pow((encoded + 0.055) / 1.055, 2.4), 1e-8);
+  EXPECT_NEAR(load_image(folder / "a.png").find("G")->values[0], std::pow((encoded + 0.055) / 1.055, 2.4),
+              1e-8);
   // A gAMA chunk of 1 says the samples are linear.
   put_bytes(folder / "a.png", png(1, 16, 0, "\x12\x34", png_chunk("gAMA", big_endian(100000))));
   const Image image = load_image(folder / "a.png");
@@ -74,7 +77,8 @@ TEST(AnyImage, SixteenBitPngKeepsItsDigits) {
 TEST(AnyImage, PngAlphaIsPremultipliedAndPalettesAreExpanded) {
   const Folder folder;
   put_bytes(folder / "a.png", png(1, 8, 6, "\xff\x80\x00\x33" + std::string()));
-  EXPECT_NE(message_of<InputError>([&] { load_image(folder / "a.png"); }), "");  // the literal ended at its zero byte
+  EXPECT_NE(message_of<InputError>([&] { load_image(folder / "a.png"); }),
+            "");  // the literal ended at its zero byte
   put_bytes(folder / "a.png", png(1, 8, 6, std::string("\xff\x00\x00\x33", 4)));
   const Image image = load_image(folder / "a.png");
   EXPECT_FLOAT_EQ(image.find("A")->values[0], 0.2f);
@@ -98,14 +102,18 @@ TEST(AnyImage, DamagedPngIsOneLineNeverACrash) {
     put_bytes(path, bytes);
     message_of<InputError>([&] { load_image(path); });
   }
-  put_bytes(path, "\x89PNG\r\n\x1a\n" + png_chunk("IHDR", big_endian(60000) + big_endian(8000) + "\x10\x06" + std::string(3, '\0')) +
-                      png_chunk("IDAT", "x"));
-  EXPECT_NE(message_of<InputError>([&] { load_image(path); }).find("more pixels than its bytes"), std::string::npos);
+  put_bytes(path,
+            "\x89PNG\r\n\x1a\n" +
+                png_chunk("IHDR", big_endian(60000) + big_endian(8000) + "\x10\x06" + std::string(3, '\0')) +
+                png_chunk("IDAT", "x"));
+  EXPECT_NE(message_of<InputError>([&] { load_image(path); }).find("more pixels than its bytes"),
+            std::string::npos);
 }
 
 TEST(AnyImage, UnknownFormatsAreRefusedByName) {
   const Folder folder;
-  for (const std::string& bytes : {std::string(), std::string("GIF89a"), std::string("8BPS\0\1", 6), std::string(100, 'x')}) {
+  for (const std::string& bytes :
+       {std::string(), std::string("GIF89a"), std::string("8BPS\0\1", 6), std::string(100, 'x')}) {
     put_bytes(folder / "a.hdr", bytes);
     const std::string message = message_of<InputError>([&] { load_image(folder / "a.hdr"); });
     EXPECT_NE(message.find("not an image we read"), std::string::npos) << message;
@@ -115,8 +123,12 @@ TEST(AnyImage, UnknownFormatsAreRefusedByName) {
 TEST(AnyImage, WithoutTheModuleTheMessageSaysWhatToDo) {
   const Folder folder;
   put_bytes(folder / "a.hdr", tiny_hdr());
-  const std::string message = message_of<InputError>([&] { load_image(folder / "a.hdr", {100, {folder / "nowhere"}}); });
-  EXPECT_NE(message.find("a.hdr: reading hdr needs tempolux-oiio.so, which was not built or not installed"), std::string::npos) << message;
+  const std::string message = message_of<InputError>([&] {
+    load_image(folder / "a.hdr", {100, {folder / "nowhere"}});
+  });
+  EXPECT_NE(message.find("a.hdr: reading hdr needs tempolux-oiio.so, which was not built or not installed"),
+            std::string::npos)
+      << message;
   EXPECT_NE(message.find("nowhere"), std::string::npos);
   put_bytes(folder / "tempolux-oiio.so", "not a library");
   EXPECT_THROW(load_image(folder / "a.hdr", {100, {folder / "."}}), InputError);
@@ -129,7 +141,8 @@ TEST(AnyImage, TheModuleReadsRadianceHdr) {
   const Image image = load_image(folder / "a.hdr");
   ASSERT_EQ(image.width, 2);
   ASSERT_EQ(image.height, 1);
-  // Radiance decodes a mantissa m as (m + 1/2) or m by convention; either is within half a step of 1/128 (2^3 for the second).
+  // Radiance decodes a mantissa m as (m + 1/2) or m by convention; either is within half a step of 1/128 (2^3
+  // for the second).
   const float expected[3][2] = {{1, 1024}, {0.5f, 1024}, {0.25f, 1024}};
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(image.channels[c].values[0], expected[c][0], 0.51 / 128) << c;
@@ -163,8 +176,11 @@ TEST(AnyImage, TheModuleReadsGreyTiffAsSrgb) {
   const Folder folder;
   // A TIFF of 2 x 1 grey bytes: width, height, bits, no compression, black is zero, offset, rows, bytes.
   std::string directory = raw(std::uint16_t(8));
-  const auto entry = [&](int tag, int value) { directory += raw(std::uint16_t(tag)) + raw(std::uint16_t(4)) + raw(1) + raw(value); };
-  entry(256, 2), entry(257, 1), entry(258, 8), entry(259, 1), entry(262, 1), entry(273, 8), entry(278, 1), entry(279, 2);
+  const auto entry = [&](int tag, int value) {
+    directory += raw(std::uint16_t(tag)) + raw(std::uint16_t(4)) + raw(1) + raw(value);
+  };
+  entry(256, 2), entry(257, 1), entry(258, 8), entry(259, 1), entry(262, 1), entry(273, 8), entry(278, 1),
+      entry(279, 2);
   put_bytes(folder / "a.tif", std::string("II*\0", 4) + raw(10) + "\xff\x80" + directory + raw(0));
   const Image image = load_image(folder / "a.tif");
   EXPECT_EQ(image.find("R")->values[0], 1);

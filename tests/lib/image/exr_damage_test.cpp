@@ -1,4 +1,5 @@
-// Damaged and lying EXR files: an InputError of one line, or an image; never a crash, never memory by a number unchecked.
+// Damaged and lying EXR files: an InputError of one line, or an image; never a crash, never memory by a
+// number unchecked.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -17,7 +18,8 @@ Image small_image() {
   image.height = 40;  // three ZIP chunks
   const PathRandom random(3, 4);
   for (const char* name : {"R", "G", "B", "Z"})
-    for (float& value : image.add(name).values) value = random.get1(0, Purpose::test, std::uint32_t(&value - image.channels.back().values.data()) / 5);
+    for (float& value : image.add(name).values)
+      value = random.get1(0, Purpose::test, std::uint32_t(&value - image.channels.back().values.data()) / 5);
   image.add_ids("id.object").ids[7] = 9;
   image.text["tempolux:history"] = "0.1.0 test\n";
   image.matrices["worldToCamera"] = {};
@@ -33,7 +35,8 @@ void expect_good_message(const std::string& message, const std::string& file) {
 
 class ExrDamage : public testing::TestWithParam<ExrWriteOptions::Compression> {};
 INSTANTIATE_TEST_SUITE_P(Compressions, ExrDamage,
-                         testing::Values(ExrWriteOptions::Compression::none, ExrWriteOptions::Compression::zip));
+                         testing::Values(ExrWriteOptions::Compression::none,
+                                         ExrWriteOptions::Compression::zip));
 
 TEST_P(ExrDamage, EveryTruncationIsAnError) {
   const Folder folder;
@@ -100,7 +103,8 @@ long peak() {
 TEST(ExrClaims, LyingHeadersAreRefusedBeforeMemoryIsTaken) {
   const Folder folder;
   const std::string path = folder / "a.exr";
-  const std::string one = exr::box(0, 0, 0, 0), rgb = exr::channel("B", 2) + exr::channel("G", 2) + exr::channel("R", 2);
+  const std::string one = exr::box(0, 0, 0, 0),
+                    rgb = exr::channel("B", 2) + exr::channel("G", 2) + exr::channel("R", 2);
   const auto refusal = [&](const std::string& bytes) {
     put_bytes(path, bytes + std::string(4096, '\0'));
     const std::string message = message_of<InputError>([&] { load_exr(path); });
@@ -117,16 +121,23 @@ TEST(ExrClaims, LyingHeadersAreRefusedBeforeMemoryIsTaken) {
   says(exr::magic() + exr::header(rgb, one, big(60000, 60000), 3) + '\0', "over the limit");
   says(exr::magic() + exr::header(rgb, one, big(20000, 20000), 3) + '\0', "crop the display window");
   says(exr::magic() + exr::header(rgb, big(70000, 2), one, 3) + '\0', "at most 65536 a side");
-  says(exr::magic() + exr::header(rgb, exr::box(-2147483647, 0, 2147483647, 0), one, 3) + '\0', "out of range");
+  says(exr::magic() + exr::header(rgb, exr::box(-2147483647, 0, 2147483647, 0), one, 3) + '\0',
+       "out of range");
   says(exr::magic() + exr::header(rgb, exr::box(1, 0, 0, 0), one) + '\0', "empty");
-  says(exr::magic() + exr::header(rgb, big(20000, 1000), one, 3) + '\0', "can hold");             // 240 MB from 4.5 kB
+  says(exr::magic() + exr::header(rgb, big(20000, 1000), one, 3) + '\0', "can hold");  // 240 MB from 4.5 kB
   says(exr::magic() + exr::header(rgb, big(1, 60000), one, 2) + '\0', "chunks");
-  says(exr::magic(0x200) + exr::header(rgb, big(20000, 20000), one, 3) + exr::attribute("tiles", "tiledesc", raw(1u) + raw(1u) + '\0') + '\0',
+  says(exr::magic(0x200) + exr::header(rgb, big(20000, 20000), one, 3) +
+           exr::attribute("tiles", "tiledesc", raw(1u) + raw(1u) + '\0') + '\0',
        "chunks");
-  says(exr::magic() + exr::attribute("comments", "string", "x").substr(0, 16) + raw(0x7fffffff), "claims 2147483647 bytes");
-  says(exr::magic(0x1000) + exr::header(rgb, one, one) + exr::attribute("chunkCount", "int", raw(0x7fffffff)) + '\0' + '\0', "chunks");
+  says(exr::magic() + exr::attribute("comments", "string", "x").substr(0, 16) + raw(0x7fffffff),
+       "claims 2147483647 bytes");
+  says(exr::magic(0x1000) + exr::header(rgb, one, one) +
+           exr::attribute("chunkCount", "int", raw(0x7fffffff)) + '\0' + '\0',
+       "chunks");
   says(exr::magic() + exr::header(exr::channel("RY", 2, 2), one, one) + '\0', "subsampled");
-  says(exr::magic(0x800) + exr::header(rgb, one, one) + exr::attribute("type", "string", "deepscanline") + '\0', "deep");
+  says(exr::magic(0x800) + exr::header(rgb, one, one) + exr::attribute("type", "string", "deepscanline") +
+           '\0',
+       "deep");
   says(exr::magic() + exr::header("", one, one) + '\0', "no channels");
   says(exr::magic() + exr::header(rgb, one, one, 17) + '\0', "compression");
   says(raw(20000630) + raw(3), "version");
@@ -142,7 +153,8 @@ TEST(ExrClaims, TheLimitOfPixelsIsTheCallers) {
 }
 
 TEST(ExrClaims, AFlatImageIsSmallAndStillRead) {
-  // 256 x 4096 equal pixels, 16 MiB of samples: deflate comes near its limit of 1032, which must not look like a lie.
+  // 256 x 4096 equal pixels, 16 MiB of samples: deflate comes near its limit of 1032, which must not look
+  // like a lie.
   const Folder folder;
   Image image;
   image.width = 256;

@@ -25,17 +25,20 @@ Image random_image(int width, int height) {
   const PathRandom random(1, 2);
   std::uint32_t extra = 0;
   for (const char* name : {"A", "B", "G", "N.X", "N.Y", "N.Z", "R", "Z", "direct.B", "direct.G", "direct.R"})
-    for (float& value : image.add(name).values)
-      do value = std::bit_cast<float>(std::uint32_t(random.bits(0, Purpose::test, extra++)));
+    for (float& value : image.add(name).values) do
+        value = std::bit_cast<float>(std::uint32_t(random.bits(0, Purpose::test, extra++)));
       while (!std::isfinite(value));
-  for (std::uint32_t& id : image.add_ids("id.object").ids) id = std::uint32_t(random.bits(0, Purpose::test, extra++));
+  for (std::uint32_t& id : image.add_ids("id.object").ids)
+    id = std::uint32_t(random.bits(0, Purpose::test, extra++));
   image.find("Z")->values[0] = INFINITY;
   image.find("R")->values[0] = -0.0f;
   image.find("G")->values[0] = std::numeric_limits<float>::denorm_min();
   return image;
 }
 
-bool same_bits(const Image& a, const Image& b) { return a.width == b.width && a.height == b.height && digest_of(a) == digest_of(b); }
+bool same_bits(const Image& a, const Image& b) {
+  return a.width == b.width && a.height == b.height && digest_of(a) == digest_of(b);
+}
 
 TEST(Exr, FloatsAndIdsComeBackToTheBit) {
   const Folder folder;
@@ -49,7 +52,9 @@ TEST(Exr, FloatsAndIdsComeBackToTheBit) {
       EXPECT_EQ(back.channels[c].ids, image.channels[c].ids);
       ASSERT_EQ(back.channels[c].values.size(), image.channels[c].values.size());
       if (!image.channels[c].values.empty()) {
-        EXPECT_EQ(std::memcmp(back.channels[c].values.data(), image.channels[c].values.data(), 4 * image.pixel_count()), 0)
+        EXPECT_EQ(std::memcmp(back.channels[c].values.data(), image.channels[c].values.data(),
+                              4 * image.pixel_count()),
+                  0)
             << image.channels[c].name;
       }
     }
@@ -110,14 +115,17 @@ TEST(Exr, HalvesRoundToNearestEvenAndOnlyColourIsHalved) {
   Image image;
   image.width = 4;
   image.height = 1;
-  // float16 has 10 bits of fraction: 1 + 2^-11 lies midway between 1 and 1 + 2^-10, 1 + 3*2^-11 midway to 1 + 2^-9.
+  // float16 has 10 bits of fraction: 1 + 2^-11 lies midway between 1 and 1 + 2^-10, 1 + 3*2^-11 midway to 1 +
+  // 2^-9.
   const std::vector<float> values{1 + 0x1p-11f, 1 + 0x3p-11f, 65504, -65504};
-  for (const char* name : {"R", "indirect.G", "A", "Z", "N.X", "P.Z", "forward.u", "mask"}) image.add(name).values = values;
+  for (const char* name : {"R", "indirect.G", "A", "Z", "N.X", "P.Z", "forward.u", "mask"})
+    image.add(name).values = values;
   save_exr(folder / "a.exr", image, {true});
   const Image back = load_exr(folder / "a.exr");
   for (const char* name : {"R", "indirect.G", "A"})
     EXPECT_EQ(back.find(name)->values, (std::vector<float>{1, 1 + 0x1p-9f, 65504, -65504})) << name;
-  for (const char* name : {"Z", "N.X", "P.Z", "forward.u", "mask"}) EXPECT_EQ(back.find(name)->values, values) << name;
+  for (const char* name : {"Z", "N.X", "P.Z", "forward.u", "mask"})
+    EXPECT_EQ(back.find(name)->values, values) << name;
 }
 
 TEST(Exr, ValuesAboveHalfAreRefusedWithTheirPlace) {
@@ -142,21 +150,26 @@ TEST(Exr, NotANumberIsNeitherWrittenNorRead) {
     Image bad = image;
     bad.find(name)->values[5] = NAN;
     const std::string message = message_of<InputError>([&] { save_exr(folder / "a.exr", bad); });
-    EXPECT_NE(message.find("channel " + std::string(name) + ": pixel (2, 1): not a number"), std::string::npos) << message;
+    EXPECT_NE(message.find("channel " + std::string(name) + ": pixel (2, 1): not a number"),
+              std::string::npos)
+        << message;
   }
   for (const char* name : {"R", "N.Z"}) {
     Image bad = image;
     bad.find(name)->values[3] = -INFINITY;
     const std::string message = message_of<InputError>([&] { save_exr(folder / "a.exr", bad); });
-    EXPECT_NE(message.find("channel " + std::string(name) + ": pixel (0, 1): infinite"), std::string::npos) << message;
+    EXPECT_NE(message.find("channel " + std::string(name) + ": pixel (0, 1): infinite"), std::string::npos)
+        << message;
   }
   image.find("Z")->values[0] = -INFINITY;
   EXPECT_THROW(save_exr(folder / "a.exr", image), InputError);
   EXPECT_FALSE(std::filesystem::exists(folder / "a.exr"));
 
   // A stranger's file: one pixel of R whose four bytes say NaN.
-  const std::string head = exr::magic() + exr::header(exr::channel("R", 2), exr::box(0, 0, 0, 0), exr::box(0, 0, 0, 0)) + '\0';
-  put_bytes(folder / "nan.exr", head + raw(std::uint64_t(head.size() + 8)) + raw(0) + raw(4) + raw(std::nanf("")));
+  const std::string head =
+      exr::magic() + exr::header(exr::channel("R", 2), exr::box(0, 0, 0, 0), exr::box(0, 0, 0, 0)) + '\0';
+  put_bytes(folder / "nan.exr",
+            head + raw(std::uint64_t(head.size() + 8)) + raw(0) + raw(4) + raw(std::nanf("")));
   const std::string message = message_of<InputError>([&] { load_exr(folder / "nan.exr"); });
   EXPECT_NE(message.find("nan.exr: channel R: pixel (0, 0): not a number"), std::string::npos) << message;
   EXPECT_TRUE(std::isnan(load_exr(folder / "nan.exr", {1, true}).find("R")->values[0]));
@@ -165,8 +178,10 @@ TEST(Exr, NotANumberIsNeitherWrittenNorRead) {
 TEST(Exr, DataWindowIsPlacedIntoTheDisplayWindow) {
   const Folder folder;
   // Display 3 x 2 at (10, 20); data 3 x 2 at (9, 21): its left column and lower line fall outside.
-  const std::string head =
-      exr::magic() + exr::header(exr::channel("Y", 2) + exr::channel("id", 0), exr::box(9, 21, 11, 22), exr::box(10, 20, 12, 21)) + '\0';
+  const std::string head = exr::magic() +
+                           exr::header(exr::channel("Y", 2) + exr::channel("id", 0), exr::box(9, 21, 11, 22),
+                                       exr::box(10, 20, 12, 21)) +
+                           '\0';
   std::string table, chunks;
   for (int line = 0; line < 2; ++line) {
     table += raw(std::uint64_t(head.size() + 16 + chunks.size()));
@@ -184,8 +199,10 @@ TEST(Exr, DataWindowIsPlacedIntoTheDisplayWindow) {
 
 TEST(Exr, TilesAreRead) {
   const Folder folder;
-  // 3 x 2 pixels in tiles of 2 x 2, half: the second tile is one column wide. 0x3c00 is 1, 0x4000 is 2, 0x4400 is 4.
-  const std::string head = exr::magic(0x200) + exr::header(exr::channel("R", 1), exr::box(0, 0, 2, 1), exr::box(0, 0, 2, 1)) +
+  // 3 x 2 pixels in tiles of 2 x 2, half: the second tile is one column wide. 0x3c00 is 1, 0x4000 is 2,
+  // 0x4400 is 4.
+  const std::string head = exr::magic(0x200) +
+                           exr::header(exr::channel("R", 1), exr::box(0, 0, 2, 1), exr::box(0, 0, 2, 1)) +
                            exr::attribute("tiles", "tiledesc", raw(2u) + raw(2u) + '\0') + '\0';
   const auto tile = [](int x, std::vector<std::uint16_t> samples) {
     std::string bytes = raw(x) + raw(0) + raw(0) + raw(0) + raw(std::int32_t(2 * samples.size()));
@@ -193,7 +210,8 @@ TEST(Exr, TilesAreRead) {
     return bytes;
   };
   const std::string first = tile(0, {0x3c00, 0x4000, 0x4400, 0}), second = tile(1, {0x4000, 0x3c00});
-  put_bytes(folder / "a.exr", head + raw(std::uint64_t(head.size() + 16)) + raw(std::uint64_t(head.size() + 16 + first.size())) + first + second);
+  put_bytes(folder / "a.exr", head + raw(std::uint64_t(head.size() + 16)) +
+                                  raw(std::uint64_t(head.size() + 16 + first.size())) + first + second);
   EXPECT_EQ(load_exr(folder / "a.exr").find("R")->values, (std::vector<float>{1, 2, 2, 4, 0, 1}));
 }
 
@@ -201,11 +219,13 @@ TEST(Exr, OfAMultiPartFileTheFirstPartIsRead) {
   const Folder folder;
   std::string head = exr::magic(0x1000);
   for (const char* name : {"one", "two"})
-    head += exr::header(exr::channel("R", 2), exr::box(0, 0, 0, 0), exr::box(0, 0, 0, 0)) + exr::attribute("chunkCount", "int", raw(1)) +
-            exr::attribute("name", "string", name) + exr::attribute("type", "string", "scanlineimage") + '\0';
+    head += exr::header(exr::channel("R", 2), exr::box(0, 0, 0, 0), exr::box(0, 0, 0, 0)) +
+            exr::attribute("chunkCount", "int", raw(1)) + exr::attribute("name", "string", name) +
+            exr::attribute("type", "string", "scanlineimage") + '\0';
   head += '\0';
   const auto chunk = [](int part, float value) { return raw(part) + raw(0) + raw(4) + raw(value); };
-  put_bytes(folder / "a.exr", head + raw(std::uint64_t(head.size() + 16)) + raw(std::uint64_t(head.size() + 32)) + chunk(0, 5) + chunk(1, 6));
+  put_bytes(folder / "a.exr", head + raw(std::uint64_t(head.size() + 16)) +
+                                  raw(std::uint64_t(head.size() + 32)) + chunk(0, 5) + chunk(1, 6));
   EXPECT_EQ(load_exr(folder / "a.exr").find("R")->values, std::vector<float>{5});
 }
 

@@ -19,7 +19,9 @@ namespace tempolux {
 /// A folder that is gone after the test.
 class Folder {
  public:
-  Folder() : path_(std::filesystem::temp_directory_path() / ("tempolux-image-" + std::to_string(getpid()) + "-" + unique())) {
+  Folder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("tempolux-image-" + std::to_string(getpid()) + "-" + unique())) {
     std::filesystem::create_directories(path_);
   }
   ~Folder() { std::filesystem::remove_all(path_); }
@@ -70,11 +72,15 @@ inline std::string channel(const std::string& name, int type, int sampling = 1) 
   return z(name) + raw(type) + raw(0) + raw(sampling) + raw(sampling);
 }
 /// Header attributes without the end; `channels` are in order of their names.
-inline std::string header(const std::string& channels, const std::string& data, const std::string& display, char compression = 0) {
-  return attribute("channels", "chlist", channels + '\0') + attribute("compression", "compression", std::string(1, compression)) +
+inline std::string header(const std::string& channels, const std::string& data, const std::string& display,
+                          char compression = 0) {
+  return attribute("channels", "chlist", channels + '\0') +
+         attribute("compression", "compression", std::string(1, compression)) +
          attribute("dataWindow", "box2i", data) + attribute("displayWindow", "box2i", display) +
-         attribute("lineOrder", "lineOrder", std::string(1, '\0')) + attribute("pixelAspectRatio", "float", raw(1.0f)) +
-         attribute("screenWindowCenter", "v2f", raw(0.0f) + raw(0.0f)) + attribute("screenWindowWidth", "float", raw(1.0f));
+         attribute("lineOrder", "lineOrder", std::string(1, '\0')) +
+         attribute("pixelAspectRatio", "float", raw(1.0f)) +
+         attribute("screenWindowCenter", "v2f", raw(0.0f) + raw(0.0f)) +
+         attribute("screenWindowWidth", "float", raw(1.0f));
 }
 inline std::string magic(std::uint32_t flags = 0) { return raw(std::uint32_t(20000630)) + raw(2u | flags); }
 

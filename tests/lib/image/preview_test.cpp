@@ -17,7 +17,9 @@ Image row(std::vector<std::pair<std::string, std::vector<float>>> channels) {
   for (auto& [name, values] : channels) image.add(name).values = values;
   return image;
 }
-Image grey_row(const std::vector<float>& values) { return row({{"R", values}, {"G", values}, {"B", values}}); }
+Image grey_row(const std::vector<float>& values) {
+  return row({{"R", values}, {"G", values}, {"B", values}});
+}
 
 std::vector<int> pixel(const Picture& picture, int x, int y = 0) {
   const std::uint8_t* p = picture.rgb.data() + 3 * (y * picture.width + x);
@@ -57,7 +59,8 @@ TEST(Preview, AutoExposureMapsThe98thPercentileTo09) {
 
 TEST(Preview, SignedLayersAreGreyRedAndBlue) {
   // The largest component decides: red up and green down by less is still "above".
-  const Picture picture = make_picture(row({{"d.R", {0, 1, 0, 0.5f}}, {"d.G", {0, 0, -1, -0.25f}}, {"d.B", {0, 0, 0, 0}}}), {"d", 0.0});
+  const Picture picture = make_picture(
+      row({{"d.R", {0, 1, 0, 0.5f}}, {"d.G", {0, 0, -1, -0.25f}}, {"d.B", {0, 0, 0, 0}}}), {"d", 0.0});
   EXPECT_EQ(pixel(picture, 0), (std::vector<int>{128, 128, 128}));
   EXPECT_EQ(pixel(picture, 1), (std::vector<int>{255, 51, 0}));
   EXPECT_EQ(pixel(picture, 2), (std::vector<int>{0, 64, 255}));
@@ -75,9 +78,14 @@ TEST(Preview, DepthIsBrightNearDarkFarAndBlackForNothing) {
 }
 
 TEST(Preview, NormalsPositionsMotionAndIds) {
-  Image image = row({{"N.X", {1, -1, 0}}, {"N.Y", {0, 0, 1}}, {"N.Z", {0, 0, 0}},
-                     {"P.X", {-5, 0, 5}}, {"P.Y", {2, 2, 2}}, {"P.Z", {0, 10, 5}},
-                     {"forward.u", {0, 4, -4}}, {"forward.v", {0, 0, 2}}});
+  Image image = row({{"N.X", {1, -1, 0}},
+                     {"N.Y", {0, 0, 1}},
+                     {"N.Z", {0, 0, 0}},
+                     {"P.X", {-5, 0, 5}},
+                     {"P.Y", {2, 2, 2}},
+                     {"P.Z", {0, 10, 5}},
+                     {"forward.u", {0, 4, -4}},
+                     {"forward.v", {0, 0, 2}}});
   image.add_ids("id.object").ids = {0, 0xffffffffu, 1};
   const Picture normal = make_picture(image, {"N", {}});
   EXPECT_EQ(pixel(normal, 0), (std::vector<int>{255, 128, 128}));
@@ -125,7 +133,8 @@ TEST(ContactSheet, ShrinkingAveragesLight) {
   const Picture small = contact_sheet({stripes}, 1, 3);
   EXPECT_EQ(small.width, 3);
   EXPECT_EQ(small.height, 2);
-  for (int x = 0; x < 3; ++x) EXPECT_EQ(pixel(small, x), std::vector<int>(3, 188));  // half the light, not half the code
+  for (int x = 0; x < 3; ++x)
+    EXPECT_EQ(pixel(small, x), std::vector<int>(3, 188));  // half the light, not half the code
   // 6 to 4: a pixel covers 1.5; the first is one white and half a black column: 2/3 of the light,
   // (1.055 * 0.6667^(1/2.4) - 0.055) * 255 = 213.2.
   EXPECT_EQ(pixel(contact_sheet({stripes}, 1, 4), 0)[0], 213);

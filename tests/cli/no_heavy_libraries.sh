@@ -1,0 +1,15 @@
+#!/bin/sh
+# no_heavy_libraries.sh BIN_DIR -- no tool may link OpenImageIO or OpenVDB, itself or through another library: they
+# cost 0.4 s and 130 MB at every start. They live in modules, opened at need.
+[ -d "$1" ] || { echo "no folder of tools: $1"; exit 1; }
+bad=0 count=0
+for tool in "$1"/*; do
+  [ -f "$tool" ] && [ -x "$tool" ] || continue
+  count=$((count + 1))
+  libraries=$(ldd "$tool") || { echo "$tool: ldd failed"; bad=1; continue; }
+  if echo "$libraries" | grep -iE 'openimageio|openvdb|opencv|ffmpeg|libav'; then echo "^ $tool links these"; bad=1; fi
+  if echo "$libraries" | grep 'not found'; then echo "^ $tool cannot be started"; bad=1; fi
+done
+echo "$count tools looked at"
+[ "$count" -gt 0 ] || bad=1
+exit $bad
