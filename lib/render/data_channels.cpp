@@ -16,30 +16,36 @@ bool asked(const std::vector<std::string>& channels, const char* name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();
 }
 
-/// Where the same point of the same surface is in another frame: the surface is found by node and primitive,
-/// the point by its barycentrics.
+/// Where the same point of the same surface is in another frame: the surface is the one of the same node with
+/// the same rank among that node's surfaces, the point has the same barycentrics.
 class OtherFrame {
  public:
-  explicit OtherFrame(const NeighbourFrame& other) : other_(other) {
+  OtherFrame(const NeighbourFrame& other, const SceneFrame& here) : view_(other.view), there_(here.surfaces.size()) {
     if (!other.frame) return;
-    for (const Surface& surface : other.frame->surfaces) surfaces_[{surface.node, surface.primitive}] = &surface;
+    std::map<std::uint32_t, std::vector<const Surface*>> by_node;
+    for (const Surface& surface : other.frame->surfaces) by_node[surface.node].push_back(&surface);
+    std::map<std::uint32_t, std::size_t> rank;
+    for (std::size_t s = 0; s < here.surfaces.size(); ++s) {
+      const auto& candidates = by_node[here.surfaces[s].node];
+      const std::size_t r = rank[here.surfaces[s].node]++;
+      if (r < candidates.size() && candidates[r]->positions.size() == here.surfaces[s].positions.size())
+        there_[s] = candidates[r];
+    }
   }
   /// Pixels right and up from raster position `here`; zero if the point is not in front of that camera.
-  Vec2 motion(const Surface& surface, const SurfacePoint& point, std::array<double, 2> here) const {
-    if (!other_.frame) return {};
-    const auto found = surfaces_.find({surface.node, surface.primitive});
-    if (found == surfaces_.end()) return {};
-    const auto& corner = surface.primitive->triangles[point.triangle];
-    const auto& p = found->second->positions;
-    const Vec3 there = p[corner[0]] * (1 - point.u - point.v) + p[corner[1]] * point.u + p[corner[2]] * point.v;
-    const auto raster = other_.view->project(there);
+  Vec2 motion(const SurfacePoint& point, std::array<double, 2> here) const {
+    const Surface* surface = there_[point.surface];
+    if (!surface) return {};
+    const auto& corner = surface->primitive->triangles[point.triangle];
+    const auto& p = surface->positions;
+    const auto raster = view_->project(p[corner[0]] * (1 - point.u - point.v) + p[corner[1]] * point.u + p[corner[2]] * point.v);
     if (!raster) return {};
     return {float((*raster)[0] - here[0]), float(here[1] - (*raster)[1])};
   }
 
  private:
-  NeighbourFrame other_;
-  std::map<std::pair<std::uint32_t, const Primitive*>, const Surface*> surfaces_;
+  const CameraView* view_;
+  std::vector<const Surface*> there_;   ///< by surface of this frame; nullptr: not there
 };
 
 }  // namespace
@@ -77,7 +83,8 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
         *const AG = values("albedo.G"), *const AB = values("albedo.B"), *const FU = values("forward.u"),
         *const FV = values("forward.v"), *const BU = values("backward.u"), *const BV = values("backward.v");
   std::uint32_t* const ID = id ? image.find("id.object")->ids.data() : nullptr;
-  const OtherFrame later(motion ? next : NeighbourFrame{}), earlier(motion ? previous : NeighbourFrame{});
+  const OtherFrame later(motion ? next : NeighbourFrame{}, scene.frame());
+  const OtherFrame earlier(motion ? previous : NeighbourFrame{}, scene.frame());
   const Vec3d origin = scene.frame().origin;
 
   parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
@@ -107,9 +114,8 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
         AR[i] = rho.r; AG[i] = rho.g; AB[i] = rho.b;
       }
       if (FU) {
-        const Surface& surface = scene.frame().surfaces[point.surface];
         const std::array<double, 2> here = view.project(point.position).value_or(std::array{double(x), double(y)});
-        const Vec2 f = later.motion(surface, point, here), b = earlier.motion(surface, point, here);
+        const Vec2 f = later.motion(point, here), b = earlier.motion(point, here);
         FU[i] = f.x; FV[i] = f.y; BU[i] = b.x; BV[i] = b.y;
       }
     }
