@@ -47,7 +47,8 @@ Value spline(const AnimationTrack& track, std::size_t key, double s, double dt_s
   const double s2 = s * s, s3 = s2 * s;
   Value v;
   for (std::size_t c = 0; c < 4; ++c)
-    v[c] = v0[c] + (v1[c] - v0[c]) * (3 * s2 - 2 * s3) + dt_s * ((s3 - 2 * s2 + s) * out0[c] + (s3 - s2) * in1[c]);
+    v[c] = v0[c] + (v1[c] - v0[c]) * (3 * s2 - 2 * s3) +
+           dt_s * ((s3 - 2 * s2 + s) * out0[c] + (s3 - s2) * in1[c]);
   return v;
 }
 
@@ -99,8 +100,10 @@ Affine Animator::local(std::size_t n, double time_s) const {
   std::array<double, 4> rotation = node.rotation;
   for (const AnimationTrack* track : tracks_[n]) {
     const Value v = evaluate(*track, time_s);
-    if (track->path == Path::rotation) rotation = v;
-    else (track->path == Path::translation ? translation : scale) = {v[0], v[1], v[2]};
+    if (track->path == Path::rotation)
+      rotation = v;
+    else
+      (track->path == Path::translation ? translation : scale) = {v[0], v[1], v[2]};
   }
   return affine_from_trs(translation, rotation, scale);
 }

@@ -54,8 +54,8 @@ void check_range(const Scene& scene, std::size_t n, const Surface& surface) {
 }
 
 /// Surfaces of the nodes that move, or of those that do not, in node order.
-std::vector<Surface> place_surfaces(const Scene& scene, const Segment& segment, const std::vector<Affine>& world,
-                                    bool moving) {
+std::vector<Surface> place_surfaces(const Scene& scene, const Segment& segment,
+                                    const std::vector<Affine>& world, bool moving) {
   std::vector<Surface> surfaces;
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const Node& node = scene.nodes[n];

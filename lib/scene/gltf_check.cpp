@@ -13,30 +13,43 @@ constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
 int component_size(int component_type) {
   switch (component_type) {
     case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return 1;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      return 1;
     case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return 2;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      return 2;
     case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT: return 4;
-    default: return 0;
+    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+      return 4;
+    default:
+      return 0;
   }
 }
 
 int component_count(int type) {
   switch (type) {
-    case TINYGLTF_TYPE_SCALAR: return 1;
-    case TINYGLTF_TYPE_VEC2: return 2;
-    case TINYGLTF_TYPE_VEC3: return 3;
-    case TINYGLTF_TYPE_VEC4: return 4;
-    case TINYGLTF_TYPE_MAT2: return 4;
-    case TINYGLTF_TYPE_MAT3: return 9;
-    case TINYGLTF_TYPE_MAT4: return 16;
-    default: return 0;
+    case TINYGLTF_TYPE_SCALAR:
+      return 1;
+    case TINYGLTF_TYPE_VEC2:
+      return 2;
+    case TINYGLTF_TYPE_VEC3:
+      return 3;
+    case TINYGLTF_TYPE_VEC4:
+      return 4;
+    case TINYGLTF_TYPE_MAT2:
+      return 4;
+    case TINYGLTF_TYPE_MAT3:
+      return 9;
+    case TINYGLTF_TYPE_MAT4:
+      return 16;
+    default:
+      return 0;
   }
 }
 
 /// offset + stride (count - 1) + size, or kNoLimit if that does not fit 64 bits.
-std::uint64_t bytes_needed(std::uint64_t offset, std::uint64_t stride, std::uint64_t count, std::uint64_t size) {
+std::uint64_t bytes_needed(std::uint64_t offset, std::uint64_t stride, std::uint64_t count,
+                           std::uint64_t size) {
   if (count == 0) return 0;
   std::uint64_t span = 0, end = 0;
   if (__builtin_mul_overflow(stride, count - 1, &span) || __builtin_add_overflow(span, size, &span) ||
@@ -69,7 +82,8 @@ void check_inside_view(const Import& import, const std::string& place, int view_
                            " of " + std::to_string(length) + " bytes");
 }
 
-std::uint64_t stride_of(const tinygltf::Model& model, const tinygltf::Accessor& accessor, std::uint64_t size) {
+std::uint64_t stride_of(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
+                        std::uint64_t size) {
   const std::uint64_t stride = model.bufferViews[std::size_t(accessor.bufferView)].byteStride;
   return stride != 0 ? stride : size;
 }
@@ -82,7 +96,8 @@ void check_sparse(const Import& import, const tinygltf::Accessor& accessor, cons
     import.fail(place, "sparse part is larger than the accessor or has a negative offset");
   const int index_type = sparse.indices.componentType;
   const int index_size = component_size(index_type);
-  if (index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE && index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+  if (index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+      index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
       index_type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT)
     import.fail(place, "sparse indices must be unsigned integers");
   const std::uint64_t count = std::uint64_t(sparse.count);
@@ -97,7 +112,8 @@ void check_accessor(const Import& import, std::size_t index) {
   const tinygltf::Accessor& accessor = import.model.accessors[index];
   const std::string place = place_of("accessors", index, accessor.name);
   const int component = component_size(accessor.componentType), components = component_count(accessor.type);
-  if (component == 0) import.fail(place, "componentType " + std::to_string(accessor.componentType) + " is not one of glTF's");
+  if (component == 0)
+    import.fail(place, "componentType " + std::to_string(accessor.componentType) + " is not one of glTF's");
   if (components == 0) import.fail(place, "type is not one of glTF's");
   if (accessor.count == 0) import.fail(place, "count is 0");
   const std::uint64_t size = std::uint64_t(component * components);
@@ -137,7 +153,8 @@ const unsigned char* view_bytes(const tinygltf::Model& model, int view_index, st
 }
 
 /// A tight copy of a sparse accessor with its replacements put in.
-void make_dense(Import& import, const tinygltf::Accessor& accessor, const std::string& place, Elements& elements) {
+void make_dense(Import& import, const tinygltf::Accessor& accessor, const std::string& place,
+                Elements& elements) {
   const std::uint64_t size = std::uint64_t(component_size(accessor.componentType) * elements.components);
   std::uint64_t bytes = 0;
   if (__builtin_mul_overflow(size, elements.count, &bytes)) bytes = kNoLimit;
@@ -154,7 +171,8 @@ void make_dense(Import& import, const tinygltf::Accessor& accessor, const std::s
     const unsigned char* values =
         view_bytes(import.model, sparse.values.bufferView, std::uint64_t(sparse.values.byteOffset));
     for (std::uint64_t i = 0; i < std::uint64_t(sparse.count); ++i) {
-      const std::uint64_t target = read_index(indices + i * std::uint64_t(component_size(index_type)), index_type);
+      const std::uint64_t target =
+          read_index(indices + i * std::uint64_t(component_size(index_type)), index_type);
       if (target >= elements.count)
         import.fail(place, "sparse index " + std::to_string(target) + " is beyond the accessor's " +
                                std::to_string(elements.count) + " elements");
@@ -216,21 +234,33 @@ void read_all(Import& import, const Elements& elements, const std::string& place
           put(i, c, double(value));
         }
       break;
-    case TINYGLTF_COMPONENT_TYPE_BYTE: convert<std::int8_t>(elements, 1 / 127.0, put); break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: convert<std::uint8_t>(elements, 1 / 255.0, put); break;
-    case TINYGLTF_COMPONENT_TYPE_SHORT: convert<std::int16_t>(elements, 1 / 32767.0, put); break;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: convert<std::uint16_t>(elements, 1 / 65535.0, put); break;
+    case TINYGLTF_COMPONENT_TYPE_BYTE:
+      convert<std::int8_t>(elements, 1 / 127.0, put);
+      break;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+      convert<std::uint8_t>(elements, 1 / 255.0, put);
+      break;
+    case TINYGLTF_COMPONENT_TYPE_SHORT:
+      convert<std::int16_t>(elements, 1 / 32767.0, put);
+      break;
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+      convert<std::uint16_t>(elements, 1 / 65535.0, put);
+      break;
     default:
-      import.fail(place, "accessor " + std::to_string(index) + " has 32-bit integers where numbers are needed");
+      import.fail(place,
+                  "accessor " + std::to_string(index) + " has 32-bit integers where numbers are needed");
   }
-  if (!finite) import.fail(place, "accessor " + std::to_string(index) + " holds NaN or infinity; export the mesh again without it");
+  if (!finite)
+    import.fail(place, "accessor " + std::to_string(index) +
+                           " holds NaN or infinity; export the mesh again without it");
 }
 
 }  // namespace
 
 void Import::take_memory(std::uint64_t bytes, const std::string& place) {
   if (bytes > geometry_budget)
-    fail(place, "asks for far more memory than a file of this size can hold (counts or shared accessors are wrong)");
+    fail(place,
+         "asks for far more memory than a file of this size can hold (counts or shared accessors are wrong)");
   geometry_budget -= bytes;
 }
 
@@ -243,7 +273,8 @@ std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& pla
   const Elements elements = open_accessor(import, accessor, 3, place);
   import.take_memory(elements.count * sizeof(Vec3), place);
   std::vector<Vec3> values(elements.count);
-  read_all(import, elements, place, accessor, [&](std::uint64_t i, int c, double v) { values[i][c] = float(v); });
+  read_all(import, elements, place, accessor,
+           [&](std::uint64_t i, int c, double v) { values[i][c] = float(v); });
   return values;
 }
 
@@ -251,9 +282,8 @@ std::vector<Vec2> read_vec2(Import& import, int accessor, const std::string& pla
   const Elements elements = open_accessor(import, accessor, 2, place);
   import.take_memory(elements.count * sizeof(Vec2), place);
   std::vector<Vec2> values(elements.count);
-  read_all(import, elements, place, accessor, [&](std::uint64_t i, int c, double v) {
-    (c == 0 ? values[i].x : values[i].y) = float(v);
-  });
+  read_all(import, elements, place, accessor,
+           [&](std::uint64_t i, int c, double v) { (c == 0 ? values[i].x : values[i].y) = float(v); });
   return values;
 }
 

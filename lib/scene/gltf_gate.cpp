@@ -24,11 +24,11 @@ constexpr std::uint64_t kMaxJsonBytes = 1ull << 30;
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kChunkJson = 0x4e4f534a, kChunkBin = 0x004e4942;
 
 // Read in full, or read as far as this version renders it (gltf_material.cpp says what is left out).
-const std::set<std::string> kKnown{"KHR_lights_punctual",         "KHR_materials_emissive_strength",
-                            "KHR_materials_specular",      "KHR_materials_ior",
-                            "KHR_mesh_quantization",       "KHR_materials_transmission",
-                            "KHR_materials_volume",        "KHR_materials_unlit",
-                            "KHR_texture_transform",       "KHR_draco_mesh_compression"};
+const std::set<std::string> kKnown{"KHR_lights_punctual",    "KHR_materials_emissive_strength",
+                                   "KHR_materials_specular", "KHR_materials_ior",
+                                   "KHR_mesh_quantization",  "KHR_materials_transmission",
+                                   "KHR_materials_volume",   "KHR_materials_unlit",
+                                   "KHR_texture_transform",  "KHR_draco_mesh_compression"};
 
 struct Remedy {
   const char *extension, *what;
@@ -37,8 +37,10 @@ constexpr const char* kDracoRemedy =
     "unpack it with `gltf-transform cp IN.glb OUT.glb`, or export without Compression";
 constexpr std::array kRemedies{
     Remedy{"KHR_draco_mesh_compression", kDracoRemedy},
-    Remedy{"EXT_meshopt_compression", "unpack it with `gltf-transform cp IN.glb OUT.glb`, or run gltfpack without -c"},
-    Remedy{"KHR_meshopt_compression", "unpack it with `gltf-transform cp IN.glb OUT.glb`, or run gltfpack without -c"},
+    Remedy{"EXT_meshopt_compression",
+           "unpack it with `gltf-transform cp IN.glb OUT.glb`, or run gltfpack without -c"},
+    Remedy{"KHR_meshopt_compression",
+           "unpack it with `gltf-transform cp IN.glb OUT.glb`, or run gltfpack without -c"},
     Remedy{"EXT_texture_webp", "convert its textures with `gltf-transform png IN.glb OUT.glb`"},
     Remedy{"KHR_texture_basisu", "convert its textures with `gltf-transform ktxdecompress IN.glb OUT.glb`"},
     Remedy{"EXT_mesh_gpu_instancing", "export with instances as nodes of their own"},
@@ -51,7 +53,8 @@ constexpr std::array kRemedies{
 /// A regular file opened for reading.
 class File {
  public:
-  explicit File(const std::string& path) : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
+  explicit File(const std::string& path)
+      : path_(path), descriptor_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
     if (descriptor_ < 0) throw InputError(path + ": cannot be opened: " + std::strerror(errno));
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
@@ -68,10 +71,12 @@ class File {
   void read(std::uint64_t offset, void* to, std::uint64_t count) const {
     char* out = static_cast<char*>(to);
     while (count > 0) {
-      const ssize_t got = ::pread(descriptor_, out, std::size_t(std::min<std::uint64_t>(count, 1u << 30)), off_t(offset));
+      const ssize_t got =
+          ::pread(descriptor_, out, std::size_t(std::min<std::uint64_t>(count, 1u << 30)), off_t(offset));
       if (got < 0 && errno == EINTR) continue;
       if (got < 0) throw ResourceError(path_ + ": cannot be read: " + std::strerror(errno));
-      if (got == 0) throw InputError(path_ + ": ends at byte " + std::to_string(offset) + "; it is cut short");
+      if (got == 0)
+        throw InputError(path_ + ": ends at byte " + std::to_string(offset) + "; it is cut short");
       out += got;
       offset += std::uint64_t(got);
       count -= std::uint64_t(got);
@@ -96,13 +101,16 @@ struct ChunkHeader {
 
 Container open_glb(const File& file, const std::string& path) {
   std::array<std::uint32_t, 3> header{};  // magic, version, length
-  if (file.size() < 20) fail(path, "GLB header", "the file has " + std::to_string(file.size()) + " bytes; it is cut short");
+  if (file.size() < 20)
+    fail(path, "GLB header", "the file has " + std::to_string(file.size()) + " bytes; it is cut short");
   file.read(0, header.data(), sizeof header);
-  if (header[1] != 2) fail(path, "GLB header", "version " + std::to_string(header[1]) + "; only 2 can be read");
+  if (header[1] != 2)
+    fail(path, "GLB header", "version " + std::to_string(header[1]) + "; only 2 can be read");
   const std::uint64_t end = header[2];
   if (end > file.size())
-    fail(path, "GLB header", "says " + std::to_string(end) + " bytes, but the file has " + std::to_string(file.size()) +
-                                 "; it is cut short");
+    fail(path, "GLB header",
+         "says " + std::to_string(end) + " bytes, but the file has " + std::to_string(file.size()) +
+             "; it is cut short");
   Container container;
   std::uint64_t at = sizeof header;
   for (int chunk = 0; chunk < 2 && at + sizeof(ChunkHeader) <= end; ++chunk) {
@@ -113,7 +121,8 @@ Container open_glb(const File& file, const std::string& path) {
     if (chunk_header.length > end - at) fail(path, place, "reaches beyond the end of the file");
     if (chunk == 0) {
       if (chunk_header.type != kChunkJson) fail(path, place, "is not JSON");
-      if (chunk_header.length > kMaxJsonBytes) fail(path, place, "has more than 1 GB of JSON; move the data into a buffer file");
+      if (chunk_header.length > kMaxJsonBytes)
+        fail(path, place, "has more than 1 GB of JSON; move the data into a buffer file");
       container.json.resize(chunk_header.length);
       file.read(at, container.json.data(), chunk_header.length);
     } else if (chunk_header.type == kChunkBin) {
@@ -127,11 +136,13 @@ Container open_glb(const File& file, const std::string& path) {
 Container open_container(const std::string& path, const GltfOptions& options) {
   const File file(path);
   if (file.size() > options.max_file_bytes)
-    fail(path, "size", std::to_string(file.size()) + " bytes; the limit is " + std::to_string(options.max_file_bytes));
+    fail(path, "size",
+         std::to_string(file.size()) + " bytes; the limit is " + std::to_string(options.max_file_bytes));
   std::uint32_t magic = 0;
   if (file.size() >= sizeof magic) file.read(0, &magic, sizeof magic);
   if (magic == kGlbMagic) return open_glb(file, path);
-  if (file.size() > kMaxJsonBytes) fail(path, "size", "more than 1 GB of JSON; move the data into a buffer file");
+  if (file.size() > kMaxJsonBytes)
+    fail(path, "size", "more than 1 GB of JSON; move the data into a buffer file");
   Container container;
   container.json.resize(file.size());
   file.read(0, container.json.data(), file.size());
@@ -163,7 +174,9 @@ bool needs_draco(const Json& document) {
   const Json& accessors = array_of(document, "accessors");
   for (const Json& mesh : array_of(document, "meshes"))
     for (const Json& primitive : mesh["primitives"]) {
-      if (!primitive.contains("extensions") || !primitive["extensions"].contains("KHR_draco_mesh_compression")) continue;
+      if (!primitive.contains("extensions") ||
+          !primitive["extensions"].contains("KHR_draco_mesh_compression"))
+        continue;
       for (const Json& index : primitive["attributes"]) {
         const std::size_t i = index.get<std::size_t>();
         if (i < accessors.size() && !accessors[i].contains("bufferView")) return true;
@@ -174,10 +187,12 @@ bool needs_draco(const Json& document) {
 
 void check_extensions(Json& document, const std::string& path, Gated& gated) {
   for (const std::string& name : names(document, "extensionsRequired")) {
-    const auto remedy = std::find_if(kRemedies.begin(), kRemedies.end(), [&](const Remedy& r) { return name == r.extension; });
+    const auto remedy = std::find_if(kRemedies.begin(), kRemedies.end(),
+                                     [&](const Remedy& r) { return name == r.extension; });
     if (kKnown.contains(name) && (remedy == kRemedies.end() || !needs_draco(document))) continue;
-    fail(path, "extensionsRequired", name.substr(0, 80) + " is not supported; " +
-                                         (remedy != kRemedies.end() ? remedy->what : "export without it"));
+    fail(path, "extensionsRequired",
+         name.substr(0, 80) + " is not supported; " +
+             (remedy != kRemedies.end() ? remedy->what : "export without it"));
   }
   if (needs_draco(document))
     fail(path, "meshes", std::string("KHR_draco_mesh_compression is not supported; ") + kDracoRemedy);
@@ -197,13 +212,16 @@ void drop_pointer_channels(Json& document, const std::string& path, Gated& gated
   for (Json& animation : document["animations"]) {
     Json kept = Json::array();
     for (Json& channel : animation["channels"]) {
-      if (channel["target"]["path"] == "pointer") ++dropped;
-      else kept.push_back(std::move(channel));
+      if (channel["target"]["path"] == "pointer")
+        ++dropped;
+      else
+        kept.push_back(std::move(channel));
     }
     animation["channels"] = std::move(kept);
   }
   if (dropped > 0)
-    gated.warnings.push_back(path + ": ignored: " + std::to_string(dropped) + " channels of KHR_animation_pointer");
+    gated.warnings.push_back(path + ": ignored: " + std::to_string(dropped) +
+                             " channels of KHR_animation_pointer");
 }
 
 int hex_digit(char c) {
@@ -219,7 +237,9 @@ std::string percent_decoded(const std::string& uri, const std::string& path, con
     if (c == '%') {
       const int high = i + 2 < uri.size() ? hex_digit(uri[i + 1]) : -1;
       const int low = high >= 0 ? hex_digit(uri[i + 2]) : -1;
-      if (low < 0) fail(path, place, "\"" + uri.substr(0, 80) + "\" has a % that is not followed by two hexadecimal digits");
+      if (low < 0)
+        fail(path, place,
+             "\"" + uri.substr(0, 80) + "\" has a % that is not followed by two hexadecimal digits");
       c = char(high * 16 + low);
       i += 2;
     }
@@ -230,41 +250,51 @@ std::string percent_decoded(const std::string& uri, const std::string& path, con
 }
 
 bool has_scheme(const std::string& uri) {
-  const std::size_t end = uri.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
+  const std::size_t end =
+      uri.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
   return end != std::string::npos && end > 0 && uri[end] == ':';
 }
 
 /// The file a relative URI names. Symbolic links and `..` are resolved before asking whether it is inside.
-std::string resolved(const std::string& uri, const std::string& path, const std::string& place, const GltfOptions& options) {
+std::string resolved(const std::string& uri, const std::string& path, const std::string& place,
+                     const GltfOptions& options) {
   const std::string shown = "\"" + uri.substr(0, 80) + "\"";
   if (uri.empty()) fail(path, place, "is empty");
-  if (has_scheme(uri)) fail(path, place, shown + " is not a relative path; fetch the file and name it by a relative path");
+  if (has_scheme(uri))
+    fail(path, place, shown + " is not a relative path; fetch the file and name it by a relative path");
   const fs::path relative = percent_decoded(uri, path, place);
   if (relative.is_absolute() && !options.allow_outside)
     fail(path, place, shown + " is an absolute path; put the file into the scene's folder");
   const fs::path folder = fs::path(path).parent_path().empty() ? fs::path(".") : fs::path(path).parent_path();
   std::error_code error;
-  const fs::path base = fs::weakly_canonical(folder, error), target = fs::weakly_canonical(folder / relative, error);
+  const fs::path base = fs::weakly_canonical(folder, error),
+                 target = fs::weakly_canonical(folder / relative, error);
   if (error) fail(path, place, shown + ": " + error.message());
   const auto [base_end, target_at] = std::mismatch(base.begin(), base.end(), target.begin(), target.end());
   if (base_end != base.end() && !options.allow_outside)
-    fail(path, place, shown + " leads out of the scene's folder; put the file there, or allow it with --allow-outside");
+    fail(path, place,
+         shown + " leads out of the scene's folder; put the file there, or allow it with --allow-outside");
   return (folder / relative).string();
 }
 
 /// Checks a data URI and brings it into the one form tinygltf takes for any media type.
-std::string checked_data_uri(const std::string& uri, std::uint64_t length, const std::string& path, const std::string& place) {
+std::string checked_data_uri(const std::string& uri, std::uint64_t length, const std::string& path,
+                             const std::string& place) {
   const std::size_t comma = uri.find(',');
-  if (comma == std::string::npos || comma > 200 || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
+  if (comma == std::string::npos || comma > 200 ||
+      !std::string_view(uri).substr(0, comma).ends_with(";base64"))
     fail(path, place, "a data URI must be base64");
   std::string_view payload = std::string_view(uri).substr(comma + 1);
   while (payload.ends_with('=')) payload.remove_suffix(1);
   const auto is_base64 = [](char c) {
     return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '+' || c == '/';
   };
-  if (!std::all_of(payload.begin(), payload.end(), is_base64)) fail(path, place, "holds characters that are not base64");
+  if (!std::all_of(payload.begin(), payload.end(), is_base64))
+    fail(path, place, "holds characters that are not base64");
   if (payload.size() * 3 / 4 != length)
-    fail(path, place, "decodes to " + std::to_string(payload.size() * 3 / 4) + " bytes, but byteLength is " + std::to_string(length));
+    fail(path, place,
+         "decodes to " + std::to_string(payload.size() * 3 / 4) + " bytes, but byteLength is " +
+             std::to_string(length));
   return "data:application/octet-stream;base64," + uri.substr(comma + 1);
 }
 
@@ -275,10 +305,13 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
   if (length == 0) fail(path, place + ".byteLength", "is 0");
   ByteRange range{path, 0, 0};
   if (!buffer.contains("uri")) {
-    if (index != 0 || container.bin.length == 0) fail(path, place, "has no uri, and there is no binary chunk for it");
+    if (index != 0 || container.bin.length == 0)
+      fail(path, place, "has no uri, and there is no binary chunk for it");
     range = container.bin;
     if (length > range.length)
-      fail(path, place, "byteLength " + std::to_string(length) + " is beyond the binary chunk of " + std::to_string(range.length) + " bytes");
+      fail(path, place,
+           "byteLength " + std::to_string(length) + " is beyond the binary chunk of " +
+               std::to_string(range.length) + " bytes");
   } else if (const std::string uri = buffer["uri"].get<std::string>(); uri.starts_with("data:")) {
     buffer["uri"] = checked_data_uri(uri, length, path, place + ".uri");
     gated.buffers.push_back(range);
@@ -287,9 +320,12 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
     range.path = resolved(uri, path, place + ".uri", options);
     const File file(range.path);
     if (file.size() > options.max_file_bytes)
-      fail(range.path, "size", std::to_string(file.size()) + " bytes; the limit is " + std::to_string(options.max_file_bytes));
+      fail(range.path, "size",
+           std::to_string(file.size()) + " bytes; the limit is " + std::to_string(options.max_file_bytes));
     if (length > file.size())
-      fail(path, place, "byteLength " + std::to_string(length) + " is beyond " + range.path + " of " + std::to_string(file.size()) + " bytes");
+      fail(path, place,
+           "byteLength " + std::to_string(length) + " is beyond " + range.path + " of " +
+               std::to_string(file.size()) + " bytes");
   }
   range.length = length;
   buffer["uri"] = buffer_name(index);
@@ -305,8 +341,9 @@ void check_total(const std::string& path, const GltfOptions& options, const Gate
   for (const std::string& file : gated.files) on_disk += File(file).size();
   for (const ByteRange& range : gated.buffers) wanted += range.length;
   if (wanted > options.max_file_bytes || wanted > 2 * on_disk + (1u << 20))
-    fail(path, "buffers", std::to_string(wanted) + " bytes in total, more than can be right for files of " +
-                              std::to_string(on_disk) + " bytes");
+    fail(path, "buffers",
+         std::to_string(wanted) + " bytes in total, more than can be right for files of " +
+             std::to_string(on_disk) + " bytes");
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // lib/scene/gltf_gate.h -- what a glTF file must pass before tinygltf sees it.
 //
-// tinygltf is a parser, not a validator: it recurses as deep as the JSON nests, opens any path a URI names and
-// takes wrong types for missing ones. So the JSON is parsed here first, with limits, checked, and handed on
-// rewritten: images, extras and unknown extensions gone, every buffer's URI replaced by the name of a byte range
-// that the gate has approved.
+// tinygltf is a parser, not a validator: it recurses as deep as the JSON nests, opens any path a URI names
+// and takes wrong types for missing ones. So the JSON is parsed here first, with limits, checked, and handed
+// on rewritten: images, extras and unknown extensions gone, every buffer's URI replaced by the name of a byte
+// range that the gate has approved.
 #pragma once
 
 #include <cstdint>

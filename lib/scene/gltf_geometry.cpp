@@ -17,13 +17,16 @@ std::vector<Triangle> triangles_from(const std::vector<std::uint32_t>& indices, 
   const std::size_t count = indices.size();
   if (mode == TINYGLTF_MODE_TRIANGLES) {
     triangles.reserve(count / 3);
-    for (std::size_t i = 0; i + 2 < count; i += 3) triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
+    for (std::size_t i = 0; i + 2 < count; i += 3)
+      triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
   } else {
     const bool fan = mode == TINYGLTF_MODE_TRIANGLE_FAN;
     if (count > 2) triangles.reserve(count - 2);
     for (std::size_t i = 0; i + 2 < count; ++i) {
-      if (fan) triangles.push_back({indices[i + 1], indices[i + 2], indices[0]});
-      else triangles.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
+      if (fan)
+        triangles.push_back({indices[i + 1], indices[i + 2], indices[0]});
+      else
+        triangles.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
     }
   }
   return triangles;
@@ -62,8 +65,8 @@ void drop_unused_vertices(Primitive& primitive) {
     for (std::uint32_t& i : t) i = new_index[i];
 }
 
-std::vector<std::uint32_t> vertex_order(Import& import, const tinygltf::Primitive& source, std::size_t vertices,
-                                        const std::string& place) {
+std::vector<std::uint32_t> vertex_order(Import& import, const tinygltf::Primitive& source,
+                                        std::size_t vertices, const std::string& place) {
   if (source.indices == -1) {
     import.take_memory(vertices * sizeof(std::uint32_t), place);
     std::vector<std::uint32_t> all(vertices);
@@ -150,7 +153,8 @@ int mesh_of(Import& import, std::size_t source_index, std::vector<bool>& seen) {
   Mesh mesh;
   mesh.name = source.name;
   for (std::size_t p = 0; p < source.primitives.size(); ++p) {
-    Primitive primitive = read_primitive(import, source.primitives[p], place + ".primitives[" + std::to_string(p) + "]");
+    Primitive primitive =
+        read_primitive(import, source.primitives[p], place + ".primitives[" + std::to_string(p) + "]");
     if (!primitive.triangles.empty()) mesh.primitives.push_back(std::move(primitive));
   }
   if (mesh.primitives.empty()) return -1;
@@ -169,11 +173,13 @@ void import_meshes(Import& import) {
     node.mesh = mesh_of(import, std::size_t(node.mesh), seen);
     if (node.mesh == -1) continue;
     if (scene.object_names.size() >= kMaxObjects)
-      import.fail("nodes", "more than " + std::to_string(kMaxObjects) + " objects; join meshes that move together");
+      import.fail("nodes",
+                  "more than " + std::to_string(kMaxObjects) + " objects; join meshes that move together");
     node.object = std::uint32_t(scene.object_names.size());
     scene.object_names.push_back(node.name.empty() ? scene.meshes[std::size_t(node.mesh)].name : node.name);
   }
-  if (scene.meshes.empty()) import.fail("nodes", "no node of the scene has a mesh with triangles; nothing to render");
+  if (scene.meshes.empty())
+    import.fail("nodes", "no node of the scene has a mesh with triangles; nothing to render");
 }
 
 }  // namespace tempolux::gltf

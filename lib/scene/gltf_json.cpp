@@ -64,7 +64,19 @@ class Counter final : public nlohmann::json_sax<Json> {
 
 // ---- types ----------------------------------------------------------------------------------------------
 
-enum class Type { boolean, string, number, numbers, index, indices, size, strings, index_map, object, objects };
+enum class Type {
+  boolean,
+  string,
+  number,
+  numbers,
+  index,
+  indices,
+  size,
+  strings,
+  index_map,
+  object,
+  objects
+};
 
 struct Rule {
   std::string_view key;
@@ -79,89 +91,136 @@ using Rules = std::vector<Rule>;
 // Properties of glTF 2.0 (section 5 of the specification) that tinygltf or this program reads.
 const Rules kAsset{{"version", Type::string, kRequired}, {"minVersion", Type::string}};
 const Rules kScene{{"name", Type::string}, {"nodes", Type::indices}};
-const Rules kNode{{"name", Type::string},    {"children", Type::indices},    {"mesh", Type::index},
-                  {"camera", Type::index},   {"skin", Type::index},          {"matrix", Type::numbers},
-                  {"rotation", Type::numbers}, {"scale", Type::numbers},     {"translation", Type::numbers},
+const Rules kNode{{"name", Type::string},      {"children", Type::indices}, {"mesh", Type::index},
+                  {"camera", Type::index},     {"skin", Type::index},       {"matrix", Type::numbers},
+                  {"rotation", Type::numbers}, {"scale", Type::numbers},    {"translation", Type::numbers},
                   {"weights", Type::numbers}};
 const Rules kTarget{};
-const Rules kPrimitive{{"attributes", Type::index_map, kRequired}, {"indices", Type::index},
-                       {"material", Type::index}, {"mode", Type::index}, {"targets", Type::objects, false, &kTarget}};
-const Rules kMesh{{"name", Type::string}, {"primitives", Type::objects, kRequired, &kPrimitive},
+const Rules kPrimitive{{"attributes", Type::index_map, kRequired},
+                       {"indices", Type::index},
+                       {"material", Type::index},
+                       {"mode", Type::index},
+                       {"targets", Type::objects, false, &kTarget}};
+const Rules kMesh{{"name", Type::string},
+                  {"primitives", Type::objects, kRequired, &kPrimitive},
                   {"weights", Type::numbers}};
-const Rules kSparseIndices{{"bufferView", Type::index, kRequired}, {"byteOffset", Type::index},
+const Rules kSparseIndices{{"bufferView", Type::index, kRequired},
+                           {"byteOffset", Type::index},
                            {"componentType", Type::index, kRequired}};
 const Rules kSparseValues{{"bufferView", Type::index, kRequired}, {"byteOffset", Type::index}};
-const Rules kSparse{{"count", Type::index, kRequired}, {"indices", Type::object, kRequired, &kSparseIndices},
+const Rules kSparse{{"count", Type::index, kRequired},
+                    {"indices", Type::object, kRequired, &kSparseIndices},
                     {"values", Type::object, kRequired, &kSparseValues}};
-const Rules kAccessor{{"name", Type::string},           {"bufferView", Type::index},
-                      {"byteOffset", Type::size},       {"componentType", Type::index, kRequired},
-                      {"normalized", Type::boolean},    {"count", Type::size, kRequired},
-                      {"type", Type::string, kRequired}, {"sparse", Type::object, false, &kSparse},
-                      {"min", Type::numbers},           {"max", Type::numbers}};
-const Rules kBufferView{{"name", Type::string}, {"buffer", Type::index, kRequired}, {"byteOffset", Type::size},
-                        {"byteLength", Type::size, kRequired}, {"byteStride", Type::size}, {"target", Type::index}};
+const Rules kAccessor{{"name", Type::string},
+                      {"bufferView", Type::index},
+                      {"byteOffset", Type::size},
+                      {"componentType", Type::index, kRequired},
+                      {"normalized", Type::boolean},
+                      {"count", Type::size, kRequired},
+                      {"type", Type::string, kRequired},
+                      {"sparse", Type::object, false, &kSparse},
+                      {"min", Type::numbers},
+                      {"max", Type::numbers}};
+const Rules kBufferView{{"name", Type::string},     {"buffer", Type::index, kRequired},
+                        {"byteOffset", Type::size}, {"byteLength", Type::size, kRequired},
+                        {"byteStride", Type::size}, {"target", Type::index}};
 const Rules kBuffer{{"name", Type::string}, {"uri", Type::string}, {"byteLength", Type::size, kRequired}};
-const Rules kTextureInfo{{"index", Type::index, kRequired}, {"texCoord", Type::index}, {"scale", Type::number},
+const Rules kTextureInfo{{"index", Type::index, kRequired},
+                         {"texCoord", Type::index},
+                         {"scale", Type::number},
                          {"strength", Type::number}};
-const Rules kPbr{{"baseColorFactor", Type::numbers}, {"metallicFactor", Type::number},
-                 {"roughnessFactor", Type::number}, {"baseColorTexture", Type::object, false, &kTextureInfo},
+const Rules kPbr{{"baseColorFactor", Type::numbers},
+                 {"metallicFactor", Type::number},
+                 {"roughnessFactor", Type::number},
+                 {"baseColorTexture", Type::object, false, &kTextureInfo},
                  {"metallicRoughnessTexture", Type::object, false, &kTextureInfo}};
-const Rules kNormalTexture{{"index", Type::index}, {"texCoord", Type::index}, {"scale", Type::number}};
-const Rules kMaterial{{"name", Type::string}, {"pbrMetallicRoughness", Type::object, false, &kPbr},
-                      {"normalTexture", Type::object, false, &kNormalTexture},
+const Rules kMaterial{{"name", Type::string},
+                      {"pbrMetallicRoughness", Type::object, false, &kPbr},
+                      {"normalTexture", Type::object, false, &kTextureInfo},
                       {"occlusionTexture", Type::object, false, &kTextureInfo},
                       {"emissiveTexture", Type::object, false, &kTextureInfo},
-                      {"emissiveFactor", Type::numbers}, {"alphaMode", Type::string}, {"alphaCutoff", Type::number},
+                      {"emissiveFactor", Type::numbers},
+                      {"alphaMode", Type::string},
+                      {"alphaCutoff", Type::number},
                       {"doubleSided", Type::boolean}};
 const Rules kTexture{{"name", Type::string}, {"source", Type::index}, {"sampler", Type::index}};
-const Rules kImage{{"name", Type::string}, {"uri", Type::string}, {"bufferView", Type::index},
-                   {"mimeType", Type::string}};
-const Rules kSampler{{"magFilter", Type::index}, {"minFilter", Type::index}, {"wrapS", Type::index},
-                     {"wrapT", Type::index}};
-const Rules kSkin{{"name", Type::string}, {"joints", Type::indices, kRequired}, {"skeleton", Type::index},
+const Rules kImage{
+    {"name", Type::string}, {"uri", Type::string}, {"bufferView", Type::index}, {"mimeType", Type::string}};
+const Rules kSampler{
+    {"magFilter", Type::index}, {"minFilter", Type::index}, {"wrapS", Type::index}, {"wrapT", Type::index}};
+const Rules kSkin{{"name", Type::string},
+                  {"joints", Type::indices, kRequired},
+                  {"skeleton", Type::index},
                   {"inverseBindMatrices", Type::index}};
-const Rules kPerspective{{"aspectRatio", Type::number}, {"yfov", Type::number, kRequired}, {"zfar", Type::number},
+const Rules kPerspective{{"aspectRatio", Type::number},
+                         {"yfov", Type::number, kRequired},
+                         {"zfar", Type::number},
                          {"znear", Type::number, kRequired}};
-const Rules kOrthographic{{"xmag", Type::number, kRequired}, {"ymag", Type::number, kRequired},
-                          {"zfar", Type::number, kRequired}, {"znear", Type::number, kRequired}};
-const Rules kCamera{{"name", Type::string}, {"type", Type::string, kRequired},
+const Rules kOrthographic{{"xmag", Type::number, kRequired},
+                          {"ymag", Type::number, kRequired},
+                          {"zfar", Type::number, kRequired},
+                          {"znear", Type::number, kRequired}};
+const Rules kCamera{{"name", Type::string},
+                    {"type", Type::string, kRequired},
                     {"perspective", Type::object, false, &kPerspective},
                     {"orthographic", Type::object, false, &kOrthographic}};
 const Rules kChannelTarget{{"node", Type::index}, {"path", Type::string, kRequired}};
-const Rules kChannel{{"sampler", Type::index, kRequired}, {"target", Type::object, kRequired, &kChannelTarget}};
-const Rules kAnimationSampler{{"input", Type::index, kRequired}, {"output", Type::index, kRequired},
-                              {"interpolation", Type::string}};
-const Rules kAnimation{{"name", Type::string}, {"channels", Type::objects, kRequired, &kChannel},
+const Rules kChannel{{"sampler", Type::index, kRequired},
+                     {"target", Type::object, kRequired, &kChannelTarget}};
+const Rules kAnimationSampler{
+    {"input", Type::index, kRequired}, {"output", Type::index, kRequired}, {"interpolation", Type::string}};
+const Rules kAnimation{{"name", Type::string},
+                       {"channels", Type::objects, kRequired, &kChannel},
                        {"samplers", Type::objects, kRequired, &kAnimationSampler}};
 const Rules kSpot{{"innerConeAngle", Type::number}, {"outerConeAngle", Type::number}};
-const Rules kLight{{"name", Type::string}, {"type", Type::string, kRequired}, {"color", Type::numbers},
-                   {"intensity", Type::number}, {"range", Type::number}, {"spot", Type::object, false, &kSpot}};
+const Rules kLight{{"name", Type::string},   {"type", Type::string, kRequired},
+                   {"color", Type::numbers}, {"intensity", Type::number},
+                   {"range", Type::number},  {"spot", Type::object, false, &kSpot}};
 const Rules kLights{{"lights", Type::objects, kRequired, &kLight}};
 const Rules kRootExtensions{{"KHR_lights_punctual", Type::object, false, &kLights}};
-const Rules kRoot{{"asset", Type::object, kRequired, &kAsset}, {"extensionsUsed", Type::strings},
-                  {"extensionsRequired", Type::strings},       {"scene", Type::index},
-                  {"scenes", Type::objects, false, &kScene},   {"nodes", Type::objects, false, &kNode},
-                  {"meshes", Type::objects, false, &kMesh},    {"accessors", Type::objects, false, &kAccessor},
+const Rules kRoot{{"asset", Type::object, kRequired, &kAsset},
+                  {"extensionsUsed", Type::strings},
+                  {"extensionsRequired", Type::strings},
+                  {"scene", Type::index},
+                  {"scenes", Type::objects, false, &kScene},
+                  {"nodes", Type::objects, false, &kNode},
+                  {"meshes", Type::objects, false, &kMesh},
+                  {"accessors", Type::objects, false, &kAccessor},
                   {"bufferViews", Type::objects, false, &kBufferView},
-                  {"buffers", Type::objects, false, &kBuffer}, {"materials", Type::objects, false, &kMaterial},
-                  {"textures", Type::objects, false, &kTexture}, {"images", Type::objects, false, &kImage},
-                  {"samplers", Type::objects, false, &kSampler}, {"skins", Type::objects, false, &kSkin},
-                  {"cameras", Type::objects, false, &kCamera}, {"animations", Type::objects, false, &kAnimation},
+                  {"buffers", Type::objects, false, &kBuffer},
+                  {"materials", Type::objects, false, &kMaterial},
+                  {"textures", Type::objects, false, &kTexture},
+                  {"images", Type::objects, false, &kImage},
+                  {"samplers", Type::objects, false, &kSampler},
+                  {"skins", Type::objects, false, &kSkin},
+                  {"cameras", Type::objects, false, &kCamera},
+                  {"animations", Type::objects, false, &kAnimation},
                   {"extensions", Type::object, false, &kRootExtensions}};
 
 const char* describe(Type type) {
   switch (type) {
-    case Type::boolean: return "true or false";
-    case Type::string: return "a string";
-    case Type::number: return "a number";
-    case Type::numbers: return "an array of numbers";
-    case Type::index: return "a whole number from 0 to 2147483647";
-    case Type::indices: return "an array of whole numbers from 0 to 2147483647";
-    case Type::size: return "a whole number, 0 or more";
-    case Type::strings: return "an array of strings";
-    case Type::index_map: return "an object of whole numbers from 0 to 2147483647";
-    case Type::object: return "an object";
-    case Type::objects: return "an array of objects";
+    case Type::boolean:
+      return "true or false";
+    case Type::string:
+      return "a string";
+    case Type::number:
+      return "a number";
+    case Type::numbers:
+      return "an array of numbers";
+    case Type::index:
+      return "a whole number from 0 to 2147483647";
+    case Type::indices:
+      return "an array of whole numbers from 0 to 2147483647";
+    case Type::size:
+      return "a whole number, 0 or more";
+    case Type::strings:
+      return "an array of strings";
+    case Type::index_map:
+      return "an object of whole numbers from 0 to 2147483647";
+    case Type::object:
+      return "an object";
+    case Type::objects:
+      return "an array of objects";
   }
   return "";
 }
@@ -184,17 +243,28 @@ bool all_of(Container& container, Test test) {
 
 bool has_type(Json& value, Type type) {
   switch (type) {
-    case Type::boolean: return value.is_boolean();
-    case Type::string: return value.is_string();
-    case Type::number: return value.is_number();
-    case Type::numbers: return value.is_array() && all_of(value, [](Json& v) { return v.is_number(); });
-    case Type::index: return is_index(value);
-    case Type::indices: return value.is_array() && all_of(value, is_index);
-    case Type::size: return is_whole(value, 1e18);
-    case Type::strings: return value.is_array() && all_of(value, [](Json& v) { return v.is_string(); });
-    case Type::index_map: return value.is_object() && all_of(value, is_index);
-    case Type::object: return value.is_object();
-    case Type::objects: return value.is_array() && all_of(value, [](Json& v) { return v.is_object(); });
+    case Type::boolean:
+      return value.is_boolean();
+    case Type::string:
+      return value.is_string();
+    case Type::number:
+      return value.is_number();
+    case Type::numbers:
+      return value.is_array() && all_of(value, [](Json& v) { return v.is_number(); });
+    case Type::index:
+      return is_index(value);
+    case Type::indices:
+      return value.is_array() && all_of(value, is_index);
+    case Type::size:
+      return is_whole(value, 1e18);
+    case Type::strings:
+      return value.is_array() && all_of(value, [](Json& v) { return v.is_string(); });
+    case Type::index_map:
+      return value.is_object() && all_of(value, is_index);
+    case Type::object:
+      return value.is_object();
+    case Type::objects:
+      return value.is_array() && all_of(value, [](Json& v) { return v.is_object(); });
   }
   return false;
 }
@@ -211,11 +281,15 @@ void check_property(Json& value, const Rule& rule, const std::string& place, con
 
 /// Depth is that of the rules, not of the file.
 void check_object(Json& object, const Rules& rules, const std::string& place, const std::string& file) {
-  const auto inside = [&](std::string_view key) { return (place.empty() ? "" : place + ".") + std::string(key); };
+  const auto inside = [&](std::string_view key) {
+    return (place.empty() ? "" : place + ".") + std::string(key);
+  };
   for (const Rule& rule : rules) {
     const auto found = object.find(rule.key);
-    if (found != object.end()) check_property(*found, rule, inside(rule.key), file);
-    else if (rule.required) fail(file, inside(rule.key), std::string("is missing; it must be ") + describe(rule.type));
+    if (found != object.end())
+      check_property(*found, rule, inside(rule.key), file);
+    else if (rule.required)
+      fail(file, inside(rule.key), std::string("is missing; it must be ") + describe(rule.type));
   }
   const auto extensions = object.find("extensions");
   if (extensions == object.end()) return;
@@ -261,7 +335,9 @@ std::size_t prune_value(Json& value, const std::set<std::string>& known, std::se
 Json parse_json(std::string_view text, const std::string& file) {
   Counter counter;
   if (!Json::sax_parse(text.begin(), text.end(), &counter)) {
-    const auto line = 1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(std::min(counter.trouble_byte, text.size())), '\n');
+    const auto line =
+        1 + std::count(text.begin(),
+                       text.begin() + std::ptrdiff_t(std::min(counter.trouble_byte, text.size())), '\n');
     fail(file, counter.trouble_byte > 0 ? "line " + std::to_string(line) : "JSON", counter.trouble);
   }
   Json document = Json::parse(text.begin(), text.end());

@@ -18,9 +18,9 @@ Json parse_json(std::string_view text, const std::string& file);
 /// there; whole numbers written with a fraction (3.0) become integers. Throws InputError naming the place.
 void check_types(Json& document, const std::string& file);
 
-/// Removes all `extras` and all extensions whose name is not in `known`, which tinygltf would copy into values
-/// of 200 bytes each; the names found go to `unknown`. Throws InputError if the known ones hold more than a
-/// million values.
+/// Removes all `extras` and all extensions whose name is not in `known`, which tinygltf would copy into
+/// values of 200 bytes each; the names found go to `unknown`. Throws InputError if the known ones hold more
+/// than a million values.
 void prune(Json& document, const std::set<std::string>& known, std::set<std::string>& unknown,
            const std::string& file);
 

@@ -49,11 +49,13 @@ bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::strin
   return range != nullptr;
 }
 
-bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }
+bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+  return false;
+}
 
 /// Images never reach tinygltf; should one, its pixels are not decoded.
-bool decode_nothing(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*, int,
-                    void*) {
+bool decode_nothing(tinygltf::Image*, const int, std::string*, std::string*, int, int, const unsigned char*,
+                    int, void*) {
   return true;
 }
 
@@ -63,12 +65,14 @@ tinygltf::Model parse(const std::string& path, Gated& gated) {
   parser.SetFsCallbacks({buffer_exists, same_name, read_buffer, write_nothing, &gated});
   tinygltf::Model model;
   std::string error, warning;
-  if (!parser.LoadASCIIFromString(&model, &error, &warning, gated.json.data(), unsigned(gated.json.size()), ""))
+  if (!parser.LoadASCIIFromString(&model, &error, &warning, gated.json.data(), unsigned(gated.json.size()),
+                                  ""))
     fail(path, "glTF", error.empty() ? "cannot be read" : one_line(error, 200));
   return model;
 }
 
-/// Geometry may be this much larger than the bytes it comes from: 8-bit indices and positions grow twelvefold.
+/// Geometry may be this much larger than the bytes it comes from: 8-bit indices and positions grow
+/// twelvefold.
 constexpr std::uint64_t kGrowth = 32, kSmallScene = 64u << 20;
 
 Scene import_scene(const std::string& path, const GltfOptions& options) {
@@ -87,7 +91,8 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   import_meshes(import);
   import_animations(import);
   for (const auto& [what, count] : import.ignored)
-    scene.warnings.push_back(path + ": ignored: " + what + (count > 1 ? ", " + std::to_string(count) + " times" : ""));
+    scene.warnings.push_back(path + ": ignored: " + what +
+                             (count > 1 ? ", " + std::to_string(count) + " times" : ""));
   return scene;
 }
 

@@ -23,8 +23,9 @@ float limited(Import& import, double value, double lower, double upper, const st
   if (!std::isfinite(value)) import.fail(place, "is not finite");
   if (value < lower || value > upper) {
     import.scene.warnings.push_back(place + ": " + std::to_string(value) + " brought into its range " +
-                                    (upper == kNoUpper ? "from " + std::to_string(lower) + " up"
-                                                       : std::to_string(lower) + " .. " + std::to_string(upper)));
+                                    (upper == kNoUpper
+                                         ? "from " + std::to_string(lower) + " up"
+                                         : std::to_string(lower) + " .. " + std::to_string(upper)));
   }
   return float(std::clamp(value, lower, upper));
 }
@@ -55,7 +56,8 @@ struct ExtensionReader {
     if (!object.Has(key)) return values;
     const Value& array = object.Get(key);
     for (std::size_t i = 0; i < array.ArrayLen(); ++i) {
-      if (!array.Get(int(i)).IsNumber()) import.fail(place + "." + key, "holds something that is not a number");
+      if (!array.Get(int(i)).IsNumber())
+        import.fail(place + "." + key, "holds something that is not a number");
       values.push_back(array.Get(int(i)).GetNumberAsDouble());
     }
     if (values.size() != 3) import.fail(place + "." + key, "must have 3 numbers");
@@ -103,14 +105,19 @@ Material read_material(Import& import, std::size_t index) {
   material.roughness = limited(import, pbr.roughnessFactor, 0, 1, place + ".roughnessFactor");
   material.double_sided = source.doubleSided;
   double strength = 1;
-  for (const auto& [name, value] : source.extensions) read_extension(import, name, value, place, material, strength);
-  material.emission = limited_colour(import, source.emissiveFactor, Rgb{0.0f}, kNoUpper, place + ".emissiveFactor");
+  for (const auto& [name, value] : source.extensions)
+    read_extension(import, name, value, place, material, strength);
+  material.emission =
+      limited_colour(import, source.emissiveFactor, Rgb{0.0f}, kNoUpper, place + ".emissiveFactor");
   material.emission *= float(strength);
-  if (!is_finite(material.emission)) import.fail(place, "emissiveFactor times emissiveStrength is not finite");
-  for (int texture : {pbr.baseColorTexture.index, pbr.metallicRoughnessTexture.index, source.normalTexture.index,
-                      source.occlusionTexture.index, source.emissiveTexture.index})
+  if (!is_finite(material.emission))
+    import.fail(place, "emissiveFactor times emissiveStrength is not finite");
+  for (int texture :
+       {pbr.baseColorTexture.index, pbr.metallicRoughnessTexture.index, source.normalTexture.index,
+        source.occlusionTexture.index, source.emissiveTexture.index})
     if (texture >= 0) import.ignore("textures (materials keep their factors)");
-  if (source.alphaMode != "OPAQUE") import.ignore("alphaMode " + source.alphaMode + " (the material is opaque)");
+  if (source.alphaMode != "OPAQUE")
+    import.ignore("alphaMode " + source.alphaMode + " (the material is opaque)");
   return material;
 }
 
@@ -119,10 +126,14 @@ PunctualLight read_light(Import& import, std::size_t index) {
   const std::string place = place_of("extensions.KHR_lights_punctual.lights", index, source.name);
   PunctualLight light;
   light.name = source.name;
-  if (source.type == "point") light.kind = PunctualLight::Kind::point;
-  else if (source.type == "spot") light.kind = PunctualLight::Kind::spot;
-  else if (source.type == "directional") light.kind = PunctualLight::Kind::directional;
-  else import.fail(place + ".type", "\"" + source.type + "\" is not point, spot or directional");
+  if (source.type == "point")
+    light.kind = PunctualLight::Kind::point;
+  else if (source.type == "spot")
+    light.kind = PunctualLight::Kind::spot;
+  else if (source.type == "directional")
+    light.kind = PunctualLight::Kind::directional;
+  else
+    import.fail(place + ".type", "\"" + source.type + "\" is not point, spot or directional");
   light.intensity = limited_colour(import, source.color, Rgb{1.0f}, kNoUpper, place + ".color");
   light.intensity *= limited(import, source.intensity, 0, kNoUpper, place + ".intensity");
   if (!is_finite(light.intensity)) import.fail(place, "color times intensity is not finite");
@@ -171,7 +182,8 @@ void import_materials(Import& import) {
 }
 
 void import_lights(Import& import) {
-  for (std::size_t i = 0; i < import.model.lights.size(); ++i) import.scene.lights.push_back(read_light(import, i));
+  for (std::size_t i = 0; i < import.model.lights.size(); ++i)
+    import.scene.lights.push_back(read_light(import, i));
 }
 
 void import_cameras(Import& import) {

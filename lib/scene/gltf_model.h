@@ -26,9 +26,9 @@ std::string place_of(const char* array, std::size_t index, const std::string& na
 struct Import {
   const tinygltf::Model& model;
   Scene& scene;
-  std::uint64_t geometry_budget = 0;        ///< bytes that may still be allocated for geometry
-  std::vector<int> node_from_source{};      ///< node index of the file -> of the scene, -1: not in the scene
-  std::vector<int> mesh_from_source{};      ///< the same for meshes; -1: not used or without triangles
+  std::uint64_t geometry_budget = 0;    ///< bytes that may still be allocated for geometry
+  std::vector<int> node_from_source{};  ///< node index of the file -> of the scene, -1: not in the scene
+  std::vector<int> mesh_from_source{};  ///< the same for meshes; -1: not used or without triangles
   std::map<std::string, std::size_t> ignored{};  ///< what was ignored -> how often; warnings at the end
 
   [[noreturn]] void fail(const std::string& place, const std::string& what) const {

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kMaxNodes = 1u << 20;
 
-Vec3d vec3_of(const Import& import, const std::vector<double>& values, Vec3d fallback, const std::string& place) {
+Vec3d vec3_of(const Import& import, const std::vector<double>& values, Vec3d fallback,
+              const std::string& place) {
   if (values.empty()) return fallback;
   if (values.size() != 3) import.fail(place, "must have 3 numbers");
   const Vec3d v{values[0], values[1], values[2]};
@@ -18,7 +19,8 @@ Vec3d vec3_of(const Import& import, const std::vector<double>& values, Vec3d fal
   return v;
 }
 
-void read_matrix(const Import& import, const std::vector<double>& values, const std::string& place, Node& node) {
+void read_matrix(const Import& import, const std::vector<double>& values, const std::string& place,
+                 Node& node) {
   if (values.size() != 16) import.fail(place, "must have 16 numbers");
   if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
     import.fail(place, "is not finite");
@@ -58,7 +60,8 @@ Node read_node(Import& import, std::uint32_t index, int parent) {
   if (!source.rotation.empty()) {
     if (source.rotation.size() != 4) import.fail(place + ".rotation", "must have 4 numbers");
     std::copy(source.rotation.begin(), source.rotation.end(), node.rotation.begin());
-    if (!normalize_rotation(node.rotation)) import.fail(place + ".rotation", "is not a quaternion: zero or not finite");
+    if (!normalize_rotation(node.rotation))
+      import.fail(place + ".rotation", "is not a quaternion: zero or not finite");
   }
   node.mesh = checked_index(import, source.mesh, import.model.meshes.size(), place + ".mesh");
   node.camera = checked_index(import, source.camera, import.model.cameras.size(), place + ".camera");
@@ -74,7 +77,8 @@ const tinygltf::Scene& default_scene(const Import& import) {
   if (index < 0 || std::size_t(index) >= model.scenes.size())
     import.fail("scene", "scene " + std::to_string(index) + " does not exist");
   const tinygltf::Scene& scene = model.scenes[std::size_t(index)];
-  if (scene.nodes.empty()) import.fail(place_of("scenes", std::size_t(index), scene.name), "has no nodes; nothing to render");
+  if (scene.nodes.empty())
+    import.fail(place_of("scenes", std::size_t(index), scene.name), "has no nodes; nothing to render");
   return scene;
 }
 
@@ -89,7 +93,9 @@ bool normalize_rotation(std::array<double, 4>& q) {
 
 /// Depth first, children in their order; a stack of our own, so depth is bounded by memory only.
 void import_nodes(Import& import) {
-  struct Pending { int source, parent; };
+  struct Pending {
+    int source, parent;
+  };
   const std::size_t count = import.model.nodes.size();
   if (count > kMaxNodes) import.fail("nodes", "more than " + std::to_string(kMaxNodes) + " nodes");
   import.node_from_source.assign(count, -1);
@@ -100,7 +106,8 @@ void import_nodes(Import& import) {
     const Pending next = stack.back();
     stack.pop_back();
     if (next.source < 0 || std::size_t(next.source) >= count)
-      import.fail("nodes", "node " + std::to_string(next.source) + " is named as a child or root but does not exist");
+      import.fail("nodes",
+                  "node " + std::to_string(next.source) + " is named as a child or root but does not exist");
     const std::size_t source = std::size_t(next.source);
     if (import.node_from_source[source] != -1)
       import.fail(place_of("nodes", source, import.model.nodes[source].name),

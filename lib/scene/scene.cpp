@@ -19,20 +19,25 @@ int Scene::camera_node(const std::string& name) const {
     names += (names.empty() ? "" : ", ") + (node.name.empty() ? camera_name : node.name);
   }
   if (first < 0)
-    throw InputError(path + ": cameras: the scene has no camera; in Blender's glTF exporter tick Include > Cameras");
-  if (name != "auto") throw InputError(path + ": cameras: no camera is named \"" + name + "\"; there is " + names);
+    throw InputError(path +
+                     ": cameras: the scene has no camera; in Blender's glTF exporter tick Include > Cameras");
+  if (name != "auto")
+    throw InputError(path + ": cameras: no camera is named \"" + name + "\"; there is " + names);
   return first;
 }
 
 void require_lights(const Scene& scene) {
-  const auto emits = [&](const Primitive& primitive) { return scene.materials[primitive.material].emissive(); };
+  const auto emits = [&](const Primitive& primitive) {
+    return scene.materials[primitive.material].emissive();
+  };
   for (const Node& node : scene.nodes) {
     if (node.light >= 0 && max_component(scene.lights[std::size_t(node.light)].intensity) > 0) return;
     if (node.mesh >= 0 && std::ranges::any_of(scene.meshes[std::size_t(node.mesh)].primitives, emits)) return;
   }
-  throw InputError(scene.path +
-                   ": lights: nothing in the scene emits light; in Blender's glTF exporter tick Include > Punctual "
-                   "Lights, and note that it leaves out area lights and the world: use emissive meshes instead");
+  throw InputError(
+      scene.path +
+      ": lights: nothing in the scene emits light; in Blender's glTF exporter tick Include > Punctual "
+      "Lights, and note that it leaves out area lights and the world: use emissive meshes instead");
 }
 
 }  // namespace tempolux

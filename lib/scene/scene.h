@@ -21,7 +21,7 @@ struct Material {
   Rgb base_color{1.0f};              ///< reflectance, each channel in [0, 1]
   float metallic = 1;                ///< [0, 1]
   float roughness = 1;               ///< perceptual, [0, 1]; alpha of GGX = roughness^2
-  Rgb emission{0.0f};                ///< radiance [glTF nits], strength included; front side, and back if double_sided
+  Rgb emission{0.0f};                ///< radiance [glTF nits], strength included; back too if double_sided
   float specular = 1;                ///< KHR_materials_specular: factor of the dielectric lobe, [0, 1]
   Rgb specular_color{1.0f};          ///< tint of F0, >= 0
   float ior = 1.5f;                  ///< >= 1, or 0
@@ -60,7 +60,7 @@ struct PunctualLight {
   enum class Kind { point, spot, directional };
   std::string name;
   Kind kind = Kind::point;
-  Rgb intensity{1.0f};            ///< colour x intensity: W/sr (point, spot) or W/m^2 (directional), per channel
+  Rgb intensity{1.0f};            ///< colour x intensity: W/sr (point, spot) or W/m^2 (directional)
   float inner_cone_rad = 0, outer_cone_rad = 0.785398f;  ///< spot: half angles
 
   bool operator==(const PunctualLight&) const = default;
@@ -88,7 +88,7 @@ struct AnimationTrack {
   Path path = Path::translation;
   Interpolation interpolation = Interpolation::linear;
   std::vector<double> times_s;              ///< strictly increasing
-  std::vector<std::array<double, 4>> values;  ///< xyz or xyzw per key; cubic spline: in-tangent, value, out-tangent
+  std::vector<std::array<double, 4>> values;  ///< xyz or xyzw per key; spline: in-tangent, value, out-tangent
 };
 
 struct Animation {

@@ -39,7 +39,8 @@ const char* path_word(Path path) {
 }
 
 /// Which of the node's own properties differ between two frames, else that its parent moves.
-std::string reason(const Scene& scene, const Animator& animator, const Segment& segment, std::size_t n, double fps) {
+std::string reason(const Scene& scene, const Animator& animator, const Segment& segment, std::size_t n,
+                   double fps) {
   std::string properties;
   for (const AnimationTrack* track : animator.tracks(n)) {
     const auto first = evaluate(*track, segment.first / fps);
@@ -66,8 +67,9 @@ Box3d local_box(const Mesh& mesh) {
 
 void add_corners(Box3d& bounds, const Box3d& local, const Affine& world) {
   for (int corner = 0; corner < 8; ++corner)
-    bounds.add(world.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
-                            corner & 4 ? local.upper.z : local.lower.z}));
+    bounds.add(
+        world.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
+                     corner & 4 ? local.upper.z : local.lower.z}));
 }
 
 void add_static_bounds(const Scene& scene, const std::vector<Affine>& world, Segment& segment) {
@@ -97,7 +99,8 @@ Vec3d scene_origin(const Box3d& bounds) {
   const double diagonal = bounds.diagonal();
   if (!(length(centre) > kFarRatio * diagonal)) return {};
   const double step = std::exp2(std::ceil(std::log2(std::max(diagonal, 1e-6))) + 2);
-  return {std::round(centre.x / step) * step, std::round(centre.y / step) * step, std::round(centre.z / step) * step};
+  return {std::round(centre.x / step) * step, std::round(centre.y / step) * step,
+          std::round(centre.z / step) * step};
 }
 
 }  // namespace

@@ -60,7 +60,8 @@ TEST(GltfGate, EveryBadFileIsOneLineQuicklyAndWithoutMuchMemory) {
 
 TEST(GltfGate, DeeplyNestedJsonIsRefused) {
   const std::string depth(200'000, '[');
-  const std::string text = R"({"asset":{"version":"2.0"},"extras":)" + depth + std::string(200'000, ']') + "}";
+  const std::string text =
+      R"({"asset":{"version":"2.0"},"extras":)" + depth + std::string(200'000, ']') + "}";
   EXPECT_CONTAINS(load_error(write_file("deep.gltf", text)), "nested deeper than 64 levels");
 }
 
@@ -76,7 +77,8 @@ TEST(GltfGate, ImagesAreNeverDecoded) {
   // 30000 x 30000 RGBA would be 3.6 GB; the header of such a PNG is enough to make a decoder allocate it.
   const std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30\x08\x06\0\0\0", 29);
   GltfMaker maker = one_triangle();
-  maker.json["images"] = {{{"uri", "data:image/png;base64," + base64(png)}}, {{"bufferView", 0}, {"mimeType", "image/png"}}};
+  maker.json["images"] = {{{"uri", "data:image/png;base64," + base64(png)}},
+                          {{"bufferView", 0}, {"mimeType", "image/png"}}};
   maker.json["textures"] = {{{"source", 0}}};
   const long before = peak_megabytes();
   EXPECT_EQ(maker.load().meshes.size(), 1u);
@@ -85,25 +87,30 @@ TEST(GltfGate, ImagesAreNeverDecoded) {
 
 TEST(GltfGate, UrisMustStayInTheScenesFolder) {
   write_file("outside.bin", std::string(36, '\0'));
-  for (const char* uri : {"../outside.bin", "a/../../outside.bin", "%2e%2e/outside.bin", "../../../../../etc/hostname"}) {
-    const std::string path = write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", uri}}).text());
+  for (const char* uri :
+       {"../outside.bin", "a/../../outside.bin", "%2e%2e/outside.bin", "../../../../../etc/hostname"}) {
+    const std::string path =
+        write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", uri}}).text());
     EXPECT_CONTAINS(load_error(path), "leads out of the scene's folder");
   }
   const std::string absolute = (temporary_folder() / "outside.bin").string();
-  const std::string path = write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", absolute}}).text());
+  const std::string path =
+      write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", absolute}}).text());
   EXPECT_CONTAINS(load_error(path), "is an absolute path");
 }
 
 TEST(GltfGate, SymbolicLinksMustStayInTheScenesFolder) {
   write_file("outside.bin", std::string(36, '\0'));
-  const std::string path = write_file("links/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", "link.bin"}}).text());
+  const std::string path =
+      write_file("links/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", "link.bin"}}).text());
   fs::create_symlink("../outside.bin", temporary_folder() / "links/link.bin");
   EXPECT_CONTAINS(load_error(path), "leads out of the scene's folder");
 }
 
 TEST(GltfGate, AllowOutsideReadsThem) {
   write_file("outside.bin", one_triangle().bytes);
-  const std::string path = write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", "../outside.bin"}}).text());
+  const std::string path =
+      write_file("inside/scene.gltf", with_buffer({{"byteLength", 36}, {"uri", "../outside.bin"}}).text());
   const Scene scene = load_gltf(path, {.allow_outside = true});
   EXPECT_EQ(scene.meshes.size(), 1u);
   EXPECT_EQ(scene.files.size(), 2u);
@@ -111,7 +118,8 @@ TEST(GltfGate, AllowOutsideReadsThem) {
 
 TEST(GltfGate, FilesBesideTheSceneAreReadAndListed) {
   write_file("data of it.bin", one_triangle().bytes + "more than byteLength");
-  const std::string path = write_file("beside.gltf", with_buffer({{"byteLength", 36}, {"uri", "data%20of%20it.bin"}}).text());
+  const std::string path =
+      write_file("beside.gltf", with_buffer({{"byteLength", 36}, {"uri", "data%20of%20it.bin"}}).text());
   const Scene scene = load_gltf(path);
   ASSERT_EQ(scene.files.size(), 2u);
   EXPECT_EQ(fs::path(scene.files[1]).filename(), "data of it.bin");
@@ -119,12 +127,16 @@ TEST(GltfGate, FilesBesideTheSceneAreReadAndListed) {
 }
 
 TEST(GltfGate, OtherUrisAreRefused) {
-  struct Case { const char *uri, *part; };
-  for (const Case& c : {Case{"http://example.org/a.bin", "is not a relative path"}, Case{"file:///etc/hostname", "is not a relative path"},
-                        Case{"", "is empty"}, Case{"a%zz.bin", "hexadecimal"}, Case{"a%", "hexadecimal"}, Case{"a%00.bin", "zero byte"},
-                        Case{"none.bin", "cannot be opened"}, Case{".", "not a regular file"},
-                        Case{"data:text/html,hello", "must be base64"}, Case{"data:a/b;base64,!!!!", "not base64"},
-                        Case{"data:a/b;base64,AAAA", "decodes to 3 bytes"}})
+  struct Case {
+    const char *uri, *part;
+  };
+  for (const Case& c :
+       {Case{"http://example.org/a.bin", "is not a relative path"},
+        Case{"file:///etc/hostname", "is not a relative path"}, Case{"", "is empty"},
+        Case{"a%zz.bin", "hexadecimal"}, Case{"a%", "hexadecimal"}, Case{"a%00.bin", "zero byte"},
+        Case{"none.bin", "cannot be opened"}, Case{".", "not a regular file"},
+        Case{"data:text/html,hello", "must be base64"}, Case{"data:a/b;base64,!!!!", "not base64"},
+        Case{"data:a/b;base64,AAAA", "decodes to 3 bytes"}})
     EXPECT_CONTAINS(error_of(with_buffer({{"byteLength", 36}, {"uri", c.uri}})), c.part);
 }
 
@@ -158,10 +170,13 @@ TEST(GltfGate, FileSizeLimitHolds) {
 }
 
 TEST(GltfGate, RequiredExtensionsAreNamedWithTheRemedy) {
-  struct Case { const char *name, *remedy; };
-  for (const Case& c : {Case{"EXT_meshopt_compression", "gltf-transform cp"}, Case{"KHR_meshopt_compression", "gltf-transform cp"},
-                        Case{"EXT_texture_webp", "gltf-transform png"}, Case{"KHR_texture_basisu", "ktxdecompress"},
-                        Case{"KHR_never_heard_of", "export without it"}}) {
+  struct Case {
+    const char *name, *remedy;
+  };
+  for (const Case& c :
+       {Case{"EXT_meshopt_compression", "gltf-transform cp"},
+        Case{"KHR_meshopt_compression", "gltf-transform cp"}, Case{"EXT_texture_webp", "gltf-transform png"},
+        Case{"KHR_texture_basisu", "ktxdecompress"}, Case{"KHR_never_heard_of", "export without it"}}) {
     GltfMaker maker = one_triangle();
     maker.json["extensionsRequired"] = {c.name};
     const std::string message = error_of(maker);
@@ -250,8 +265,11 @@ TEST(GltfGate, NoChangedByteCrashesOrHangs) {
 }
 
 TEST(GltfGate, AccessorsOutsideTheirBytesAreRefusedIn64Bits) {
-  struct Case { std::uint64_t count, offset; };
-  for (const Case& c : {Case{4, 0}, Case{3, 4}, Case{4'000'000'000, 0}, Case{1ull << 59, 0}, Case{1, (1ull << 59) - 8}}) {
+  struct Case {
+    std::uint64_t count, offset;
+  };
+  for (const Case& c :
+       {Case{4, 0}, Case{3, 4}, Case{4'000'000'000, 0}, Case{1ull << 59, 0}, Case{1, (1ull << 59) - 8}}) {
     GltfMaker maker = one_triangle();
     maker.json["accessors"][0]["count"] = c.count;
     maker.json["accessors"][0]["byteOffset"] = c.offset;
@@ -263,7 +281,8 @@ TEST(GltfGate, SmallFilesThatAskForMuchMemoryAreRefused) {
   GltfMaker maker = one_triangle();
   maker.json["accessors"][0].erase("bufferView");
   maker.json["accessors"][0]["count"] = 100'000'000;
-  maker.json["accessors"][0]["sparse"] = {{"count", 1}, {"indices", {{"bufferView", 0}, {"componentType", 5125}}},
+  maker.json["accessors"][0]["sparse"] = {{"count", 1},
+                                          {"indices", {{"bufferView", 0}, {"componentType", 5125}}},
                                           {"values", {{"bufferView", 0}}}};
   EXPECT_CONTAINS(error_of(maker), "far more memory");
 }

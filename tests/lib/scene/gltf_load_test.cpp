@@ -13,7 +13,8 @@ std::size_t triangle_count(const Scene& scene) {
   std::size_t count = 0;
   for (const Node& node : scene.nodes)
     if (node.mesh >= 0)
-      for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives) count += primitive.triangles.size();
+      for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)
+        count += primitive.triangles.size();
   return count;
 }
 
@@ -21,8 +22,11 @@ std::string error_of(const GltfMaker& maker) { return load_error(write_file("bad
 
 TEST(GltfLoad, AllMadeScenesLoadWithTheirTriangles) {
   if (shared_scenes().empty()) GTEST_SKIP() << "../shared/scenes is not there";
-  const std::map<std::string, std::size_t> triangles{{"S1_cornell.glb", 52}, {"S2_cornell_moving.glb", 52},
-                                                     {"S6_smoke.glb", 52}, {"U1_point.gltf", 2}, {"U5_furnace_closed.gltf", 12}};
+  const std::map<std::string, std::size_t> triangles{{"S1_cornell.glb", 52},
+                                                     {"S2_cornell_moving.glb", 52},
+                                                     {"S6_smoke.glb", 52},
+                                                     {"U1_point.gltf", 2},
+                                                     {"U5_furnace_closed.gltf", 12}};
   int count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(shared_scenes() / "made")) {
     const std::string extension = entry.path().extension();
@@ -52,7 +56,8 @@ TEST(GltfLoad, FoundFilesLoadOrSayWhatIsNotSupported) {
       ++loaded;
     } catch (const InputError& error) {
       const std::string message = error.what();
-      EXPECT_TRUE(message.find("is not supported; ") != std::string::npos || message.find("nothing to render") != std::string::npos)
+      EXPECT_TRUE(message.find("is not supported; ") != std::string::npos ||
+                  message.find("nothing to render") != std::string::npos)
           << message;
     }
   }
@@ -75,8 +80,10 @@ TEST(GltfLoad, StripsAndFansBecomeTrianglesWithTheirWinding) {
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", attributes}, {"mode", 6}})}});
   const Scene scene = maker.load();
   // glTF 2.0, 3.7.2.1: strip p_i = {v_i, v_(i+1+i%2), v_(i+2-i%2)}, fan p_i = {v_(i+1), v_(i+2), v_0}
-  EXPECT_EQ(scene.meshes[0].primitives[0].triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
-  EXPECT_EQ(scene.meshes[1].primitives[0].triangles, (std::vector<Triangle>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
+  EXPECT_EQ(scene.meshes[0].primitives[0].triangles,
+            (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}, {2, 3, 4}}));
+  EXPECT_EQ(scene.meshes[1].primitives[0].triangles,
+            (std::vector<Triangle>{{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}));
 }
 
 TEST(GltfLoad, PointsAndLinesAreIgnoredByName) {
@@ -90,14 +97,17 @@ TEST(GltfLoad, PointsAndLinesAreIgnoredByName) {
 
 TEST(GltfLoad, QuantizedAttributesBecomeNumbers) {
   GltfMaker maker;
-  const int positions = maker.add_accessor<std::int16_t>({-32768, -32767, 0, 32767, 0, 0, 0, 16384, 0}, 5122, "VEC3", 3);
+  const int positions =
+      maker.add_accessor<std::int16_t>({-32768, -32767, 0, 32767, 0, 0, 0, 16384, 0}, 5122, "VEC3", 3);
   const int normals = maker.add_accessor<std::int8_t>({0, 0, 127, 0, 0, 127, 0, 0, 127}, 5120, "VEC3", 3);
   const int uvs = maker.add_accessor<std::uint8_t>({0, 255, 51, 102, 0, 0}, 5121, "VEC2", 2);
   maker.json["accessors"][positions]["normalized"] = true;
   maker.json["accessors"][normals]["normalized"] = true;
   maker.json["accessors"][uvs]["normalized"] = true;
   maker.json["extensionsRequired"] = {"KHR_mesh_quantization"};
-  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}, {"TEXCOORD_0", uvs}}}})}});
+  maker.add_node(
+      {{"mesh", maker.add_mesh(
+                    {{"attributes", {{"POSITION", positions}, {"NORMAL", normals}, {"TEXCOORD_0", uvs}}}})}});
   const Scene scene = maker.load();
   const Primitive& primitive = scene.meshes[0].primitives[0];
   EXPECT_EQ(primitive.positions[0], (Vec3{-1, -1, 0}));  // the lowest integer also means -1
@@ -109,7 +119,8 @@ TEST(GltfLoad, QuantizedAttributesBecomeNumbers) {
 
 TEST(GltfLoad, IntegersThatAreNotNormalisedKeepTheirValue) {
   GltfMaker maker;
-  const int positions = maker.add_accessor<std::uint16_t>({0, 0, 0, 1000, 0, 0, 0, 65535, 0}, 5123, "VEC3", 3);
+  const int positions =
+      maker.add_accessor<std::uint16_t>({0, 0, 0, 1000, 0, 0, 0, 65535, 0}, 5123, "VEC3", 3);
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}})}});
   EXPECT_EQ(maker.load().meshes[0].primitives[0].positions[2], (Vec3{0, 65535, 0}));
 }
@@ -120,7 +131,8 @@ TEST(GltfLoad, InterleavedVerticesAreReadByTheirStride) {
   maker.json["bufferViews"][0]["byteStride"] = 24;
   maker.json["accessors"][0]["count"] = 3;
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}})}});
-  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions,
+            (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
 TEST(GltfLoad, SparseAccessorsReplaceSomeElements) {
@@ -131,7 +143,8 @@ TEST(GltfLoad, SparseAccessorsReplaceSomeElements) {
       {"count", 1},
       {"indices", {{"bufferView", maker.json["accessors"][indices]["bufferView"]}, {"componentType", 5123}}},
       {"values", {{"bufferView", maker.json["accessors"][values]["bufferView"]}}}};
-  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 5, 0}}));
+  EXPECT_EQ(maker.load().meshes[0].primitives[0].positions,
+            (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 5, 0}}));
   maker.json["accessors"][0].erase("bufferView");  // the rest is then zero
   maker.json["accessors"][0]["count"] = 3;
   EXPECT_CONTAINS(error_of(maker), "no node of the scene has a mesh with triangles");
@@ -151,8 +164,10 @@ TEST(GltfLoad, MissingNormalsMeanFlatShading) {
 TEST(GltfLoad, NormalsBecomeUnitAndZeroOnesFlat) {
   GltfMaker maker;
   const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0});
-  const int long_ones = maker.add_vec3({0, 0, 3, 0, 3, 0, 3, 0, 0}), zero = maker.add_vec3({0, 0, 1, 0, 0, 0, 0, 0, 1});
-  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", long_ones}}}})}});
+  const int long_ones = maker.add_vec3({0, 0, 3, 0, 3, 0, 3, 0, 0}),
+            zero = maker.add_vec3({0, 0, 1, 0, 0, 0, 0, 0, 1});
+  maker.add_node(
+      {{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", long_ones}}}})}});
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", zero}}}})}});
   const Scene scene = maker.load();
   EXPECT_EQ(scene.meshes[0].primitives[0].normals, (std::vector<Vec3>{{0, 0, 1}, {0, 1, 0}, {1, 0, 0}}));
@@ -164,7 +179,8 @@ TEST(GltfLoad, TrianglesOfZeroAreaAreDroppedAndCounted) {
   GltfMaker maker;
   const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0, 1, 0, 0});
   const int indices = maker.add_indices({0, 1, 2, 0, 0, 1, 0, 1, 3, 1, 4, 2, 0, 3, 2});
-  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})}});
+  maker.add_node(
+      {{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})}});
   const Scene scene = maker.load();
   // of five: two corners equal, collinear, two corners at one place
   EXPECT_EQ(scene.meshes[0].primitives[0].triangles.size(), 2u);
@@ -174,7 +190,9 @@ TEST(GltfLoad, TrianglesOfZeroAreaAreDroppedAndCounted) {
 TEST(GltfLoad, ATinyTriangleIsNoZeroTriangle) {
   GltfMaker maker;
   const float e = std::ldexp(1.0f, -23);
-  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({1, 1, 0, 1 + e, 1, 0, 1, 1 + e, 0})}}}})}});
+  maker.add_node(
+      {{"mesh", maker.add_mesh(
+                    {{"attributes", {{"POSITION", maker.add_vec3({1, 1, 0, 1 + e, 1, 0, 1, 1 + e, 0})}}}})}});
   EXPECT_EQ(maker.load().meshes[0].primitives[0].triangles.size(), 1u);
 }
 
@@ -183,7 +201,8 @@ TEST(GltfLoad, PrimitivesKeepOnlyTheVerticesTheyUse) {
   const int positions = maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 0, 0, 6, 0, 0, 5, 1, 0});
   const int normals = maker.add_vec3({1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0});
   const Json attributes = {{"POSITION", positions}, {"NORMAL", normals}};
-  maker.add_node({{"mesh", maker.add_mesh({{"attributes", attributes}, {"indices", maker.add_indices({5, 3, 4})}})}});
+  maker.add_node(
+      {{"mesh", maker.add_mesh({{"attributes", attributes}, {"indices", maker.add_indices({5, 3, 4})}})}});
   const Scene scene = maker.load();
   const Primitive& primitive = scene.meshes[0].primitives[0];
   EXPECT_EQ(primitive.positions, (std::vector<Vec3>{{5, 0, 0}, {6, 0, 0}, {5, 1, 0}}));
@@ -193,14 +212,17 @@ TEST(GltfLoad, PrimitivesKeepOnlyTheVerticesTheyUse) {
 
 TEST(GltfLoad, MaterialsAreReadWithTheirExtensions) {
   GltfMaker maker;
-  maker.add_material({{"name", "M"},
-                      {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 0.25, 0.125, 1}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.25}}},
-                      {"emissiveFactor", {1, 0.5, 0}},
-                      {"doubleSided", true},
-                      {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
-                                      {"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {1, 2, 3}}}},
-                                      {"KHR_materials_ior", {{"ior", 1.25}}},
-                                      {"KHR_materials_transmission", {{"transmissionFactor", 0.75}}}}}});
+  maker.add_material(
+      {{"name", "M"},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.5, 0.25, 0.125, 1}}, {"metallicFactor", 0.5}, {"roughnessFactor", 0.25}}},
+       {"emissiveFactor", {1, 0.5, 0}},
+       {"doubleSided", true},
+       {"extensions",
+        {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}},
+         {"KHR_materials_specular", {{"specularFactor", 0.5}, {"specularColorFactor", {1, 2, 3}}}},
+         {"KHR_materials_ior", {{"ior", 1.25}}},
+         {"KHR_materials_transmission", {{"transmissionFactor", 0.75}}}}}});
   maker.add_node({{"mesh", maker.add_triangle(0)}});
   maker.add_node({{"mesh", maker.add_triangle()}});
   const Scene scene = maker.load();
@@ -220,7 +242,8 @@ TEST(GltfLoad, MaterialsAreReadWithTheirExtensions) {
 
 TEST(GltfLoad, ReflectanceOutsideZeroToOneIsClampedWithAWarning) {
   GltfMaker maker;
-  maker.add_material({{"name", "Bright"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1.5, -1, 0.5, 1}}}}});
+  maker.add_material(
+      {{"name", "Bright"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1.5, -1, 0.5, 1}}}}});
   maker.add_node({{"mesh", maker.add_triangle(0)}});
   const Scene scene = maker.load();
   EXPECT_EQ(scene.materials[0].base_color, (Rgb{1, 0, 0.5f}));
@@ -230,7 +253,8 @@ TEST(GltfLoad, ReflectanceOutsideZeroToOneIsClampedWithAWarning) {
 
 TEST(GltfLoad, WhatIsNotRenderedYetIsNamed) {
   GltfMaker maker;
-  maker.add_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}, {"alphaMode", "MASK"},
+  maker.add_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+                      {"alphaMode", "MASK"},
                       {"extensions", {{"KHR_materials_unlit", Json::object()}}}});
   maker.add_node({{"mesh", maker.add_triangle(0)}});
   Json& primitive = maker.json["meshes"][0]["primitives"][0];
@@ -241,11 +265,13 @@ TEST(GltfLoad, WhatIsNotRenderedYetIsNamed) {
   maker.add_light({{"type", "point"}, {"range", 10}});
   maker.animate(0, "translation", {0}, {0, 0, 0});
   Json pointer = maker.json["animations"][0]["channels"][0];
-  pointer["target"] = {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", "/materials/0"}}}}}};
+  pointer["target"] = {{"path", "pointer"},
+                       {"extensions", {{"KHR_animation_pointer", {{"pointer", "/materials/0"}}}}}};
   maker.json["animations"][0]["channels"].push_back(pointer);
   const Scene scene = maker.load();
-  for (const char* part : {"textures", "alphaMode MASK", "KHR_materials_unlit", "morph targets", "vertex colours", "skins",
-                           "range of lights", "1 channels of KHR_animation_pointer"})
+  for (const char* part :
+       {"textures", "alphaMode MASK", "KHR_materials_unlit", "morph targets", "vertex colours", "skins",
+        "range of lights", "1 channels of KHR_animation_pointer"})
     EXPECT_TRUE(has_warning(scene, part)) << part;
 }
 
@@ -286,25 +312,30 @@ TEST(GltfLoad, NodesWithTwoParentsOrInALoopAreRefused) {
 TEST(GltfLoad, NumbersThatAreNotFiniteAreRefusedWithMeshAndAccessor) {
   GltfMaker maker;
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({0, 0, 0, 1, 0, nan, 0, 1, 0})}}}})}});
+  maker.add_node(
+      {{"mesh",
+        maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({0, 0, 0, 1, 0, nan, 0, 1, 0})}}}})}});
   EXPECT_CONTAINS(error_of(maker), "meshes[0].primitives[0].POSITION: accessor 0 holds NaN");
 }
 
 TEST(GltfLoad, IndicesBeyondTheVerticesAreRefused) {
   GltfMaker maker;
-  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0})}}},
-                                           {"indices", maker.add_indices({0, 1, 3})}})}});
+  maker.add_node(
+      {{"mesh", maker.add_mesh({{"attributes", {{"POSITION", maker.add_vec3({0, 0, 0, 1, 0, 0, 0, 1, 0})}}},
+                                {"indices", maker.add_indices({0, 1, 3})}})}});
   EXPECT_CONTAINS(error_of(maker), "index 3 is beyond the 3 vertices");
 }
 
 TEST(GltfLoad, BadAnimationsAreRefused) {
-  const auto animated = [](const char* path, std::vector<float> times, std::vector<float> values, const char* how) {
+  const auto animated = [](const char* path, std::vector<float> times, std::vector<float> values,
+                           const char* how) {
     GltfMaker maker;
     maker.add_node({{"mesh", maker.add_triangle()}});
     maker.animate(0, path, times, values, how);
     return maker;
   };
-  EXPECT_CONTAINS(error_of(animated("translation", {0, 0}, {0, 0, 0, 1, 0, 0}, "LINEAR")), "times must increase");
+  EXPECT_CONTAINS(error_of(animated("translation", {0, 0}, {0, 0, 0, 1, 0, 0}, "LINEAR")),
+                  "times must increase");
   EXPECT_CONTAINS(error_of(animated("translation", {0, 1}, {0, 0, 0}, "LINEAR")), "1 values for 2 keys");
   EXPECT_CONTAINS(error_of(animated("translation", {0, 1}, {0, 0, 0, 1, 0, 0}, "CUBICSPLINE")), "three each");
   EXPECT_CONTAINS(error_of(animated("rotation", {0}, {0, 0, 0, 0}, "LINEAR")), "quaternion of zero length");

@@ -51,7 +51,8 @@ inline std::string base64(const std::string& bytes) {
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? std::uint8_t(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? std::uint8_t(bytes[i + k]) : 0u);
     for (std::size_t k = 0; k < 4; ++k)
       text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
   }
@@ -64,9 +65,11 @@ struct GltfMaker {
   std::string bytes;
 
   template <class T>
-  int add_accessor(const std::vector<T>& values, int component_type, const char* type, std::size_t per_element) {
+  int add_accessor(const std::vector<T>& values, int component_type, const char* type,
+                   std::size_t per_element) {
     while (bytes.size() % 4) bytes += '\0';
-    json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}});
+    json["bufferViews"].push_back(
+        {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", values.size() * sizeof(T)}});
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
     json["accessors"].push_back({{"bufferView", json["bufferViews"].size() - 1},
                                  {"componentType", component_type},
@@ -77,7 +80,9 @@ struct GltfMaker {
   int add_vec3(const std::vector<float>& values) { return add_accessor(values, 5126, "VEC3", 3); }
   int add_vec4(const std::vector<float>& values) { return add_accessor(values, 5126, "VEC4", 4); }
   int add_scalars(const std::vector<float>& values) { return add_accessor(values, 5126, "SCALAR", 1); }
-  int add_indices(const std::vector<std::uint16_t>& values) { return add_accessor(values, 5123, "SCALAR", 1); }
+  int add_indices(const std::vector<std::uint16_t>& values) {
+    return add_accessor(values, 5123, "SCALAR", 1);
+  }
 
   int add_material(const Json& material) { return add("materials", material); }
   int add_mesh(const Json& primitive) { return add("meshes", {{"primitives", {primitive}}}); }
@@ -88,8 +93,9 @@ struct GltfMaker {
     return add_mesh(primitive);
   }
   int add_square(int material = -1) {
-    Json primitive = {{"attributes", {{"POSITION", add_vec3({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})},
-                                      {"NORMAL", add_vec3({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1})}}},
+    Json primitive = {{"attributes",
+                       {{"POSITION", add_vec3({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0})},
+                        {"NORMAL", add_vec3({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1})}}},
                       {"indices", add_indices({0, 1, 2, 0, 2, 3})}};
     if (material >= 0) primitive["material"] = material;
     return add_mesh(primitive);
@@ -102,7 +108,8 @@ struct GltfMaker {
   }
   int add_camera(const Json& node = {{"name", "Camera"}}) {
     Json with = node;
-    with["camera"] = add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}});
+    with["camera"] =
+        add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}});
     return add_node(with);
   }
   int add_light(const Json& light, const Json& node = Json::object()) {
@@ -115,18 +122,21 @@ struct GltfMaker {
   /// One animated property; values as in the file.
   void animate(int node, const char* path, const std::vector<float>& times, const std::vector<float>& values,
                const char* interpolation = "LINEAR") {
-    if (!json.contains("animations")) json["animations"] = {{{"channels", Json::array()}, {"samplers", Json::array()}}};
+    if (!json.contains("animations"))
+      json["animations"] = {{{"channels", Json::array()}, {"samplers", Json::array()}}};
     Json& animation = json["animations"][0];
     const int output = std::string(path) == "rotation" ? add_vec4(values) : add_vec3(values);
-    animation["samplers"].push_back({{"input", add_scalars(times)}, {"output", output}, {"interpolation", interpolation}});
-    animation["channels"].push_back({{"sampler", animation["samplers"].size() - 1},
-                                     {"target", {{"node", node}, {"path", path}}}});
+    animation["samplers"].push_back(
+        {{"input", add_scalars(times)}, {"output", output}, {"interpolation", interpolation}});
+    animation["channels"].push_back(
+        {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
   }
 
   std::string text() const {
     Json out = json;
     if (!bytes.empty() && !out.contains("buffers"))
-      out["buffers"] = {{{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
+      out["buffers"] = {
+          {{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
     return out.dump();
   }
   std::string glb() const {
@@ -169,13 +179,13 @@ inline bool has_warning(const Scene& scene, const std::string& part) {
 }
 
 #define EXPECT_CONTAINS(text, part) EXPECT_NE(std::string(text).find(part), std::string::npos) << (text)
-#define EXPECT_NEAR_VEC(actual, expected, tolerance)                 \
-  do {                                                               \
-    const auto a_ = (actual);                                        \
-    const decltype(a_) e_ = (expected);                              \
-    EXPECT_NEAR(a_.x, e_.x, tolerance) << "x";                       \
-    EXPECT_NEAR(a_.y, e_.y, tolerance) << "y";                       \
-    EXPECT_NEAR(a_.z, e_.z, tolerance) << "z";                       \
+#define EXPECT_NEAR_VEC(actual, expected, tolerance) \
+  do {                                               \
+    const auto a_ = (actual);                        \
+    const decltype(a_) e_ = (expected);              \
+    EXPECT_NEAR(a_.x, e_.x, tolerance) << "x";       \
+    EXPECT_NEAR(a_.y, e_.y, tolerance) << "y";       \
+    EXPECT_NEAR(a_.z, e_.z, tolerance) << "z";       \
   } while (false)
 
 }  // namespace tempolux

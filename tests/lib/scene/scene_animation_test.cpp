@@ -13,7 +13,8 @@ constexpr float kHalf = 0.70710678f;  // sin and cos of 45 degrees
 /// A triangle whose node is animated; x(frame) is where its corner (1,0,0) stands.
 struct Animated {
   GltfMaker maker;
-  Animated(const char* path, const std::vector<float>& times, const std::vector<float>& values, const char* how = "LINEAR") {
+  Animated(const char* path, const std::vector<float>& times, const std::vector<float>& values,
+           const char* how = "LINEAR") {
     maker.add_node({{"mesh", maker.add_triangle()}});
     maker.animate(0, path, times, values, how);
   }
@@ -64,16 +65,19 @@ TEST(SceneAnimation, RotationTakesTheShorterArc) {
 }
 
 TEST(SceneAnimation, CubicSplineIsTheHermiteCurve) {
-  // in, value, out per key; dt = 2 s. At half: v0/2 + v1/2 + dt (out0 - in1) / 8 = 0 + 0.5 + 2 (4 - 2) / 8 = 1;
-  // at a quarter: v1 (3/16 - 2/64) + dt (out0 (1/64 - 2/16 + 1/4) + in1 (1/64 - 1/16)) = 0.15625 + 1.125 - 0.1875.
-  const Animated moved("translation", {0, 2}, {9, 0, 0, 0, 0, 0, 4, 0, 0, 2, 0, 0, 1, 0, 0, 9, 0, 0}, "CUBICSPLINE");
+  // in, value, out per key; dt = 2 s. At half: v0/2 + v1/2 + dt (out0 - in1) / 8 = 0 + 0.5 + 2 (4 - 2) / 8 =
+  // 1; at a quarter: v1 (3/16 - 2/64) + dt (out0 (1/64 - 2/16 + 1/4) + in1 (1/64 - 1/16)) = 0.15625 + 1.125 -
+  // 0.1875.
+  const Animated moved("translation", {0, 2}, {9, 0, 0, 0, 0, 0, 4, 0, 0, 2, 0, 0, 1, 0, 0, 9, 0, 0},
+                       "CUBICSPLINE");
   EXPECT_NEAR(moved.corner(24).x, 1 + 1.0, kRounding);
   EXPECT_NEAR(moved.corner(12).x, 1 + 1.09375, kRounding);
 }
 
 TEST(SceneAnimation, CubicSplineRotationsAreNormalised) {
   const Animated turned("rotation", {0, 1},
-                        {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, kHalf, 0, kHalf, 0, 0, 0, 0}, "CUBICSPLINE");
+                        {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, kHalf, 0, kHalf, 0, 0, 0, 0},
+                        "CUBICSPLINE");
   EXPECT_NEAR(length(turned.corner(6)), 1, kRounding);
   EXPECT_NEAR_VEC(turned.corner(12), (Vec3{kHalf, 0, -kHalf}), kRounding);  // halfway by symmetry
 }
@@ -81,7 +85,8 @@ TEST(SceneAnimation, CubicSplineRotationsAreNormalised) {
 TEST(SceneAnimation, ChildrenFollowTheirParents) {
   GltfMaker maker;
   const int child = maker.add_node({{"mesh", maker.add_triangle()}, {"translation", {1, 0, 0}}}, false);
-  const int parent = maker.add_node({{"children", {child}}, {"scale", {2, 2, 2}}, {"translation", {0, 0, 5}}});
+  const int parent =
+      maker.add_node({{"children", {child}}, {"scale", {2, 2, 2}}, {"translation", {0, 0, 5}}});
   maker.animate(parent, "rotation", {0, 1}, {0, 0, 0, 1, 0, kHalf, 0, kHalf});
   const Scene scene = maker.load();
   const SceneFrame at = scene_at_frame(scene, segment_of(scene, 24, {}), 24, {});
@@ -91,7 +96,8 @@ TEST(SceneAnimation, ChildrenFollowTheirParents) {
 
 TEST(SceneAnimation, MatricesAreColumnMajor) {
   GltfMaker maker;
-  maker.add_node({{"mesh", maker.add_triangle()}, {"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}});
+  maker.add_node(
+      {{"mesh", maker.add_triangle()}, {"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 5, 6, 7, 1}}});
   const Scene scene = maker.load();
   const SceneFrame at = scene_at_frame(scene, segment_of(scene, 0, {}), 0, {});
   EXPECT_EQ(at.surfaces[0].positions[1], (Vec3{5, 7, 7}));
@@ -143,7 +149,8 @@ TEST(SceneAnimation, TheMovingBoxOfTheCornellScene) {
   const Scene scene = load_gltf((shared_scenes() / "made/S2_cornell_moving.glb").string());
   const Segment segment = segment_of(scene, 10, {});
   ASSERT_EQ(scene_at_frame(scene, segment, 10, {}).static_count, 8u);
-  // Worked out from the file by an independent script: key 10 of the box's tracks, applied to its first vertex.
+  // Worked out from the file by an independent script: key 10 of the box's tracks, applied to its first
+  // vertex.
   const SceneFrame at = scene_at_frame(scene, segment, 10, {});
   EXPECT_NEAR_VEC(at.surfaces[8].positions[0], (Vec3{-0.884213512f, 0.0f, 0.691094455f}), kRounding);
 }

@@ -14,7 +14,8 @@ SceneFrame first_frame(const Scene& scene, const TimeOptions& options = {}) {
 /// Normal of a surface's first triangle by its winding as `flipped` says.
 Vec3 facing(const Surface& surface) {
   const auto& t = surface.primitive->triangles[0];
-  const Vec3 n = normalize(cross(surface.positions[t[1]] - surface.positions[t[0]], surface.positions[t[2]] - surface.positions[t[0]]));
+  const Vec3 n = normalize(cross(surface.positions[t[1]] - surface.positions[t[0]],
+                                 surface.positions[t[2]] - surface.positions[t[0]]));
   return surface.flipped ? -n : n;
 }
 
@@ -51,8 +52,10 @@ TEST(SceneAtFrame, AMirroringTransformFlipsTheWindingNotTheFront) {
 TEST(SceneAtFrame, NormalsGoByTheInverseTranspose) {
   GltfMaker maker;
   const float h = std::sqrt(0.5f);
-  const int positions = maker.add_vec3({0, 0, 0, 0, 0, 1, 1, -1, 0}), normals = maker.add_vec3({h, h, 0, h, h, 0, h, h, 0});
-  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}})}, {"scale", {1, 2, 1}}});
+  const int positions = maker.add_vec3({0, 0, 0, 0, 0, 1, 1, -1, 0}),
+            normals = maker.add_vec3({h, h, 0, h, h, 0, h, h, 0});
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}, {"NORMAL", normals}}}})},
+                  {"scale", {1, 2, 1}}});
   const Scene scene = maker.load();
   const SceneFrame at = first_frame(scene);
   // the plane x + y = 0 becomes x + y/2 = 0
@@ -76,7 +79,8 @@ TEST(SceneAtFrame, AFlatScaleLeavesNoNaN) {
 TEST(SceneAtFrame, VerticesBeyondAllNumbersAreRefused) {
   for (const double scale : {1e16, 1e200, 1e308}) {
     GltfMaker maker;
-    maker.add_node({{"mesh", maker.add_square()}, {"scale", {scale, scale, scale}}, {"translation", {scale, 0, 0}}});
+    maker.add_node(
+        {{"mesh", maker.add_square()}, {"scale", {scale, scale, scale}}, {"translation", {scale, 0, 0}}});
     const Scene scene = maker.load();
     EXPECT_THROW(first_frame(scene), InputError) << scale;
   }
@@ -86,7 +90,10 @@ TEST(SceneAtFrame, ALightIsColourTimesIntensityAndItsNodesScaleDoesNotCount) {
   GltfMaker maker;
   maker.add_node({{"mesh", maker.add_triangle()}});
   const float h = std::sqrt(0.5f);
-  maker.add_light({{"type", "spot"}, {"color", {1, 0.5, 0.25}}, {"intensity", 8}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.5}}}},
+  maker.add_light({{"type", "spot"},
+                   {"color", {1, 0.5, 0.25}},
+                   {"intensity", 8},
+                   {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.5}}}},
                   {{"translation", {1, 2, 3}}, {"scale", {7, 7, 7}}, {"rotation", {h, 0, 0, h}}});
   const Scene scene = maker.load();
   const PlacedLight light = first_frame(scene).lights.at(0);
@@ -128,7 +135,8 @@ TEST(SceneAtFrame, CamerasAreRigidWhateverTheirScale) {
   EXPECT_EQ(placed.camera.kind, Camera::Kind::perspective);
   EXPECT_EQ(placed.camera.yfov_rad, 0.8);
   const Affine& m = placed.scene_from_camera;
-  EXPECT_NEAR_VEC(m.direction({0, 0, -1}), (Vec3d{-1, 0, 0}), 1e-7);  // looks along -z, turned 90 degrees about y
+  EXPECT_NEAR_VEC(m.direction({0, 0, -1}), (Vec3d{-1, 0, 0}),
+                  1e-7);  // looks along -z, turned 90 degrees about y
   EXPECT_NEAR_VEC(m.direction({1, 0, 0}), (Vec3d{0, 0, -1}), 1e-7);
   EXPECT_NEAR_VEC(m.direction({0, 1, 0}), (Vec3d{0, 1, 0}), 1e-12);
   EXPECT_NEAR(m.determinant(), 1, 1e-12);
@@ -139,7 +147,8 @@ TEST(SceneAtFrame, OrthographicCamerasKeepTheirHeight) {
   GltfMaker maker;
   maker.add_node({{"mesh", maker.add_triangle()}});
   const int node = maker.add_camera();
-  maker.json["cameras"][0] = {{"type", "orthographic"}, {"orthographic", {{"xmag", 3}, {"ymag", 1.5}, {"znear", 0.01}, {"zfar", 9}}}};
+  maker.json["cameras"][0] = {{"type", "orthographic"},
+                              {"orthographic", {{"xmag", 3}, {"ymag", 1.5}, {"znear", 0.01}, {"zfar", 9}}}};
   const Scene scene = maker.load();
   const PlacedCamera placed = first_frame(scene).camera(node);
   EXPECT_EQ(placed.camera.kind, Camera::Kind::orthographic);

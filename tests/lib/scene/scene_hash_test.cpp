@@ -52,7 +52,8 @@ using Names = std::set<std::string>;
 
 TEST(SceneHash, HasThirtyTwoDigitsEach) {
   const SceneHashes h = hashes(room());
-  for (const std::string& hash : {h.camera, h.static_geometry, h.moving_geometry, h.lights, h.materials, h.media}) {
+  for (const std::string& hash :
+       {h.camera, h.static_geometry, h.moving_geometry, h.lights, h.materials, h.media}) {
     EXPECT_EQ(hash.size(), 32u);
     EXPECT_EQ(hash.find_first_not_of("0123456789abcdef"), std::string::npos);
   }
@@ -61,37 +62,53 @@ TEST(SceneHash, HasThirtyTwoDigitsEach) {
 TEST(SceneHash, NamesAndOrderAndFileDoNotCount) {
   EXPECT_EQ(changed_by([](Json& json) { json["nodes"][kFloor]["name"] = "Ground"; }), Names{});
   EXPECT_EQ(changed_by([](Json& json) { json["materials"][0]["name"] = "Gray"; }), Names{});
-  EXPECT_EQ(changed_by([](Json& json) { json["asset"]["generator"] = "another"; json["extras"] = {1, 2}; }), Names{});
+  EXPECT_EQ(changed_by([](Json& json) {
+              json["asset"]["generator"] = "another";
+              json["extras"] = {1, 2};
+            }),
+            Names{});
   const GltfMaker maker = room();
-  const Scene a = load_gltf(write_file("one.gltf", maker.text())), b = load_gltf(write_file("two.glb", maker.glb()));
-  EXPECT_EQ(changed(scene_at_frame(a, segment_of(a, 5, {}), 5, {}).hashes, scene_at_frame(b, segment_of(b, 5, {}), 5, {}).hashes), Names{});
+  const Scene a = load_gltf(write_file("one.gltf", maker.text())),
+              b = load_gltf(write_file("two.glb", maker.glb()));
+  EXPECT_EQ(changed(scene_at_frame(a, segment_of(a, 5, {}), 5, {}).hashes,
+                    scene_at_frame(b, segment_of(b, 5, {}), 5, {}).hashes),
+            Names{});
 }
 
 TEST(SceneHash, TheOrderOfAFilesListsDoesNotCount) {
   EXPECT_EQ(changed_by([](Json& json) {
-    std::swap(json["materials"][0], json["materials"][1]);
-    for (Json& mesh : json["meshes"]) mesh["primitives"][0]["material"] = 1 - mesh["primitives"][0]["material"].get<int>();
-  }), Names{});
+              std::swap(json["materials"][0], json["materials"][1]);
+              for (Json& mesh : json["meshes"])
+                mesh["primitives"][0]["material"] = 1 - mesh["primitives"][0]["material"].get<int>();
+            }),
+            Names{});
   EXPECT_EQ(changed_by([](Json& json) {
-    std::swap(json["meshes"][0], json["meshes"][1]);
-    for (Json& node : json["nodes"])
-      if (node.contains("mesh")) node["mesh"] = 1 - node["mesh"].get<int>();
-  }), Names{});
+              std::swap(json["meshes"][0], json["meshes"][1]);
+              for (Json& node : json["nodes"])
+                if (node.contains("mesh")) node["mesh"] = 1 - node["mesh"].get<int>();
+            }),
+            Names{});
   EXPECT_EQ(changed_by([](Json& json) {  // nodes elsewhere in the list, in the same order in the scene
-    std::swap(json["nodes"][kFloor], json["nodes"][kCamera]);
-    json["scenes"][0]["nodes"] = {4, 1, 2, 3, 0};
-  }), Names{});
+              std::swap(json["nodes"][kFloor], json["nodes"][kCamera]);
+              json["scenes"][0]["nodes"] = {4, 1, 2, 3, 0};
+            }),
+            Names{});
 }
 
 TEST(SceneHash, UnusedPartsDoNotCount) {
   EXPECT_EQ(changed_by([](Json& json) {
-    json["materials"].insert(json["materials"].begin(), Json::object({{"name", "Unused"}}));
-    for (Json& mesh : json["meshes"]) mesh["primitives"][0]["material"] = 1 + mesh["primitives"][0]["material"].get<int>();
-  }), Names{});
+              json["materials"].insert(json["materials"].begin(), Json::object({{"name", "Unused"}}));
+              for (Json& mesh : json["meshes"])
+                mesh["primitives"][0]["material"] = 1 + mesh["primitives"][0]["material"].get<int>();
+            }),
+            Names{});
 }
 
 TEST(SceneHash, TheCameraChangesOnlyItsOwn) {
-  EXPECT_EQ(changed_by([](Json& json) { json["nodes"][kCamera]["translation"] = {0, 0, 6}; }), Names{"camera"});
+  EXPECT_EQ(changed_by([](Json& json) {
+              json["nodes"][kCamera]["translation"] = {0, 0, 6};
+            }),
+            Names{"camera"});
   EXPECT_EQ(changed_by([](Json& json) { json["cameras"][0]["perspective"]["yfov"] = 0.9; }), Names{"camera"});
   EXPECT_EQ(changed_by([](Json& json) { json["cameras"][0]["perspective"]["znear"] = 0.2; }), Names{});
   GltfMaker walking = room();
@@ -100,21 +117,45 @@ TEST(SceneHash, TheCameraChangesOnlyItsOwn) {
 }
 
 TEST(SceneHash, ALampChangesOnlyLights) {
-  EXPECT_EQ(changed_by([](Json& json) { json["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 4; }), Names{"lights"});
-  EXPECT_EQ(changed_by([](Json& json) { json["extensions"]["KHR_lights_punctual"]["lights"][0]["name"] = "x"; }), Names{});
-  EXPECT_EQ(changed_by([](Json& json) { json["nodes"][kBulb]["translation"] = {0, 1.5, 0}; }), Names{"lights"});
-  EXPECT_EQ(changed_by([](Json& json) { json["nodes"][kBulb]["rotation"] = {1, 0, 0, 0}; }), Names{});  // a point light has no direction
-  EXPECT_EQ(changed_by([](Json& json) { json["materials"][1]["emissiveFactor"] = {1, 0.5, 1}; }), Names{"lights"});
+  EXPECT_EQ(
+      changed_by([](Json& json) { json["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 4; }),
+      Names{"lights"});
+  EXPECT_EQ(
+      changed_by([](Json& json) { json["extensions"]["KHR_lights_punctual"]["lights"][0]["name"] = "x"; }),
+      Names{});
+  EXPECT_EQ(changed_by([](Json& json) {
+              json["nodes"][kBulb]["translation"] = {0, 1.5, 0};
+            }),
+            Names{"lights"});
+  EXPECT_EQ(changed_by([](Json& json) {
+              json["nodes"][kBulb]["rotation"] = {1, 0, 0, 0};
+            }),
+            Names{});  // a point light has no direction
+  EXPECT_EQ(changed_by([](Json& json) {
+              json["materials"][1]["emissiveFactor"] = {1, 0.5, 1};
+            }),
+            Names{"lights"});
 }
 
 TEST(SceneHash, AMaterialChangesOnlyMaterials) {
-  EXPECT_EQ(changed_by([](Json& json) { json["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.5; }), Names{"materials"});
-  EXPECT_EQ(changed_by([](Json& json) { json["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"] = {0, 0, 0, 1}; }), Names{"materials"});
+  EXPECT_EQ(
+      changed_by([](Json& json) { json["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"] = 0.5; }),
+      Names{"materials"});
+  EXPECT_EQ(changed_by([](Json& json) {
+              json["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"] = {0, 0, 0, 1};
+            }),
+            Names{"materials"});
 }
 
 TEST(SceneHash, GeometryChangesItsOwnPart) {
-  EXPECT_EQ(changed_by([](Json& json) { json["nodes"][kFloor]["translation"] = {0, -1, 0}; }), Names{"static"});
-  EXPECT_EQ(changed_by([](Json& json) { json["nodes"][kPanel]["translation"] = {0, 3, 0}; }), (Names{"static", "lights"}));
+  EXPECT_EQ(changed_by([](Json& json) {
+              json["nodes"][kFloor]["translation"] = {0, -1, 0};
+            }),
+            Names{"static"});
+  EXPECT_EQ(changed_by([](Json& json) {
+              json["nodes"][kPanel]["translation"] = {0, 3, 0};
+            }),
+            (Names{"static", "lights"}));
   GltfMaker other = room();
   other.json["animations"] = Json();
   other.json.erase("animations");
@@ -143,15 +184,19 @@ TEST(SceneHash, OneCameraHasAHashOfItsOwn) {
   maker.add_camera({{"name", "Second"}});
   const Scene scene = maker.load();
   const SceneFrame at = scene_at_frame(scene, segment_of(scene, 0, {}), 0, {});
-  EXPECT_NE(camera_hash(at.camera(scene.camera_node("Camera"))), camera_hash(at.camera(scene.camera_node("Second"))));
+  EXPECT_NE(camera_hash(at.camera(scene.camera_node("Camera"))),
+            camera_hash(at.camera(scene.camera_node("Second"))));
 }
 
 TEST(SceneHash, ReexportedEqualDependsOnNoMemoryOrTime) {
   if (shared_scenes().empty()) GTEST_SKIP() << "../shared/scenes is not there";
   const std::string path = (shared_scenes() / "made/S4_atrium.glb").string();
   const Scene a = load_gltf(path), b = load_gltf(path);
-  EXPECT_EQ(changed(scene_at_frame(a, segment_of(a, 30, {}), 30, {}).hashes, scene_at_frame(b, segment_of(b, 30, {}), 30, {}).hashes), Names{});
-  const SceneHashes first = scene_at_frame(a, segment_of(a, 0, {}), 0, {}).hashes, later = scene_at_frame(a, segment_of(a, 40, {}), 40, {}).hashes;
+  EXPECT_EQ(changed(scene_at_frame(a, segment_of(a, 30, {}), 30, {}).hashes,
+                    scene_at_frame(b, segment_of(b, 30, {}), 30, {}).hashes),
+            Names{});
+  const SceneHashes first = scene_at_frame(a, segment_of(a, 0, {}), 0, {}).hashes,
+                    later = scene_at_frame(a, segment_of(a, 40, {}), 40, {}).hashes;
   EXPECT_EQ(changed(first, later), Names{"camera"});  // only the camera walks, in both segments
 }
 

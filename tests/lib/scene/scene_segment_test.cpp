@@ -37,6 +37,14 @@ TEST(SceneSegment, BordersAreMultiplesCutToTheAnimation) {
   EXPECT_EQ(borders(scene, 10, {.segment_length = 8}), Borders(8, 15));
 }
 
+TEST(SceneSegment, FramesOutsideTheAnimationStandForItsEnds) {
+  const Scene scene = moving_for(60 / 24.0f);
+  EXPECT_EQ(frame_in_animation(scene, -3, {}), 0);
+  EXPECT_EQ(frame_in_animation(scene, 60, {}), 60);
+  EXPECT_EQ(frame_in_animation(scene, 61, {}), 60);
+  EXPECT_EQ(frame_in_animation(moving_for(10.5f / 24), 12, {}), 11);
+}
+
 TEST(SceneSegment, AStillSceneHasSegmentsOfFullLength) {
   GltfMaker maker;
   maker.add_node({{"mesh", maker.add_triangle()}});
@@ -54,9 +62,11 @@ TEST(SceneSegment, ALongerAnimationMovesNoOtherBorder) {
 
 TEST(SceneSegment, WhatMovesIsDecidedByValueWithinTheSegment) {
   GltfMaker maker;
-  for (int i = 0; i < 3; ++i) maker.add_node({{"name", std::string(1, char('A' + i))}, {"mesh", i == 0 ? maker.add_triangle() : 0}});
-  maker.animate(0, "translation", {0, 1, 2, 3}, {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0});  // only from 1 s to 2 s
-  maker.animate(1, "translation", {0, 3}, {4, 5, 6, 4, 5, 6});                          // equal keys
+  for (int i = 0; i < 3; ++i)
+    maker.add_node({{"name", std::string(1, char('A' + i))}, {"mesh", i == 0 ? maker.add_triangle() : 0}});
+  maker.animate(0, "translation", {0, 1, 2, 3},
+                {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0});          // only from 1 s to 2 s
+  maker.animate(1, "translation", {0, 3}, {4, 5, 6, 4, 5, 6});  // equal keys
   const Scene scene = maker.load();
   EXPECT_EQ(segment_of(scene, 0, {}).node_moves, (std::vector<std::uint8_t>{0, 0, 0}));
   const Segment middle = segment_of(scene, 30, {});
@@ -73,7 +83,8 @@ TEST(SceneSegment, MotionEndsAtItsLastKeyWhateverTheRoundingOfItsTime) {
     maker.animate(0, "translation", {0, float(end / 24.0), 4}, {0, 0, 0, 1, 0, 0, 1, 0, 0});
     const TimeOptions options{.segment_length = 1};
     const Scene scene = maker.load();
-    const std::vector<Affine> at_end = world_from_node(scene, end, options), later = world_from_node(scene, end + 1, options);
+    const std::vector<Affine> at_end = world_from_node(scene, end, options),
+                              later = world_from_node(scene, end + 1, options);
     EXPECT_EQ(at_end, later) << end;
   }
 }
@@ -104,7 +115,8 @@ TEST(SceneSegment, AMovingCameraMovesNothingElse) {
   const Scene scene = load_gltf((shared_scenes() / "made/S4_atrium.glb").string());
   const Segment segment = segment_of(scene, 0, {});
   const std::size_t camera = std::size_t(scene.camera_node("auto"));
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n) EXPECT_EQ(segment.node_moves[n], n == camera) << scene.nodes[n].name;
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+    EXPECT_EQ(segment.node_moves[n], n == camera) << scene.nodes[n].name;
 }
 
 TEST(SceneSegment, BoundsHoldTheWholeSegment) {
@@ -121,7 +133,8 @@ TEST(SceneSegment, StaticSurfacesAreSharedByAllFrames) {
   const SegmentScene stage(scene, segment_of(scene, 0, {}), {});
   const SceneFrame a = stage.at(0), b = stage.at(23);
   ASSERT_EQ(a.static_count, 8u);
-  for (std::size_t s = 0; s < a.static_count; ++s) EXPECT_EQ(a.surfaces[s].positions.data(), b.surfaces[s].positions.data());
+  for (std::size_t s = 0; s < a.static_count; ++s)
+    EXPECT_EQ(a.surfaces[s].positions.data(), b.surfaces[s].positions.data());
   EXPECT_NE(a.surfaces[8].positions.data(), b.surfaces[8].positions.data());
   EXPECT_THROW(stage.at(24), std::invalid_argument);
 }
@@ -132,12 +145,15 @@ TEST(SceneSegment, StaticSurfacesAreSharedByAllFrames) {
 Scene box_at(double x, double y, double z) {
   GltfMaker maker;
   std::vector<float> corners;
-  for (int c = 0; c < 8; ++c) for (int axis = 0; axis < 3; ++axis) corners.push_back(float(c >> axis & 1));
+  for (int c = 0; c < 8; ++c)
+    for (int axis = 0; axis < 3; ++axis) corners.push_back(float(c >> axis & 1));
   const int positions = maker.add_vec3(corners);
-  const int indices = maker.add_indices({0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5});
+  const int indices = maker.add_indices({0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                                         2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5});
   const double a = 0.3;  // turned about y, so that coordinates are no round numbers
   maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}, {"indices", indices}})},
-                  {"translation", {x, y, z}}, {"rotation", {0, std::sin(a / 2), 0, std::cos(a / 2)}}});
+                  {"translation", {x, y, z}},
+                  {"rotation", {0, std::sin(a / 2), 0, std::cos(a / 2)}}});
   maker.add_light({{"type", "point"}}, {{"translation", {x, y + 2, z}}});
   maker.add_camera({{"translation", {x, y, z + 5}}});
   return maker.load();
@@ -156,7 +172,8 @@ TEST(SceneOrigin, ABoxFarAwayKeepsItsShape) {
     EXPECT_NEAR_VEC(at.origin + Vec3d(at.surfaces[0].positions[std::size_t(k)]), world, 3e-7);
   }
   EXPECT_NEAR_VEC(at.origin + Vec3d(at.lights[0].position), (Vec3d{x, y + 2, z}), 3e-7);
-  EXPECT_NEAR_VEC(at.origin + at.camera(scene.camera_node("auto")).scene_from_camera.translation, (Vec3d{x, y, z + 5}), 1e-9);
+  EXPECT_NEAR_VEC(at.origin + at.camera(scene.camera_node("auto")).scene_from_camera.translation,
+                  (Vec3d{x, y, z + 5}), 1e-9);
 }
 
 TEST(SceneOrigin, IsZeroForAnOrdinaryScene) {
