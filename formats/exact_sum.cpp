@@ -8,10 +8,11 @@ double ExactSum::rounded() const {
   // The sum as an integer of 11 limbs of 32 bits, in units of 2^-149; each limb first holds its own sum of
   // low halves and high parts of the bins, then carries go up.
   std::array<std::int64_t, 11> limbs{};
-  for (std::size_t e = 0; e < bins_.size(); ++e) {
+  for (std::size_t e = 0; e < 256; ++e) {
     const std::size_t shift = e == 0 ? 0 : e - 1, limb = shift / 32;
-    const std::int64_t low = (bins_[e] & 0xffffffff) << (shift % 32);
-    const std::int64_t high = (bins_[e] >> 32) * (std::int64_t(1) << (shift % 32));   // |bin| < 2^63
+    const std::int64_t bin = bins_[e] - bins_[256 + e];
+    const std::int64_t low = (bin & 0xffffffff) << (shift % 32);
+    const std::int64_t high = (bin >> 32) * (std::int64_t(1) << (shift % 32));
     limbs[limb] += low & 0xffffffff;
     limbs[limb + 1] += (low >> 32) + (high & 0xffffffff);
     limbs[limb + 2] += high >> 32;

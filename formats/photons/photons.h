@@ -101,7 +101,7 @@ class PhotonWriter {
   /// of another file is left out.
   void write(const PhotonBlock& block);
   /// A block already encoded by encode_block(block, header.columns), so that checksums are made in parallel.
-  /// Serial cost beside the sink: the exact sum and the range check of the photons, 2 ns each.
+  /// Serial cost beside the sink: the exact sum and the range check, about 3 ns per photon.
   void write_encoded(std::string_view bytes, const PhotonBlock& block);
   /// Writes the end block; photon_count and stored_flux are filled in by the writer. With a `ledger` (every
   /// group ascending; of an overlay, which must have one: the groups it holds) emitted, escaped and absorbed
