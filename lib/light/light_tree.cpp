@@ -98,13 +98,12 @@ struct LightTree::Item {
 LightTree::LightTree(const std::vector<LightBounds>& lights) {
   if (lights.empty()) return;
   TEMPOLUX_CHECK(lights.size() < 0x7fffffffu);
-  double whole = 0;
-  for (const LightBounds& b : lights) whole += b.weight;
+  for (const LightBounds& b : lights) whole_ += b.weight;
   std::vector<Item> items;
   items.reserve(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
     items.push_back({lights[i], lights[i].box.centre(), std::uint32_t(i)});
-    items.back().bounds.weight /= whole;
+    items.back().bounds.weight /= whole_;
     LightBounds& b = items.back().bounds;
     b.cos_spread = std::max(-1.0f, b.cos_spread - kSlack);
   }
@@ -216,6 +215,10 @@ double LightTree::importance(const Node& node, Vec3 point, Vec3 normal) {
     result *= std::max(cos_surface, 1e-3f);
   }
   return result;
+}
+
+double LightTree::importance(Vec3 point, Vec3 normal) const {
+  return nodes_.empty() ? 0 : whole_ * importance(nodes_[0], point, normal);
 }
 
 bool LightTree::choose(Vec3 point, Vec3 normal, float u, Choice& choice) const {

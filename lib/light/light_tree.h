@@ -28,6 +28,9 @@ class LightTree {
   explicit LightTree(const std::vector<LightBounds>& lights);
 
   bool empty() const { return nodes_.empty(); }
+  /// Estimate of the irradiance that all of it gives, in the unit of weight / m^2; 0 only if no light can reach
+  /// the point.
+  double importance(Vec3 point, Vec3 normal) const;
   struct Choice {
     std::uint32_t light = 0;
     double probability = 0;  ///< of the light, at this point and normal
@@ -56,6 +59,7 @@ class LightTree {
   static double importance(const Node& node, Vec3 point, Vec3 normal);
 
   std::vector<Node> nodes_;
+  double whole_ = 0;                  ///< sum of all weights
   std::vector<std::uint64_t> trail_;  ///< by light: bit d is set if it is below the second child at depth d
 };
 

@@ -78,7 +78,7 @@ struct Lights::Impl {
   void add_slots(const EmissionTable& table);
   void build_tree();
 
-  double sun_share(Vec3 normal, double& total) const;
+  double sun_share(Vec3 point, Vec3 normal, double& total) const;
   bool sample_sun(Vec3 point, Vec3 normal, double u, double share, double total, LightSample& s) const;
   bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;
   void emit_triangle(const TriangleLight& t, const double u[4], PhotonEmission& e) const;
@@ -150,17 +150,15 @@ Rgbd Lights::total_flux() const {
   return sum;
 }
 
-/// Probability of choosing a directional light: n of n + 1, the tree counting as one. total: their weights.
-double Lights::Impl::sun_share(Vec3 normal, double& total) const {
+/// Probability of choosing a directional light: its share of an estimate of the irradiance, at least a fifth
+/// for either kind that can be seen at all. total: the directional lights' weights.
+double Lights::Impl::sun_share(Vec3 point, Vec3 normal, double& total) const {
   total = 0;
   if (suns.empty()) return 0;
-  int count = 0;
-  for (const std::uint32_t i : suns) {
-    const double w = sun_weight(frame->lights[i], normal);
-    total += w;
-    count += w > 0;
-  }
-  return tree.empty() && count > 0 ? 1 : double(count) / (count + 1);
+  for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
+  if (!(total > 0)) return 0;
+  const double others = tree.importance(point, normal);
+  return others > 0 ? std::clamp(total / (total + others), 0.2, 0.8) : 1;
 }
 
 bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double share, double total,
@@ -205,7 +203,7 @@ bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample
   const Impl& m = *impl_;
   sample = {};
   double total = 0;
-  const double share = m.sun_share(normal, total);
+  const double share = m.sun_share(point, normal, total);
   if (u_choice < share)
     return m.sample_sun(point, normal, u_choice / share, share, total, sample) && is_finite(sample.radiance);
   if (m.tree.empty()) return false;
@@ -238,7 +236,7 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
   if (!(on_triangle > 0)) return 0;
   double total = 0;
-  const double share = m.sun_share(normal, total);
+  const double share = m.sun_share(point, normal, total);
   const float pdf = float(on_triangle * (1 - share) * m.tree.probability(point, normal, light));
   return pdf < INFINITY ? pdf : 0;
 }

@@ -1,0 +1,211 @@
+// Photons leave lights with the flux, the places and the directions of their emission; the table is frozen.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "lib/core/halton.h"
+#include "tests/lib/light/light_scene.h"
+
+namespace tempolux {
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+constexpr int kCount = 1 << 16;
+
+template <class Take>
+void emit_all(const Lights& lights, int count, Take take) {
+  const PhotonHalton halton(1);
+  for (int i = 0; i < count; ++i) {
+    double u[4];
+    halton.point(std::uint64_t(i), u);
+    take(lights.emit(u));
+  }
+}
+
+TEST(TotalFlux, IsPiLATimesSides) {
+  for (const bool two_sided : {false, true}) {
+    LightScene scene;
+    scene.add(square_facing_down({0, 0, 1}, 1.5f), Rgb(1, 2, 4), two_sided);
+    const Rgbd flux = scene.lights().total_flux();
+    const double sides = two_sided ? 2 : 1;
+    EXPECT_NEAR(flux.r, sides * kPiD * 9, 1e-5);
+    EXPECT_NEAR(flux.b, sides * kPiD * 36, 1e-4);
+  }
+}
+
+// Point 4 pi I; a spot without penumbra 2 pi (1 - cos) I, with: s^2 integrates to a third over the penumbra;
+// directional E pi R^2 with R half the diagonal of the bounds.
+TEST(TotalFlux, OfPunctualLightsIsTheirSolidAngleOrDisc) {
+  const auto flux = [](PunctualLight::Kind kind, float inner, float outer) {
+    LightScene scene(2);
+    scene.add(kind, Rgb(3.0f), {}, {0, 0, -1}, inner, outer);
+    return scene.lights().total_flux().g;
+  };
+  EXPECT_NEAR(flux(PunctualLight::Kind::point, 0, 1), 12 * kPiD, 1e-5);
+  EXPECT_NEAR(flux(PunctualLight::Kind::spot, 0.5f, 0.5f), 6 * kPiD * (1 - std::cos(0.5)), 1e-6);
+  EXPECT_NEAR(flux(PunctualLight::Kind::spot, 0, 0.5f), 2 * kPiD * (1 - std::cos(0.5)), 1e-6);
+  EXPECT_NEAR(flux(PunctualLight::Kind::spot, 0.5f, 1.0f),
+              6 * kPiD * (1 - std::cos(0.5) + (std::cos(0.5) - std::cos(1.0)) / 3), 1e-6);
+  EXPECT_NEAR(flux(PunctualLight::Kind::directional, 0, 1), 3 * kPiD * 12, 3 * kPiD * 12 * 3e-5);
+}
+
+LightScene all_kinds() {
+  LightScene scene(4);
+  scene.add(square_facing_down({0, 0, 1}, 0.5f), Rgb(5, 1, 0));
+  scene.add(square_facing_down({2, 0, 1}, 0.3f), Rgb(0, 0, 20), true);
+  scene.add(PunctualLight::Kind::point, Rgb(1, 2, 3), {1, 1, 1}, {0, 0, -1});
+  scene.add(PunctualLight::Kind::spot, Rgb(9, 8, 7), {-1, 1, 1}, {0.6f, 0, -0.8f}, 0.3f, 0.6f);
+  scene.add(PunctualLight::Kind::directional, Rgb(0.05f), {}, {0, 0.6f, -0.8f});
+  return scene;
+}
+
+// The slot is chosen by a low-discrepancy coordinate: error of order slots / N.
+TEST(Emission, MeanFluxIsTheTotal) {
+  const LightScene scene = all_kinds();
+  const Lights lights = scene.lights();
+  Rgbd sum;
+  emit_all(lights, kCount, [&](const PhotonEmission& e) { sum += Rgbd(e.flux); });
+  const Rgbd total = lights.total_flux();
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / kCount, total[c], 1e-3 * total[c]);
+}
+
+// A blue lamp of luminance 7 % gets at least 5 % of its largest channel; probabilities sum to one.
+TEST(Emission, ProbabilitiesFollowTheLuminanceOfTheFlux) {
+  LightScene scene;
+  scene.add(PunctualLight::Kind::point, Rgb(1.0f), {}, {0, 0, -1});
+  scene.add(PunctualLight::Kind::point, Rgb(0, 0, 1), {}, {0, 0, -1});
+  const EmissionTable table = scene.table();
+  EXPECT_NEAR(table.probability[1] / table.probability[0], 0.0722, 1e-6);
+  EXPECT_NEAR(table.probability[0] + table.probability[1], 1, 1e-15);
+}
+
+// Triangle: centroid of the square, mean cosine 2/3 of a Lambert emitter, both sides by halves.
+TEST(Emission, AreaLightsEmitUniformlyByTheCosine) {
+  for (const bool two_sided : {false, true}) {
+    LightScene scene;
+    scene.add(square_facing_down({1, 2, 3}, 0.5f), Rgb(1.0f), two_sided);
+    Vec3d place, travel;
+    double cosine = 0, square = 0, down = 0;
+    emit_all(scene.lights(), kCount, [&](const PhotonEmission& e) {
+      place += Vec3d(e.origin) / double(kCount);
+      travel += Vec3d(e.travel) / double(kCount);
+      cosine += double(dot(e.travel, e.normal)) / kCount;
+      square += double(e.travel.x * e.travel.x) / kCount;
+      down += e.normal.z < 0;
+      ASSERT_GT(dot(e.travel, e.normal), 0);
+      ASSERT_FLOAT_EQ(e.origin.z, 3);
+      ASSERT_GT(e.origin_offset, 0);
+    });
+    EXPECT_NEAR(place.x, 1, 1e-3);
+    EXPECT_NEAR(place.y, 2, 1e-3);
+    EXPECT_NEAR(cosine, 2.0 / 3, 1e-3);
+    EXPECT_NEAR(square, 0.25, 1e-3);  // sin^2 cos^2(phi): half of the mean sin^2, 1/2
+    EXPECT_NEAR(down / kCount, two_sided ? 0.5 : 1, 1e-3);
+    EXPECT_NEAR(travel.z, two_sided ? 0 : -2.0 / 3, 2e-3);
+  }
+}
+
+// The share of the flux within the inner cone is (1 - cos i) / (1 - cos i + (cos i - cos o) / 3).
+TEST(Emission, SpotsEmitByTheirFalloff) {
+  LightScene scene;
+  const Vec3 axis = normalize(Vec3{1, -2, 0.5f});
+  scene.add(PunctualLight::Kind::spot, Rgb(1.0f), {0, 1, 0}, axis, 0.4f, 0.9f);
+  int inner = 0;
+  emit_all(scene.lights(), kCount, [&](const PhotonEmission& e) {
+    const float c = dot(e.travel, axis);
+    ASSERT_GE(c, std::cos(0.9f) - 1e-5f);
+    ASSERT_EQ(e.origin, (Vec3{0, 1, 0}));
+    ASSERT_EQ(e.normal, Vec3{});
+    inner += c > std::cos(0.4f);
+  });
+  const double a = 1 - std::cos(0.4), b = (std::cos(0.4) - std::cos(0.9)) / 3;
+  EXPECT_NEAR(double(inner) / kCount, a / (a + b), 2e-3);
+}
+
+TEST(Emission, PointsEmitEverywhereAlike) {
+  LightScene scene;
+  scene.add(PunctualLight::Kind::point, Rgb(1.0f), {0, 1, 0}, {0, 0, -1});
+  Vec3d mean, square;
+  emit_all(scene.lights(), kCount, [&](const PhotonEmission& e) {
+    const Vec3d t(e.travel);
+    mean += t / double(kCount);
+    square += Vec3d{t.x * t.x, t.y * t.y, t.z * t.z} / double(kCount);
+  });
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(mean[i], 0, 1e-3);
+    EXPECT_NEAR(square[i], 1.0 / 3, 1e-3);
+  }
+}
+
+// Every origin lies outside the scene's box, before it, on a disc whose mean square radius is R^2 / 2.
+TEST(Emission, DirectionalLightsStartOnADiscOutsideTheScene) {
+  LightScene scene(4);
+  const Vec3 travel = normalize(Vec3{1, 2, -2});
+  scene.add(PunctualLight::Kind::directional, Rgb(1.0f), {}, travel);
+  double square = 0;
+  emit_all(scene.lights(), kCount, [&](const PhotonEmission& e) {
+    ASSERT_EQ(e.travel, travel);
+    ASSERT_NEAR(dot(e.origin, travel), -std::sqrt(48.0f), 1e-2);
+    const Vec3 across = e.origin - travel * dot(e.origin, travel);
+    square += double(length2(across)) / kCount;
+  });
+  EXPECT_NEAR(square, 24, 0.05);
+}
+
+// Three frames: a lamp dims to nothing, another shrinks to nothing. Slots and probabilities stay, weights change.
+TEST(Emission, TableIsFrozenOverTheSegment) {
+  std::vector<LightScene> scenes(3);
+  const float emission[] = {1, 4, 0}, half[] = {0.5f, 0, 1};
+  for (int f = 0; f < 3; ++f) {
+    scenes[std::size_t(f)].add(square_facing_down({0, 0, 1}, 1), Rgb(emission[f]));
+    scenes[std::size_t(f)].add(square_facing_down({3, 0, 1}, half[f]), Rgb(1.0f));
+  }
+  std::vector<SceneFrame> frames;
+  for (const LightScene& s : scenes) frames.push_back(s.frame);
+  const EmissionTable table = build_emission_table(frames);
+  // Maxima: 4 x 4 m^2 and 1 x 4 m^2, two triangles each.
+  ASSERT_EQ(table.probability.size(), 4u);
+  EXPECT_NEAR(table.probability[0], 0.4, 1e-9);
+  EXPECT_NEAR(table.probability[3], 0.1, 1e-9);
+  for (int f = 0; f < 3; ++f) {
+    const Lights lights(frames[std::size_t(f)], table);
+    ASSERT_EQ(lights.count(), 4u);
+    std::map<std::uint32_t, int> seen;
+    Rgbd sum;
+    emit_all(lights, 1 << 12, [&](const PhotonEmission& e) {
+      ++seen[e.slot];
+      sum += Rgbd(e.flux) / double(1 << 12);
+      ASSERT_TRUE(is_finite(e.travel) && is_finite(e.origin));
+    });
+    EXPECT_NEAR(seen[0], 0.4 * 4096, 4);
+    EXPECT_NEAR(sum.g, lights.total_flux().g, 2e-3 * lights.total_flux().g);
+    EXPECT_NEAR(lights.total_flux().g, kPiD * 4 * (emission[f] + half[f] * half[f]), 1e-4);
+  }
+}
+
+TEST(Emission, NoLightIsEmptyAndDark) {
+  LightScene scene;
+  scene.add(square_facing_down({0, 0, 1}, 1), Rgb(0.0f));
+  const Lights lights = scene.lights();
+  EXPECT_TRUE(lights.empty());
+  EXPECT_EQ(lights.total_flux(), Rgbd());
+  LightSample s;
+  EXPECT_FALSE(lights.sample({}, {}, 0.5f, {}, s));
+  EXPECT_EQ(lights.pdf_solid_angle({}, {}, 0, 0, {0, 0, 1}, {0, 0, -1}), 0);
+}
+
+TEST(Lights, EmitFromTheFrontAndFromBothSidesIfTwoSided) {
+  LightScene scene;
+  const std::uint32_t one = scene.add(square_facing_down({0, 0, 1}, 1), Rgb(2.0f));
+  const std::uint32_t two = scene.add(square_facing_down({0, 0, 1}, 1), Rgb(3.0f), true);
+  const Lights lights = scene.lights();
+  const Vec3 front{0, 0, -1};
+  EXPECT_EQ(lights.emitted(one, front, {0, 0, -1}), Rgb(2.0f));
+  EXPECT_EQ(lights.emitted(one, front, {0, 0, 1}), Rgb(0.0f));
+  EXPECT_EQ(lights.emitted(two, front, {0, 0, 1}), Rgb(3.0f));
+}
+
+}  // namespace
+}  // namespace tempolux
