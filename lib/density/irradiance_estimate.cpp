@@ -1,6 +1,7 @@
 #include "lib/density/irradiance_estimate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <stdexcept>
 
@@ -15,7 +16,8 @@ void require_valid(const IrradianceOptions& options) {
     throw std::invalid_argument("irradiance estimate: neighbours must be 2 to 512");
   if (!(options.max_radius > 0)) throw std::invalid_argument("irradiance estimate: max_radius must be > 0");
   if (!(options.min_radius >= 0)) throw std::invalid_argument("irradiance estimate: min_radius must be >= 0");
-  if (!(options.flattening >= 1)) throw std::invalid_argument("irradiance estimate: flattening must be >= 1");
+  if (!(options.flattening >= 1 && std::isfinite(options.flattening)))
+    throw std::invalid_argument("irradiance estimate: flattening must be finite and >= 1");
 }
 
 PhotonQuery make_query(Vec3 point, Vec3 normal, const IrradianceOptions& options) {

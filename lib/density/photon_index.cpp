@@ -103,7 +103,9 @@ PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons) : size_(photo
   parallel_chunks(size_, kChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const Vec3 p{photons[i].position[0], photons[i].position[1], photons[i].position[2]};
-      if (!is_finite(p)) throw std::invalid_argument("PhotonIndex: a position is not finite");
+      const Rgb flux{photons[i].flux[0], photons[i].flux[1], photons[i].flux[2]};
+      if (!is_finite(p) || !is_finite(flux))
+        throw std::invalid_argument("PhotonIndex: a position or flux is not finite");
       items[i] = {{p.x, p.y, p.z}, std::uint32_t(i)};
       largest[first / kChunk] = std::max(largest[first / kChunk], max_component(abs(p)));
     }

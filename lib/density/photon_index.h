@@ -79,9 +79,9 @@ class NeighbourList {
 class PhotonIndex {
  public:
   PhotonIndex() = default;
-  /// Copies what look-ups need, about 36 bytes per photon (16 more while it builds); the photons may go
+  /// Copies what look-ups need, 35 bytes per photon (16 more while it builds); the photons may go
   /// afterwards. Same index for any number of threads. O(n log n). Throws std::invalid_argument if a
-  /// position is not finite, std::length_error beyond 2^31 photons.
+  /// position or flux is not finite, std::length_error beyond 2^31 photons.
   explicit PhotonIndex(std::span<const formats::Photon> photons);
 
   std::size_t size() const { return size_; }

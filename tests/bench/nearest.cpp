@@ -5,7 +5,7 @@
 // Photons are spread over the walls of a room and a sphere in it; photons and queries are given in Morton
 // order (unless said otherwise). One thread, CPU time; the contenders alternate, and the medians over the
 // rounds are printed as JSON, ratios against the better nanoflann of the round. "sets" is what find_nearest
-// promises (the k nearest, by place in the index); "sorted" adds sort_by_distance: the order nanoflann returns.
+// promises (the k nearest, by place in the index); "sorted" adds sort_by_distance: nanoflann's order.
 // Bounded: within 1.3 times the mean distance of the k-th neighbour. Results that do not add up to the same
 // are an error (exit 1).
 #include <time.h>
