@@ -132,6 +132,7 @@ LightBounds LightTree::build(std::vector<Item>& items, std::size_t first, std::s
   const Vec3 half = (bounds.box.upper - bounds.box.lower) * 0.5f;
   node.centre = bounds.box.centre();
   node.radius2 = length2(half) * (1 + kSlack);
+  node.radius = std::sqrt(node.radius2);
   node.axis = bounds.axis;
   node.cos_spread = bounds.cos_spread;
   node.sin_spread = safe_sqrt(1 - bounds.cos_spread * bounds.cos_spread);
@@ -196,25 +197,25 @@ double LightTree::importance(const Node& node, Vec3 point, Vec3 normal) {
   const float distance2 = length2(to);
   // A point among the lights may see them in any direction.
   if (distance2 <= node.radius2) return node.weight / std::max(node.radius2, 1e-18f);
-  const float inverse = 1 / std::sqrt(distance2);
-  const float sin2_size = node.radius2 / distance2, sin_size = std::sqrt(sin2_size),
-              cos_size = safe_sqrt(1 - sin2_size);
+  const float inverse = 1 / std::sqrt(std::max(distance2, 1e-18f));
+  const float sin_size = node.radius * inverse, cos_size = safe_sqrt(1 - sin_size * sin_size);
   float cos_axis = -dot(node.axis, to) * inverse;
   if (node.two_sided) cos_axis = std::abs(cos_axis);
   const float sin_axis = safe_sqrt(1 - cos_axis * cos_axis);
   // Angle from the nearest normal, less the angle that the box fills.
-  const float cos_x = cos_difference(sin_axis, cos_axis, node.sin_spread, node.cos_spread);
-  const float sin_x = safe_sqrt(1 - cos_x * cos_x);
+  const bool within = cos_axis > node.cos_spread;
+  const float cos_x = within ? 1.0f : cos_axis * node.cos_spread + sin_axis * node.sin_spread;
+  const float sin_x = within ? 0.0f : sin_axis * node.cos_spread - cos_axis * node.sin_spread;
   const float cos_light = cos_difference(sin_x, cos_x, sin_size, cos_size);
   if (cos_light < node.cos_reach) return 0;
-  double result = node.weight / std::max(distance2, 1e-18f) * std::max(cos_light, 1e-3f);
+  float factor = inverse * inverse * std::max(cos_light, 1e-3f);
   if (normal != Vec3{}) {
     const float cos_i = dot(normal, to) * inverse;
     const float cos_surface = cos_difference(safe_sqrt(1 - cos_i * cos_i), cos_i, sin_size, cos_size);
     if (cos_surface < -kSlack) return 0;
-    result *= std::max(cos_surface, 1e-3f);
+    factor *= std::max(cos_surface, 1e-3f);
   }
-  return result;
+  return node.weight * double(factor);
 }
 
 double LightTree::importance(Vec3 point, Vec3 normal) const {

@@ -45,7 +45,7 @@ class LightTree {
  private:
   struct Node {
     Vec3 centre{};
-    float radius2 = 0;           ///< of the box's sphere, squared
+    float radius = 0, radius2 = 0;  ///< of the box's sphere, and its square
     Vec3 axis{};
     float cos_spread = 1, sin_spread = 0, cos_reach = 0;
     double weight = 0;           ///< in parts of the whole tree's

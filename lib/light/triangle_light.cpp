@@ -38,8 +38,9 @@ struct View {
   float solid_angle() const { return 2 * std::atan2(opposite, adjacent); }
 };
 
+Vec3d unit(Vec3d v) { return v * (1 / std::sqrt(std::max(1e-300, length2(v)))); }
 /// Unit vector along v less its part along the unit vector w.
-Vec3d reject(Vec3d v, Vec3d w) { return normalize(v - w * dot(v, w)); }
+Vec3d reject(Vec3d v, Vec3d w) { return unit(v - w * dot(v, w)); }
 
 /// Direction uniform in the spherical triangle abc of the given solid angle [Arvo 1995]. In double: thin
 /// triangles cancel most digits.
@@ -102,8 +103,8 @@ bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoin
   float omega = 0;
   if (large) {
     omega = view.solid_angle();
-    b = project(light, view, sample_spherical_triangle(normalize(Vec3d(view.v0)), normalize(Vec3d(view.v1)),
-                                                       normalize(Vec3d(view.v2)), omega, u));
+    b = project(light, view, sample_spherical_triangle(unit(Vec3d(view.v0)), unit(Vec3d(view.v1)),
+                                                       unit(Vec3d(view.v2)), omega, u));
   } else {
     b = sample_triangle(u);
   }
