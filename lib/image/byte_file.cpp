@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "formats/error.h"
@@ -42,21 +43,21 @@ void ByteFile::read_at(std::uint64_t offset, void* to, std::size_t count) const 
   }
 }
 
-void write_bytes(const std::string& path, const void* data, std::size_t size) {
+void write_pieces(const std::string& path, std::span<const std::string> pieces) {
   const auto fail = [&](int error) { throw ResourceError(path + ": cannot write: " + std::strerror(error)); };
   const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor < 0) fail(errno);
-  const char* next = static_cast<const char*>(data);
-  while (size > 0) {
-    const ssize_t done = ::write(descriptor, next, std::min(size, std::size_t(1) << 30));
-    if (done < 0 && errno == EINTR) continue;
-    if (done < 0) {
-      const int error = errno;
-      ::close(descriptor);
-      fail(error);
+  for (std::string_view left : pieces) {
+    while (!left.empty()) {
+      const ssize_t done = ::write(descriptor, left.data(), left.size());
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) {
+        const int error = errno;
+        ::close(descriptor);
+        fail(error);
+      }
+      left.remove_prefix(std::size_t(done));
     }
-    next += done;
-    size -= std::size_t(done);
   }
   if (::close(descriptor) != 0) fail(errno);
 }

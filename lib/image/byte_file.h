@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace tempolux {
@@ -26,8 +27,9 @@ class ByteFile {
   std::uint64_t size_ = 0;
 };
 
-/// Creates or truncates `path` and writes all bytes; not synced. Throws ResourceError with the reason.
-void write_bytes(const std::string& path, const void* data, std::size_t size);
+/// Creates or truncates `path` and writes the pieces one after the other; never seeks, not synced. Throws
+/// ResourceError with the reason.
+void write_pieces(const std::string& path, std::span<const std::string> pieces);
 
 /// Text of somebody else's library for a one-line message: control characters become spaces, at most 1 KB.
 std::string one_line(const std::string& text);

@@ -173,27 +173,23 @@ std::string encode_slab(const Image& image, Imf::Header header, int first, int c
   return out.bytes.substr(header_size);
 }
 
-/// Header and offset table as OpenEXR writes them, then the slabs; the table is filled in from the chunks'
-/// sizes.
-std::string join_slabs(const Imf::Header& header, const std::vector<std::string>& slabs) {
+/// Header and offset table as OpenEXR writes them; the table is filled in from the chunks' sizes.
+std::string make_head(const Imf::Header& header, const std::vector<std::string>& slabs) {
   MemoryOut out;
   { Imf::OutputFile empty(out, header, 0); }
   const bool zip = header.compression() == Imf::ZIP_COMPRESSION;
   const auto height = std::size_t(header.dataWindow().max.y + 1);
   std::size_t entry = out.bytes.size() - 8 * (zip ? (height + 15) / 16 : height);
-  std::size_t total = out.bytes.size();
-  for (const std::string& slab : slabs) total += slab.size();
-  out.bytes.reserve(total);
+  std::uint64_t offset = out.bytes.size();
   for (const std::string& slab : slabs) {
     for (std::size_t chunk = 0; chunk < slab.size();) {
-      const std::uint64_t offset = out.bytes.size() + chunk;
       std::memcpy(out.bytes.data() + entry, &offset, 8);
       entry += 8;
       std::int32_t size;
       std::memcpy(&size, slab.data() + chunk + 4, 4);
       chunk += 8 + std::size_t(size);
+      offset += 8 + std::uint64_t(size);
     }
-    out.bytes += slab;
   }
   return std::move(out.bytes);
 }
@@ -358,8 +354,8 @@ void save_exr(const std::string& path, const Image& image, const ExrWriteOptions
   parallel_chunks(std::size_t(image.height), kSlabLines, [&](std::size_t first, std::size_t last) {
     slabs[first / kSlabLines] = encode_slab(image, header, int(first), int(last - first));
   });
-  const std::string bytes = join_slabs(header, slabs);
-  write_bytes(path, bytes.data(), bytes.size());
+  slabs.insert(slabs.begin(), make_head(header, slabs));
+  write_pieces(path, slabs);
 }
 
 Image load_exr(const std::string& path, const ExrReadOptions& options) {

@@ -22,7 +22,7 @@ struct Session {
   char message[256] = "";
   const std::uint8_t* data = nullptr;  // reading: what is left
   std::size_t left = 0;
-  std::vector<std::uint8_t>* out = nullptr;  // writing
+  std::string* out = nullptr;  // writing
 
   static Session& of(png_structp png) { return *static_cast<Session*>(png_get_io_ptr(png)); }
 };
@@ -44,7 +44,7 @@ void on_read(png_structp png, png_bytep to, std::size_t count) {
 
 void on_write(png_structp png, png_bytep from, std::size_t count) {
   Session& session = Session::of(png);
-  session.out->insert(session.out->end(), from, from + count);
+  session.out->append(reinterpret_cast<const char*>(from), count);
 }
 void on_flush(png_structp) {}
 
@@ -189,7 +189,7 @@ Image load_png(const std::string& path, std::uint64_t max_pixels) {
 }
 
 void save_png(const std::string& path, const Picture& picture) {
-  std::vector<std::uint8_t> bytes;
+  std::string bytes;
   Session session;
   session.out = &bytes;
   struct Handle {
@@ -202,7 +202,7 @@ void save_png(const std::string& path, const Picture& picture) {
   if (!handle.info) throw ResourceError(path + ": libpng could not start");
   if (!write_all(session, handle.png, handle.info, picture))
     throw ResourceError(path + ": PNG: " + one_line(session.message));
-  write_bytes(path, bytes.data(), bytes.size());
+  write_pieces(path, {&bytes, 1});
 }
 
 }  // namespace tempolux
