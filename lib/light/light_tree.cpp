@@ -13,12 +13,13 @@ namespace {
 // Rounding must never make a bound exclude what it bounds: cosines are widened by this.
 constexpr float kSlack = 4e-6f;
 constexpr int kBucketCount = 16;
-constexpr int kDepthOfHalving = 32;  // below, halves by count: with 2^31 lights the trail's 64 bits suffice
+constexpr int kDepthOfHalving = 32;  // below, halves by count, so that no input makes the tree a list
 
-float safe_sqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
-/// cos(max(0, a - b)) of two angles in [0, pi].
-float cos_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
-  return cos_a > cos_b ? 1.0f : cos_a * cos_b + sin_a * sin_b;
+inline float safe_sqrt(float x) { return std::sqrt(std::max(0.0f, x)); }
+/// cos(max(0, a - b)) of two angles in [0, pi]. Both sides are computed: lanes have no branches.
+inline float cos_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
+  const float difference = cos_a * cos_b + sin_a * sin_b;
+  return cos_a > cos_b ? 1.0f : difference;
 }
 
 /// The vector turned around the unit axis.
@@ -95,53 +96,95 @@ struct LightTree::Item {
   std::uint32_t light;
 };
 
+/// Node of the tree of two children that is built first.
+struct LightTree::Pair {
+  LightBounds bounds;
+  std::uint32_t second = 0;  ///< the other child; the first is the next node
+  std::uint32_t light = 0;
+  bool leaf = false;
+};
+
 LightTree::LightTree(const std::vector<LightBounds>& lights) {
   if (lights.empty()) return;
-  TEMPOLUX_CHECK(lights.size() < 0x7fffffffu);
+  TEMPOLUX_CHECK(lights.size() < 0x0fffffffu);
   for (const LightBounds& b : lights) whole_ += b.weight;
   std::vector<Item> items;
   items.reserve(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
     items.push_back({lights[i], lights[i].box.centre(), std::uint32_t(i)});
-    items.back().bounds.weight /= whole_;
     LightBounds& b = items.back().bounds;
+    b.weight /= whole_;
     b.cos_spread = std::max(-1.0f, b.cos_spread - kSlack);
   }
-  nodes_.reserve(2 * lights.size());
-  trail_.resize(lights.size());
-  build(items, 0, items.size(), 0, 0);
+  std::vector<Pair> pairs;
+  pairs.reserve(2 * lights.size());
+  build_pairs(items, 0, items.size(), 0, pairs);
+  place_.resize(lights.size());
+  collapse(pairs, 0, 0);
 }
 
-LightBounds LightTree::build(std::vector<Item>& items, std::size_t first, std::size_t last,
-                             std::uint64_t trail, int depth) {
-  const std::size_t at = nodes_.size();
-  nodes_.emplace_back();
-  LightBounds bounds;
-  std::uint32_t index;
+LightBounds LightTree::build_pairs(std::vector<Item>& items, std::size_t first, std::size_t last, int depth,
+                                   std::vector<Pair>& pairs) {
+  const std::size_t at = pairs.size();
+  pairs.emplace_back();
   if (last - first == 1) {
-    bounds = items[first].bounds;
-    index = items[first].light;
-    trail_[index] = trail;
+    pairs[at] = {items[first].bounds, 0, items[first].light, true};
   } else {
     const std::size_t middle = split(items, first, last, depth < kDepthOfHalving);
-    const LightBounds left = build(items, first, middle, trail, depth + 1);
-    index = std::uint32_t(nodes_.size());
-    bounds = join(left, build(items, middle, last, trail | std::uint64_t(1) << depth, depth + 1));
+    const LightBounds left = build_pairs(items, first, middle, depth + 1, pairs);
+    const std::uint32_t second = std::uint32_t(pairs.size());
+    pairs[at] = {join(left, build_pairs(items, middle, last, depth + 1, pairs)), second, 0, false};
   }
-  Node& node = nodes_[at];
-  const Vec3 half = (bounds.box.upper - bounds.box.lower) * 0.5f;
-  node.centre = bounds.box.centre();
-  node.radius2 = length2(half) * (1 + kSlack);
-  node.radius = std::sqrt(node.radius2);
-  node.axis = bounds.axis;
-  node.cos_spread = bounds.cos_spread;
-  node.sin_spread = safe_sqrt(1 - bounds.cos_spread * bounds.cos_spread);
-  node.cos_reach = bounds.cos_reach - kSlack;
-  node.weight = bounds.weight;
-  node.index = index;
-  node.leaf = last - first == 1;
-  node.two_sided = bounds.two_sided;
-  return bounds;
+  return pairs[at].bounds;
+}
+
+/// The children of a pair, the weightiest and widest of them replaced by its own two until there are eight.
+void LightTree::collapse(const std::vector<Pair>& pairs, std::uint32_t pair, std::uint32_t parent) {
+  std::uint32_t chosen[kWidth] = {pair};
+  int count = 1;
+  while (count < kWidth) {
+    int open = -1;
+    double most = -1;
+    for (int i = 0; i < count; ++i) {
+      const Pair& p = pairs[chosen[i]];
+      const double diagonal = p.bounds.box.diagonal(), cost = p.bounds.weight * diagonal * diagonal;
+      if (!p.leaf && cost > most) {
+        most = cost;
+        open = i;
+      }
+    }
+    if (open < 0) break;
+    const std::uint32_t opened = chosen[open];
+    chosen[open] = opened + 1;
+    chosen[count++] = pairs[opened].second;
+  }
+  const std::uint32_t at = std::uint32_t(nodes_.size());
+  nodes_.push_back(Node{});
+  nodes_[at].parent = parent;
+  nodes_[at].count = std::uint8_t(count);
+  for (int i = 0; i < count; ++i) {
+    const Pair& p = pairs[chosen[i]];
+    const std::uint32_t place = at * kWidth + std::uint32_t(i);
+    set_child(nodes_[at], i, p.bounds);
+    nodes_[at].leaf[i] = p.leaf;
+    nodes_[at].child[i] = p.leaf ? p.light : std::uint32_t(nodes_.size());
+    if (p.leaf) place_[p.light] = place;
+    else collapse(pairs, chosen[i], place);
+  }
+}
+
+void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) {
+  const Vec3 centre = bounds.box.centre();
+  for (int axis = 0; axis < 3; ++axis) {
+    node.centre[axis][lane] = centre[axis];
+    node.axis[axis][lane] = bounds.axis[axis];
+  }
+  node.radius[lane] = 0.5f * length(bounds.box.upper - bounds.box.lower) * (1 + kSlack);
+  node.cos_spread[lane] = bounds.cos_spread;
+  node.sin_spread[lane] = safe_sqrt(1 - bounds.cos_spread * bounds.cos_spread);
+  node.cos_reach[lane] = bounds.cos_reach - kSlack;
+  node.two_sided[lane] = bounds.two_sided ? 1.0f : 0.0f;
+  node.weight[lane] = bounds.weight;
 }
 
 /// Where to cut [first, last), at least two items: the cheapest of 15 planes per axis, by the sum of both
@@ -192,69 +235,84 @@ std::size_t LightTree::split(std::vector<Item>& items, std::size_t first, std::s
   return middle;
 }
 
-double LightTree::importance(const Node& node, Vec3 point, Vec3 normal) {
-  const Vec3 to = node.centre - point;
-  const float distance2 = length2(to);
-  // A point among the lights may see them in any direction.
-  if (distance2 <= node.radius2) return node.weight / std::max(node.radius2, 1e-18f);
-  const float inverse = 1 / std::sqrt(std::max(distance2, 1e-18f));
-  const float sin_size = node.radius * inverse, cos_size = safe_sqrt(1 - sin_size * sin_size);
-  float cos_axis = -dot(node.axis, to) * inverse;
-  if (node.two_sided) cos_axis = std::abs(cos_axis);
-  const float sin_axis = safe_sqrt(1 - cos_axis * cos_axis);
-  // Angle from the nearest normal, less the angle that the box fills.
-  const bool within = cos_axis > node.cos_spread;
-  const float cos_x = within ? 1.0f : cos_axis * node.cos_spread + sin_axis * node.sin_spread;
-  const float sin_x = within ? 0.0f : sin_axis * node.cos_spread - cos_axis * node.sin_spread;
-  const float cos_light = cos_difference(sin_x, cos_x, sin_size, cos_size);
-  if (cos_light < node.cos_reach) return 0;
-  float factor = inverse * inverse * std::max(cos_light, 1e-3f);
-  if (normal != Vec3{}) {
-    const float cos_i = dot(normal, to) * inverse;
-    const float cos_surface = cos_difference(safe_sqrt(1 - cos_i * cos_i), cos_i, sin_size, cos_size);
-    if (cos_surface < -kSlack) return 0;
-    factor *= std::max(cos_surface, 1e-3f);
+double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double importance[kWidth]) {
+  float factor[kWidth];
+  const float no_normal = normal == Vec3{} ? 1.0f : 0.0f;
+  for (int i = 0; i < kWidth; ++i) {
+    const float x = node.centre[0][i] - point.x, y = node.centre[1][i] - point.y, z = node.centre[2][i] - point.z;
+    const float distance2 = x * x + y * y + z * z, radius = node.radius[i];
+    const float inverse = 1 / std::sqrt(std::max(distance2, 1e-18f));
+    const float sin_size = std::min(1.0f, radius * inverse), cos_size = safe_sqrt(1 - sin_size * sin_size);
+    const float along = -(node.axis[0][i] * x + node.axis[1][i] * y + node.axis[2][i] * z) * inverse;
+    const float cos_axis = node.two_sided[i] > 0 ? std::abs(along) : along;
+    const float sin_axis = safe_sqrt(1 - cos_axis * cos_axis);
+    // Angle from the nearest normal, less the angle that the box fills.
+    const float cos_x = cos_difference(sin_axis, cos_axis, node.sin_spread[i], node.cos_spread[i]);
+    const float sin_difference = sin_axis * node.cos_spread[i] - cos_axis * node.sin_spread[i];
+    const float sin_x = cos_axis > node.cos_spread[i] ? 0.0f : sin_difference;
+    const float cos_light = cos_difference(sin_x, cos_x, sin_size, cos_size);
+    const float cos_i = (normal.x * x + normal.y * y + normal.z * z) * inverse;
+    const float above = cos_difference(safe_sqrt(1 - cos_i * cos_i), cos_i, sin_size, cos_size);
+    const float cos_surface = no_normal > 0 ? 1.0f : above;
+    const float bound = inverse * inverse * std::max(cos_light, 1e-3f) * std::max(cos_surface, 1e-3f);
+    const float reached = cos_light < node.cos_reach[i] ? 0.0f : bound;
+    const float outside = cos_surface < -kSlack ? 0.0f : reached;
+    // A point among the lights may see them in any direction.
+    const float inside = 1 / std::max(radius * radius, 1e-18f);
+    factor[i] = distance2 <= radius * radius ? inside : outside;
   }
-  return node.weight * double(factor);
+  double sum = 0;
+  for (int i = 0; i < kWidth; ++i) {
+    importance[i] = node.weight[i] * double(factor[i]);
+    sum += importance[i];
+  }
+  return sum;
 }
 
 double LightTree::importance(Vec3 point, Vec3 normal) const {
-  return nodes_.empty() ? 0 : whole_ * importance(nodes_[0], point, normal);
+  double each[kWidth];
+  return nodes_.empty() ? 0 : whole_ * importances(nodes_[0], point, normal, each);
 }
 
 bool LightTree::choose(Vec3 point, Vec3 normal, float u, Choice& choice) const {
-  double probability = 1, left_u = u;
-  std::uint32_t at = 0;
-  while (!nodes_[at].leaf) {
-    const std::uint32_t second = nodes_[at].index;
-    const double a = importance(nodes_[at + 1], point, normal), b = importance(nodes_[second], point, normal);
-    if (!(a + b > 0)) return false;
-    const double p = a / (a + b);
-    if (left_u < p) {
-      left_u = std::min(left_u / p, double(kOneMinusEpsilon));
-      probability *= p;
-      at = at + 1;
-    } else {
-      left_u = std::min((left_u - p) / (1 - p), double(kOneMinusEpsilon));
-      probability *= b / (a + b);
-      at = second;
+  double probability = 1, left = u;
+  for (const Node* node = &nodes_[0];;) {
+    int lane = 0;
+    if (node->count > 1) {
+      double each[kWidth];
+      const double sum = importances(*node, point, normal, each);
+      if (!(sum > 0)) return false;
+      left *= sum;
+      // The lane in which the running sum passes `left`; the last one that counts, should rounding pass them all.
+      for (int i = 0; i < kWidth; ++i) {
+        if (!(each[i] > 0)) continue;
+        lane = i;
+        if (left < each[i]) break;
+        left -= each[i];
+      }
+      left = std::min(left / each[lane], 1 - 0x1p-53);
+      probability *= each[lane] / sum;
     }
+    if (node->leaf[lane]) {
+      choice = {node->child[lane], probability};
+      return probability > 0;
+    }
+    node = &nodes_[node->child[lane]];
   }
-  choice = {nodes_[at].index, probability};
-  return probability > 0;
 }
 
 double LightTree::probability(Vec3 point, Vec3 normal, std::uint32_t light) const {
   double probability = 1;
-  std::uint32_t at = 0;
-  for (std::uint64_t trail = trail_[light]; !nodes_[at].leaf; trail >>= 1) {
-    const std::uint32_t second = nodes_[at].index;
-    const double a = importance(nodes_[at + 1], point, normal), b = importance(nodes_[second], point, normal);
-    if (!(a + b > 0)) return 0;
-    probability *= (trail & 1 ? b : a) / (a + b);
-    at = trail & 1 ? second : at + 1;
+  for (std::uint32_t place = place_[light];; place = nodes_[place / kWidth].parent) {
+    const Node& node = nodes_[place / kWidth];
+    if (node.count > 1) {
+      double each[kWidth];
+      const double sum = importances(node, point, normal, each);
+      if (!(sum > 0)) return 0;
+      probability *= each[place % kWidth] / sum;
+    }
+    if (place < kWidth) return probability;
   }
-  return probability;
 }
 
 }  // namespace tempolux

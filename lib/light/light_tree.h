@@ -1,7 +1,8 @@
 // lib/light/light_tree.h -- a tree over many lights that chooses one for a point in O(log n).
 //
 // Conty Estevez & Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting", PACM CGIT 1(2),
-// 2018; bounds and cosines as in pbrt-v4, section 12.6.3.
+// 2018; bounds and cosines as in pbrt-v4, section 12.6.3. Eight children per node, weighed together in the
+// lanes of one vector, so that a few lights cost little and many lights few levels.
 #pragma once
 
 #include <cstddef>
@@ -43,24 +44,29 @@ class LightTree {
   double probability(Vec3 point, Vec3 normal, std::uint32_t light) const;
 
  private:
-  struct Node {
-    Vec3 centre{};
-    float radius = 0, radius2 = 0;  ///< of the box's sphere, and its square
-    Vec3 axis{};
-    float cos_spread = 1, sin_spread = 0, cos_reach = 0;
-    double weight = 0;           ///< in parts of the whole tree's
-    std::uint32_t index = 0;     ///< the light of a leaf; else the second child, the first being next
-    bool leaf = false, two_sided = false;
+  static constexpr int kWidth = 8;
+  struct alignas(32) Node {
+    float centre[3][kWidth], radius[kWidth];  ///< of the sphere around the child's box
+    float axis[3][kWidth], cos_spread[kWidth], sin_spread[kWidth], cos_reach[kWidth];
+    float two_sided[kWidth];                  ///< 1 or 0
+    double weight[kWidth];                    ///< in parts of the whole tree's; 0: no child
+    std::uint32_t child[kWidth];              ///< a node, or the light of a leaf
+    std::uint32_t parent;                     ///< kWidth x node + lane
+    std::uint8_t leaf[kWidth], count;
   };
   struct Item;
-  LightBounds build(std::vector<Item>& items, std::size_t first, std::size_t last, std::uint64_t trail,
-                    int depth);
+  struct Pair;
+  static LightBounds build_pairs(std::vector<Item>& items, std::size_t first, std::size_t last, int depth,
+                                 std::vector<Pair>& pairs);
   static std::size_t split(std::vector<Item>& items, std::size_t first, std::size_t last, bool by_cost);
-  static double importance(const Node& node, Vec3 point, Vec3 normal);
+  void collapse(const std::vector<Pair>& pairs, std::uint32_t pair, std::uint32_t parent);
+  static void set_child(Node& node, int lane, const LightBounds& bounds);
+  /// Of all children; returns their sum.
+  static double importances(const Node& node, Vec3 point, Vec3 normal, double importance[kWidth]);
 
   std::vector<Node> nodes_;
+  std::vector<std::uint32_t> place_;  ///< by light: kWidth x node + lane
   double whole_ = 0;                  ///< sum of all weights
-  std::vector<std::uint64_t> trail_;  ///< by light: bit d is set if it is below the second child at depth d
 };
 
 }  // namespace tempolux
