@@ -1,0 +1,41 @@
+// lib/image/statistics.h -- channels in figures: what is in one image, where two differ, one exposure for
+// many.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lib/image/image.h"
+
+namespace tempolux {
+
+/// Of one channel, over its finite values. min, max and mean are 0 if there is none.
+struct ChannelStatistics {
+  std::string name;
+  bool ids = false;
+  double min = 0, max = 0, mean = 0;
+  std::uint64_t zeros = 0, infinities = 0, nans = 0;  ///< numbers of pixels
+};
+/// One entry per channel, in the image's order. Sums are doubles in pixel order.
+std::vector<ChannelStatistics> channel_statistics(const Image& image);
+
+/// Where one channel differs between two images of the same size.
+struct ChannelDifference {
+  std::string name;
+  std::uint64_t differing = 0;  ///< pixels whose bits differ, but for -0 and 0; NaN equals NaN
+  double largest = 0;           ///< largest |a - b| over pixels where both are finite; of ids too
+  int x = 0, y = 0;             ///< pixel of the largest (the first in row order), from the top left
+};
+/// For each channel of both images, by the order of `a`. Throws std::invalid_argument if the sizes differ.
+std::vector<ChannelDifference> channel_differences(const Image& a, const Image& b);
+
+/// One exposure for all frames of a sequence: the lower median of the frames' own (auto_exposure_stops), so
+/// that a single flash does not darken the rest. Throws std::invalid_argument if there is none.
+double sequence_exposure_stops(std::vector<double> stops);
+
+/// Flux as a display colour: flux / white, sRGB transfer, clipped to [0, 1], in 1/255. 0 if white is not > 0.
+std::array<std::uint8_t, 3> point_color(const std::array<float, 3>& flux, double white);
+
+}  // namespace tempolux

@@ -1,0 +1,113 @@
+#include "tools/info_facts.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "formats/error.h"
+
+namespace tempolux::tools {
+namespace {
+
+constexpr std::size_t kMostItems = 12;   // of a list of objects
+
+bool is_leaf(const Facts& value) {
+  if (!value.is_structured()) return true;
+  const auto primitive = [](const Facts& item) { return item.is_primitive(); };
+  return value.is_array() && std::ranges::all_of(value, primitive);
+}
+
+std::string leaf_text(const Facts& value) {
+  if (value.is_null()) return "none";
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.9g", value.get<double>());
+    return text;
+  }
+  if (!value.is_array()) return value.dump();
+  std::string text;
+  for (const Facts& item : value) text += (text.empty() ? "" : "  ") + leaf_text(item);
+  return text.empty() ? "none" : text;
+}
+
+void print(const Facts& value, const std::string& indent, std::string& text);
+
+void print_member(const std::string& key, const Facts& value, const std::string& indent, std::string& text) {
+  const bool lines = value.is_array() && !value.empty() && key == "history";
+  if (is_leaf(value) && !lines) {
+    const std::string gap(key.size() < 20 ? 22 - key.size() : 2, ' ');
+    text += indent + key + gap + leaf_text(value) + "\n";
+    return;
+  }
+  text += indent + key + "\n";
+  print(value, indent + "  ", text);
+}
+
+void print(const Facts& value, const std::string& indent, std::string& text) {
+  if (value.is_object()) {
+    for (const auto& [key, member] : value.items()) print_member(key, member, indent, text);
+    return;
+  }
+  std::size_t shown = 0;
+  for (const Facts& item : value) {
+    if (shown++ == kMostItems) {
+      text += indent + "... and " + std::to_string(value.size() - kMostItems) + " more (all with --json)\n";
+      return;
+    }
+    std::string line;
+    if (item.is_object())
+      for (const auto& [key, member] : item.items())
+        line += (line.empty() ? "" : "   ") + key + " " + (is_leaf(member) ? leaf_text(member) : member.dump());
+    text += indent + (item.is_object() ? line : is_leaf(item) ? leaf_text(item) : item.dump()) + "\n";
+  }
+}
+
+}  // namespace
+
+FileType file_type(const std::string& path) {
+  if (path == "-") return FileType::photons;
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  if (!file) throw InputError(path + ": cannot be opened; is the name right?");
+  char bytes[16] = {};
+  const std::size_t size = std::fread(bytes, 1, sizeof bytes, file);
+  std::fclose(file);
+  const std::string head(bytes, size);
+  if (head.starts_with("\x89TPHOT")) return FileType::photons;
+  if (head.find_first_not_of(" \t\r\n") < size && head[head.find_first_not_of(" \t\r\n")] == '{')
+    return FileType::json;
+  for (const char* magic : {"\x76\x2f\x31\x01", "\x89PNG", "\xff\xd8\xff", "#?", "II*", "MM"})
+    if (head.starts_with(magic)) return FileType::image;
+  throw InputError(path + ": not a file we know; it is no .photons, no image and no JSON");
+}
+
+Facts facts_of(const std::string& path, bool allow_nan) {
+  switch (file_type(path)) {
+    case FileType::photons: return photon_facts(path);
+    case FileType::image: return image_facts(path, allow_nan);
+    case FileType::json: break;
+  }
+  return json_facts(path);
+}
+
+std::string digest_of_file(const std::string& path) { return facts_of(path, true)["digest"]; }
+
+Facts difference_of(const std::string& a, const std::string& b) {
+  const FileType type = file_type(a);
+  if (type != file_type(b)) throw InputError(b + ": of another type than " + a + "; nothing to compare");
+  switch (type) {
+    case FileType::photons: return photon_difference(a, b);
+    case FileType::image: return image_difference(a, b);
+    case FileType::json: break;
+  }
+  return json_difference(a, b);
+}
+
+std::string facts_as_text(const Facts& facts) {
+  std::string text;
+  print(facts, "", text);
+  return text;
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,147 @@
+// tempolux-info -- what is in a file of ours: facts, validity, digest, differences, pictures, points.
+//
+//     tempolux-info f.0012.photons
+//     tempolux-info --diff a.exr b.exr || echo they differ
+//     photon-trace room.glb -o - | tempolux-info - --export csv -o - | head
+//     tempolux-info --sheet all.png --layer indirect f.*.exr
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "formats/error.h"
+#include "tools/info_facts.h"
+#include "tools/tool_main.h"
+
+using namespace tempolux;
+using tools::Facts;
+
+namespace {
+
+struct Request {
+  std::vector<std::string> files;
+  bool check = false, digest = false, diff = false, json = false;
+  std::string format, output, png, sheet, exposure = "auto";
+  tools::PictureOptions picture;
+};
+
+void print(const Facts& facts, bool as_json) {
+  if (as_json) std::cout << facts.dump(2, ' ', false, Facts::error_handler_t::replace) << '\n';
+  else std::cout << tools::facts_as_text(facts);
+}
+
+/// Exit 1 if one is not valid; a file that is not there is an error of the command.
+int check_files(tools::Tool& tool, const Request& request) {
+  int code = tools::exit_ok;
+  for (const std::string& file : request.files) {
+    try {
+      tools::facts_of(file, false);
+      if (!request.json) std::cout << file << ": valid\n";
+    } catch (const InputError& error) {
+      if (file != "-" && !CLI::ExistingFile(file).empty()) throw;
+      tool.warn(error.what());
+      code = tools::exit_differs;
+    }
+  }
+  return code;
+}
+
+int print_files(const Request& request) {
+  Facts all = Facts::array();
+  for (const std::string& file : request.files) {
+    const Facts facts = tools::facts_of(file, true);
+    if (request.digest && !request.json)
+      std::cout << facts["digest"].get<std::string>() << "  " << file << '\n';
+    else if (request.digest) all.push_back({{"file", file}, {"digest", facts["digest"]}});
+    else if (request.json) all.push_back(facts);
+    else print(facts, false);
+  }
+  if (request.json) print(all.size() == 1 ? all[0] : all, true);
+  return tools::exit_ok;
+}
+
+/// The one input of what takes one.
+const std::string& only_file(const Request& request, const char* option) {
+  if (request.files.size() != 1) throw InputError(std::string(option) + ": takes one file");
+  return request.files.front();
+}
+
+int answer(tools::Tool& tool, Request& request) {
+  if (request.exposure != "auto") {
+    double stops = 0;
+    if (!CLI::detail::lexical_cast(request.exposure, stops) || !(stops > -200 && stops < 200))
+      throw InputError("--exposure: '" + request.exposure + "' is neither auto nor a number of stops");
+    request.picture.exposure_stops = stops;
+  }
+  const bool keep = tool.common().no_clobber;
+  for (const std::string& file : request.files) tool.depends_on(file);
+  if (request.diff) {
+    if (request.files.size() != 2) throw InputError("--diff: takes two files");
+    const Facts facts = tools::difference_of(request.files[0], request.files[1]);
+    const bool equal = facts["equal"];
+    if (request.json || !equal || !facts["differing"].empty()) print(facts, request.json);
+    return equal ? tools::exit_ok : tools::exit_differs;
+  }
+  if (request.check) return check_files(tool, request);
+  if (!request.sheet.empty()) {
+    tools::Output output(request.sheet, keep);
+    tools::write_sheet(request.files, request.picture, output);
+    output.commit();
+  } else if (!request.png.empty()) {
+    tools::Output output(request.png, keep);
+    tools::write_picture(only_file(request, "--png"), request.picture, output);
+    output.commit();
+  } else if (!request.format.empty()) {
+    using Kind = tools::Output::Kind;
+    tools::Output output(request.output, keep, request.format == "csv" ? Kind::text : Kind::binary);
+    tools::export_photons(only_file(request, "--export"), request.format, output);
+    output.commit();
+  } else {
+    return print_files(request);
+  }
+  return tools::exit_ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tools::Tool tool("tempolux-info", "Tell what is in .photons, frames (EXR, other images) and our JSON files.",
+                   argc, argv);
+  Request request;
+  CLI::App& app = tool.app();
+  app.add_option("files", request.files, "files; - is a .photons stream on standard input")
+      ->type_name("FILE")->required();
+  CLI::Option* check =
+      app.add_flag("--check", request.check, "read each whole file; exit 1 if one is not valid");
+  CLI::Option* digest =
+      app.add_flag("--digest", request.digest, "hash of the data, without header and history");
+  CLI::Option* diff =
+      app.add_flag("--diff", request.diff, "of two files: where they differ; exit 1 if their data do");
+  app.add_flag("--json", request.json, "facts as JSON instead of text");
+  CLI::Option* format = app.add_option("--export", request.format, "photons as points, with -o: ply or csv")
+                            ->type_name("FORMAT")->check(CLI::IsMember({"ply", "csv"}));
+  CLI::Option* output =
+      tool.output_option(request.output, "file that --export writes; - is standard output");
+  CLI::Option* png = tool.output_option(request.png, "the image as a picture", "--png");
+  CLI::Option* sheet =
+      tool.output_option(request.sheet, "all images in one picture, one exposure for all", "--sheet");
+  app.add_option("--layer", request.picture.layer,
+                 "layer or channel to show, such as indirect, Z, N; none: R, G, B")
+      ->type_name("NAME");
+  app.add_option("--exposure", request.exposure,
+                 "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
+      ->type_name("STOPS")->capture_default_str();
+  app.add_option("--columns", request.picture.columns, "of --sheet; 0: about square")
+      ->type_name("N")->capture_default_str()->check(CLI::Range(0, 1000));
+  app.add_option("--tile", request.picture.tile_width, "largest width of an image in --sheet, pixels")
+      ->type_name("PX")->capture_default_str()->check(CLI::Range(1, 65536));
+  const std::vector<CLI::Option*> modes{check, digest, diff, format, png, sheet};
+  for (CLI::Option* one : modes)
+    for (CLI::Option* other : modes)
+      if (one != other) one->excludes(other);
+  format->needs(output);
+  output->needs(format);
+  tool.common_options(0);
+  return tool.run([&] { return answer(tool, request); });
+}
