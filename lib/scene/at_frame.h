@@ -32,7 +32,7 @@ struct TimeOptions {
 };
 
 /// `frame`, or the animation's nearest end if it lies outside: 0, or the frame of the last key (the next if
-/// that lies between frames). Without animation every frame from 0 on is inside. What tools evaluate for a frame.
+/// that lies between frames). Without animation every frame from 0 on is inside. What tools evaluate.
 int frame_in_animation(const Scene& scene, int frame, const TimeOptions& options);
 
 /// The segment that holds `frame`: [k length, (k+1) length - 1] cut to the frames of the animation

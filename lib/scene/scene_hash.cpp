@@ -58,7 +58,8 @@ std::string materials_hash(const Scene& scene) {
     if (!material) break;
     for (const Rgb& colour : {material->base_color, material->specular_color}) hasher.add(colour);
     for (const float number : {material->metallic, material->roughness, material->specular, material->ior,
-                               material->transmission, material->double_sided ? 1.0f : 0.0f})
+                               material->transmission, material->thin_walled ? 1.0f : 0.0f,
+                               material->double_sided ? 1.0f : 0.0f})
       hasher.add(number);
   }
   return hasher.hex();
