@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/core/sampling.h"
+#include "lib/material/dielectric.h"
 #include "lib/material/ggx.h"
 
 namespace tempolux {
@@ -34,8 +35,16 @@ Rgb dielectric_f0(const Material& m) {
 
 }  // namespace
 
-Bsdf::Bsdf(const Material& material) {
+Bsdf::Bsdf(const Material& material, bool front) {
   const float metallic = material.metallic;
+  transmission_ = material.transmission * (1 - metallic);
+  if (transmission_ > 0) {
+    const float ior = material.ior > 0 ? material.ior : 1e4f;   // ior 0: reflects everything, says KHR_materials_ior
+    transmission_tint_ = material.base_color;
+    eta_reflected_ = material.thin_walled || front ? 1 / ior : ior;
+    eta_ = material.thin_walled ? 1 : eta_reflected_;
+    if (transmission_ >= 1) return;
+  }
   rho_ = material.base_color * (1 - metallic);
   lambert_ = metallic < 1;
   diffuse_ = max_component(rho_) > 0;
@@ -95,7 +104,7 @@ float Bsdf::diffuse_coupling(float cos_theta) const {
 }
 
 Rgb Bsdf::diffuse_reflectance(float cos_o) const {
-  return specular_ ? rho_ * (diffuse_coupling(cos_o) / coupling_scale_) : rho_;
+  return (specular_ ? rho_ * (diffuse_coupling(cos_o) / coupling_scale_) : rho_) * (1 - transmission_);
 }
 
 float Bsdf::arrival_weight(float cos_i) const { return diffuse_coupling(cos_i) * coupling_scale_; }
@@ -111,8 +120,8 @@ float Bsdf::diffuse_probability(const Reflection& r) const {
 
 Rgb Bsdf::eval_diffuse(Vec3 wi, Vec3 wo) const {
   if (!diffuse_ || !(wi.z > 0) || !(wo.z > 0)) return Rgb(0.0f);
-  if (!specular_) return rho_ * kInvPi;
-  return rho_ * (kInvPi * diffuse_coupling(wi.z) * diffuse_coupling(wo.z));
+  if (!specular_) return rho_ * (kInvPi * (1 - transmission_));
+  return rho_ * (kInvPi * diffuse_coupling(wi.z) * diffuse_coupling(wo.z) * (1 - transmission_));
 }
 
 Rgb Bsdf::specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const {
@@ -123,13 +132,12 @@ Rgb Bsdf::specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const {
 
 Rgb Bsdf::eval_specular(Vec3 wi, Vec3 wo) const {
   if (!specular_ || delta_ || !(wi.z > 0) || !(wo.z > 0)) return Rgb(0.0f);
-  return specular(wi, wo, reflection(wi.z).lost, reflection(wo.z).lost);
+  return specular(wi, wo, reflection(wi.z).lost, reflection(wo.z).lost) * (1 - transmission_);
 }
 
 float Bsdf::pdf_diffuse(Vec3 wi, Vec3 wo) const {
   if (!diffuse_ || !(wi.z > 0) || !(wo.z > 0)) return 0;
-  return specular_ ? diffuse_probability(reflection(wo.z)) * pdf_hemisphere_cos(wi.z)
-                   : pdf_hemisphere_cos(wi.z);
+  return (specular_ ? diffuse_probability(reflection(wo.z)) : 1) * pdf_hemisphere_cos(wi.z) * (1 - transmission_);
 }
 
 /// What is reflected more than once, as a share of event S.
@@ -147,7 +155,7 @@ float Bsdf::specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const {
 float Bsdf::pdf_specular(Vec3 wi, Vec3 wo) const {
   if (!specular_ || delta_ || !(wi.z > 0) || !(wo.z > 0)) return 0;
   const Reflection r = reflection(wo.z);
-  return (1 - diffuse_probability(r)) * specular_density(wi, wo, r);
+  return (1 - diffuse_probability(r)) * specular_density(wi, wo, r) * (1 - transmission_);
 }
 
 void Bsdf::sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const {
@@ -183,7 +191,36 @@ void Bsdf::sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, S
   s.pdf_solid_angle = density + (1 - p) * pdf_hemisphere_cos(s.wi.z);
 }
 
+void Bsdf::sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const {
+  float cos_t = 0;
+  const float reflectance = fresnel_dielectric(wo.z, eta_reflected_, cos_t);
+  s.delta = true;
+  s.weight = Rgb(1.0f);
+  if (u_lobe < reflectance) {
+    s.wi = {-wo.x, -wo.y, wo.z};
+    s.pdf_solid_angle = transmission_ * reflectance;
+    return;
+  }
+  s.transmitted = true;
+  s.wi = eta_ == 1 ? -wo : refract(wo, eta_, cos_t);
+  s.weight = transmission_tint_;
+  s.pdf_solid_angle = transmission_ * (1 - reflectance);
+}
+
 Bsdf::Sample Bsdf::sample(Vec3 wo, float u_lobe, Vec2 u) const {
+  if (!(transmission_ > 0)) return sample_opaque(wo, u_lobe, u);
+  Sample s;
+  if (!(wo.z > 0)) return s;
+  if (u_lobe < transmission_) {
+    sample_dielectric(wo, u_lobe / transmission_, s);
+    return s;
+  }
+  s = sample_opaque(wo, std::min(kOneMinusEpsilon, (u_lobe - transmission_) / (1 - transmission_)), u);
+  s.pdf_solid_angle *= 1 - transmission_;
+  return s;
+}
+
+Bsdf::Sample Bsdf::sample_opaque(Vec3 wo, float u_lobe, Vec2 u) const {
   Sample s;
   if (!(wo.z > 0)) return s;
   const Reflection r = reflection(wo.z);

@@ -10,7 +10,7 @@ namespace tempolux {
 /// Scattering of one material at one point, in the local frame of the shading normal (z = normal).
 ///
 /// f = f_D + f_S [1/sr]. wi and wo are unit vectors away from the surface, both on the side z > 0, else f = 0
-/// (transmission is not part of this version: the factor is taken as 0).
+/// (but for the delta lobe of glass, which is sampled only).
 ///
 /// f_S is GGX (ggx.h) with Schlick's Fresnel term F = F0 + (F90 - F0) (1 - wo h)^5, or below a roughness of
 /// kMirrorRoughness a delta mirror with the same F. From glTF 2.0 and KHR_materials_specular, _ior:
@@ -32,15 +32,21 @@ namespace tempolux {
 ///     integral of f_D(wi, wo) cos_i = rho c(wo) sqrt(1 - A_mean) = rho (1 - A(wo)):
 /// the Lambert lobe gets what is not reflected, and D + S returns A + rho (1 - A) <= 1 from either side. For a
 /// matte material (F0 = F90 = 0) there is no f_S and c is 1 exactly.
+///
+/// Glass (KHR_materials_transmission) takes its share, transmission (1 - metallic), of all this: a smooth
+/// boundary that reflects by the exact Fresnel equations and lets the rest through, tinted by base_color at
+/// each boundary; refracted at a solid (index ior inside), straight through a thin wall. Radiance is not scaled
+/// by the index squared inside a solid: what enters leaves, and nothing scatters inside.
 class Bsdf {
  public:
-  explicit Bsdf(const Material& material);
+  /// front: wo is on the front side of the triangle, outside a solid of glass.
+  explicit Bsdf(const Material& material, bool front = true);
 
   /// Does light arrive at a Lambert lobe here? True of a black one too: what it receives can be measured.
   bool has_lambert() const { return lambert_; }
   bool has_diffuse() const { return diffuse_; }   ///< a Lambert lobe that reflects
-  bool has_specular() const { return specular_; }
-  bool specular_is_delta() const { return delta_; }
+  bool has_specular() const { return specular_ || transmission_ > 0; }
+  bool specular_is_delta() const { return delta_ || !specular_; }
   /// rho of the Lambert lobe, before coupling.
   Rgb diffuse_albedo() const { return rho_; }
   /// c(w) above, 1 for a matte material; cos_theta > 0.
@@ -63,6 +69,7 @@ class Bsdf {
     float pdf_solid_angle = 0; ///< of wi by all non-delta lobes [1/sr]; for a delta lobe its choice probability
     bool diffuse = false;      ///< event D, else S
     bool delta = false;
+    bool transmitted = false;  ///< wi is on the other side, z < 0
   };
   /// Draws wi given wo: lobe by u_lobe, direction by u. weight is for the chosen event alone: the event D
   /// carries f_D cos / (P(D) pdf_D), the event S carries f_S cos / (P(S) pdf_S), so that light paths can be
@@ -82,6 +89,8 @@ class Bsdf {
   static float multiple_share(const Reflection& r);
   Rgb specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const;
   float specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const;
+  void sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const;
+  Sample sample_opaque(Vec3 wo, float u_lobe, Vec2 u) const;
   void sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const;
   void sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, Sample& s) const;
 
@@ -93,6 +102,10 @@ class Bsdf {
   float mean_lost_ = 0;             ///< 1 - E_mean
   float mean_albedo_ = 0;           ///< A_mean of the channel with the largest F0
   float coupling_scale_ = 1;        ///< 1 / sqrt(1 - A_mean)
+  Rgb transmission_tint_{0.0f};
+  float transmission_ = 0;          ///< share of smooth glass, event S; the rest scatters as described above
+  float eta_ = 1;                   ///< index on wo's side / index beyond; 1 for a thin wall's way through
+  float eta_reflected_ = 1;         ///< the same for its Fresnel term
   bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
 };
 

@@ -106,7 +106,7 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
     }
     const SurfacePoint point = tracer_.surface_point(hit);
     const Arrival at(point, ray.direction);
-    const Bsdf bsdf(tracer_.frame().materials[point.material]);
+    const Bsdf bsdf(tracer_.frame().materials[point.material], dot(point.normal_geometric, at.wi) > 0);
 
     // Record.
     const PathKind kind = kind_after(diffuse_seen, specular_seen);
@@ -123,10 +123,11 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
     // Scatter, or be absorbed.
     const auto next = bsdf.sample(at.wi_local, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
     const Vec3 travel = at.frame.to_world(next.wi);
-    const float cos_geometric = dot(travel, at.normal_geometric);
+    const float side = next.transmitted ? -1.0f : 1.0f, cos_geometric = side * dot(travel, at.normal_geometric);
     const Rgb before = flux;
     flux *= next.weight;
-    if (!at.flat) flux *= at.shading_correction * std::max(0.0f, cos_geometric) / std::max(1e-6f, next.wi.z);
+    if (!at.flat && !next.delta)
+      flux *= at.shading_correction * std::max(0.0f, cos_geometric) / std::max(1e-6f, next.wi.z);
     const float survival = std::min(kLargestSurvival, max_component(flux) / std::max(max_component(before), 1e-37f));
     if (!(cos_geometric > 0) || !(random.get1(bounce, Purpose::roulette) < survival)) {
       batch.absorbed += Rgbd(before);

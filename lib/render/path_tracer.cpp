@@ -91,7 +91,7 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     const Bsdf::Sample next = x.bsdf.sample(x.wo_local, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
     if (is_black(next.weight) || (ends_here && next.diffuse)) break;
     const Vec3 wi = x.frame.to_world(next.wi);
-    if (!x.sees(wi)) break;
+    if (next.transmitted ? !(dot(wi, x.normal_geometric) < 0) : !x.sees(wi)) break;
     throughput *= next.weight;
     path.scatter(next.diffuse);
 

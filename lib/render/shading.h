@@ -23,7 +23,7 @@ struct ShadingPoint {
         normal(viewed_normal(point, wo, normal_geometric)),
         frame(normal),
         wo_local(frame.to_local(wo)),
-        bsdf(material) {}
+        bsdf(material, dot(point.normal_geometric, wo) > 0) {}
 
   /// Is wi on the lit side of both normals? Only then does light from it count.
   bool sees(Vec3 wi) const { return dot(wi, normal_geometric) > 0 && dot(wi, normal) > 0; }

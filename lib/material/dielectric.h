@@ -1,0 +1,30 @@
+// lib/material/dielectric.h -- smooth boundaries of glass: exact Fresnel reflectance and refraction.
+#pragma once
+
+#include <cmath>
+
+#include "lib/core/vec.h"
+
+namespace tempolux {
+
+/// Reflectance of a smooth boundary for unpolarised light. cos_o: of the angle on the side the light is seen
+/// from, in (0, 1]; eta = (index on that side) / (index beyond). 1 at and beyond the critical angle.
+/// cos_t receives the cosine beyond, 0 if there is none.
+inline float fresnel_dielectric(float cos_o, float eta, float& cos_t) {
+  const float sin2_t = eta * eta * std::max(0.0f, 1 - cos_o * cos_o);
+  if (sin2_t >= 1) {
+    cos_t = 0;
+    return 1;
+  }
+  cos_t = std::sqrt(1 - sin2_t);
+  const float parallel = (cos_o - eta * cos_t) / (cos_o + eta * cos_t);
+  const float perpendicular = (eta * cos_o - cos_t) / (eta * cos_o + cos_t);
+  return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+}
+
+/// Direction beyond the boundary z = 0 of light seen along wo (z > 0): away from the surface, z < 0.
+inline Vec3 refract(Vec3 wo, float eta, float cos_t) {
+  return normalize(Vec3{-eta * wo.x, -eta * wo.y, -cos_t});
+}
+
+}  // namespace tempolux
