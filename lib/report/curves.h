@@ -1,0 +1,65 @@
+// lib/report/curves.h -- error against time: slope, bias floor, speed-up at equal error.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lib/report/report_input.h"
+
+namespace tempolux {
+
+enum class TimeKind { cpu, wall };
+
+/// One setting of a chain: the median time and the mean square error of its repetitions (seeds).
+struct CurvePoint {
+  std::optional<double> x;
+  double time_s = 0;
+  double mse = 0;
+  std::size_t repetitions = 1;
+};
+
+/// The usable points of a scene's runs that share a curve, by rising time. Runs of equal x and label parameters are
+/// repetitions of one point.
+struct Curve {
+  std::string scene, name;
+  std::vector<CurvePoint> points;
+  std::size_t left_out = 0;       ///< runs without a comparison, or whose error the reference does not resolve
+};
+
+/// Curves in order of first appearance; times and errors that are not positive are left out and counted.
+std::vector<Curve> curves_of(const std::vector<MeasuredRun>& runs, TimeKind kind);
+
+/// How a curve falls.
+struct CurveFit {
+  /// Least-squares slope of log error over log time (-1/2 for Monte Carlo) over the points before the floor: those
+  /// whose squared error is above ten times the floor's (there a/t + b has a slope of -0.45 or steeper).
+  std::optional<double> slope;
+  std::optional<double> slope_standard_error;   ///< from the scatter around the line; needs three points
+  std::size_t slope_points = 0;
+  /// e^2 = a/t + b, least squares of relative deviations, a and b not negative. Needs three points.
+  double noise = 0;               ///< a [error^2 s]
+  double floor_squared = 0;       ///< b
+  /// sqrt(b) where a floor is seen: b is above two of its standard errors and above 1 % of the least e^2, and the
+  /// model fits better than a straight line in log-log. Otherwise absent, which does not prove that there is none.
+  std::optional<double> floor;
+};
+
+/// Fits the points of a curve; with fewer than two there is no slope, with fewer than three no floor.
+CurveFit fit_curve(const std::vector<CurvePoint>& points);
+
+/// Time at which a curve first reaches an error [same unit as its points' root], interpolated log-log between
+/// neighbouring points. Nothing if the curve starts below the error or never reaches it: never extrapolated.
+std::optional<double> time_at_error(const std::vector<CurvePoint>& points, double rmse);
+
+/// Equal-error speed-up of one curve over another at one error inside both.
+struct SpeedUp {
+  double rmse = 0, time_s = 0, baseline_time_s = 0;
+  double ratio() const { return baseline_time_s / time_s; }
+};
+
+/// At both ends and the geometric middle of the errors that both curves reach; empty if they share none.
+std::vector<SpeedUp> speed_ups(const std::vector<CurvePoint>& points, const std::vector<CurvePoint>& baseline);
+
+}  // namespace tempolux

@@ -1,0 +1,83 @@
+// lib/report/report_input.h -- what a report is made of: measured runs and given points, read from JSON.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tempolux {
+
+/// A stats file (formats/stats/stats.md): what one program run cost.
+struct StatsRecord {
+  struct Phase {
+    std::string name;
+    double cpu_s = 0, wall_s = 0;
+  };
+  std::string tool;
+  double cpu_s = 0, wall_s = 0;
+  double peak_memory_bytes = 0;
+  std::vector<Phase> phases;
+  std::map<std::string, double> counts;
+};
+
+/// The totals of a comparison file (formats/comparison/comparison.md): how wrong the outcome was.
+struct ErrorRecord {
+  std::string layer;
+  double pixels = 0;
+  std::size_t frames = 0;
+  double mse = 0;                                     ///< may be negative
+  std::optional<double> mse_standard_error;
+  std::optional<double> relmse, bias, bias_standard_error, psnr_db, flicker;
+  bool halves = false;                                ///< the reference's noise is not in mse
+  std::optional<std::pair<std::uint32_t, double>> worst_object;  ///< id and bias, objects of few pixels apart
+
+  /// Root of mse, 0 where that is not positive.
+  double rmse() const;
+  /// mse is positive and, if its standard error is known, above three of them: a point of a curve.
+  bool usable() const;
+};
+
+/// One measured run of a chain of tools: one line of the report, one point of a curve.
+struct MeasuredRun {
+  std::string scene, curve, label;
+  std::optional<double> x;                            ///< the swept parameter
+  std::map<std::string, std::string> parameters;
+  std::vector<StatsRecord> stages;                    ///< every process counted
+  std::optional<ErrorRecord> error;
+  std::string image, difference;                      ///< PNG files, or empty
+
+  double cpu_s() const;                               ///< sum over the stages
+  double wall_s() const;
+  double peak_memory_bytes() const;                   ///< of the largest process
+};
+
+/// A point measured elsewhere (a peer): given, never fitted.
+struct GivenPoint {
+  std::string scene, label, note;
+  double cpu_s = 0, rmse = 0;
+};
+
+struct ReportInput {
+  std::string title = "Error against time";
+  std::string baseline;                               ///< curve that speed-ups are over; empty: each scene's first
+  std::vector<MeasuredRun> runs;
+  std::vector<GivenPoint> points;
+  std::map<std::string, std::string> references;      ///< scene -> PNG of its reference
+  std::vector<std::string> files;                     ///< everything read
+};
+
+/// Read one file. Throw InputError "FILE: PLACE: WHAT; REMEDY".
+StatsRecord read_stats(const std::string& path);
+ErrorRecord read_comparison(const std::string& path);
+
+/// Reads a manifest (formats/report/report.md) and all files it names, relative to its folder. Throws InputError.
+ReportInput read_manifest(const std::string& path);
+
+/// Adds a run given on the command line: `what` is KEY=VALUE{,KEY=VALUE} with the keys scene, curve, label, x (others
+/// are parameters); `stats` is FILE{+FILE}; `comparison` is a file. Throws InputError.
+void add_run(ReportInput& input, const std::string& what, const std::string& stats, const std::string& comparison);
+
+}  // namespace tempolux

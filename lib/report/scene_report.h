@@ -1,0 +1,42 @@
+// lib/report/scene_report.h -- what a report says about one scene: tables and the script of its plot.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/report/curves.h"
+#include "lib/report/report_input.h"
+
+namespace tempolux {
+
+struct Table {
+  std::string heading;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+  std::string note;
+};
+
+struct SceneReport {
+  std::string scene;
+  std::string file_stem;                              ///< "error-SCENE", unique, of letters, digits, - _ only
+  std::vector<Curve> curves;
+  std::vector<CurveFit> fits;                         ///< of each curve
+  std::vector<GivenPoint> points;
+  std::vector<Table> tables;                          ///< runs, curves, speed-ups, given points; none is empty
+};
+
+/// One per scene, in order of first appearance.
+std::vector<SceneReport> scene_reports(const ReportInput& input, TimeKind kind);
+
+/// All runs, one line each, RFC 4180: scene, curve, label, x, parameters, stages, seconds by phase, counts (rays, bytes
+/// ...), peak memory, errors. Phases and counts are columns "TOOL.PHASE cpu_s" and "TOOL.COUNT" over all runs; what
+/// a run does not have is empty.
+std::string report_csv(const ReportInput& input);
+
+enum class PlotFormat { svg, png };
+
+/// gnuplot script that draws error against time, log-log, to its standard output: points, the fitted curve
+/// sqrt(a/t + b), slope and floor in the key, given points. Empty if there is nothing to draw.
+std::string plot_script(const SceneReport& report, TimeKind kind, PlotFormat format);
+
+}  // namespace tempolux
