@@ -88,7 +88,8 @@ void read_extension(Import& import, const std::string& name, const Value& value,
     reader.ignore_texture("transmissionTexture");
   } else if (name == "KHR_materials_volume") {
     material.thin_walled = !(reader.number("thicknessFactor", 0) > 0);
-    if (value.Has("attenuationDistance")) import.ignore("KHR_materials_volume.attenuationDistance (glass absorbs nothing)");
+    if (value.Has("attenuationDistance"))
+      import.ignore("KHR_materials_volume.attenuationDistance (glass absorbs nothing)");
     reader.ignore_texture("thicknessTexture");
   } else if (name == "KHR_materials_unlit") {
     import.ignore("KHR_materials_unlit (the material is lit like any other)");
@@ -108,7 +109,8 @@ Material read_material(Import& import, std::size_t index) {
   double strength = 1;
   for (const auto& [name, value] : source.extensions)
     read_extension(import, name, value, place, material, strength);
-  if (material.transmission > 0 && material.roughness > 0) import.ignore("the roughness of glass (it is drawn smooth)");
+  if (material.transmission > 0 && material.roughness > 0)
+    import.ignore("the roughness of glass (it is drawn smooth)");
   material.emission =
       limited_colour(import, source.emissiveFactor, Rgb{0.0f}, kNoUpper, place + ".emissiveFactor");
   material.emission *= float(strength);

@@ -25,8 +25,8 @@ struct Material {
   float specular = 1;                ///< KHR_materials_specular: factor of the dielectric lobe, [0, 1]
   Rgb specular_color{1.0f};          ///< tint of F0, >= 0
   float ior = 1.5f;                  ///< >= 1, or 0
-  float transmission = 0;            ///< KHR_materials_transmission, [0, 1]: takes the place of the Lambert lobe
-  bool thin_walled = true;           ///< false: the boundary of a solid (KHR_materials_volume), which refracts
+  float transmission = 0;            ///< KHR_materials_transmission, [0, 1]: in place of the Lambert lobe
+  bool thin_walled = true;           ///< false: boundary of a solid (KHR_materials_volume), which refracts
   bool double_sided = false;
 
   bool emissive() const { return max_component(emission) > 0; }

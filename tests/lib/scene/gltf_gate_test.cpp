@@ -277,6 +277,17 @@ TEST(GltfGate, AccessorsOutsideTheirBytesAreRefusedIn64Bits) {
   }
 }
 
+TEST(GltfGate, AnAccessorWhoseEndWrapsAround64BitsIsRefused) {
+  // 252 (count - 1) = 2^64 + 236: taken modulo 2^64, the 12 bytes from 236 on lie inside 360.
+  GltfMaker maker;
+  const int positions = maker.add_vec3(std::vector<float>(90));
+  maker.add_node({{"mesh", maker.add_mesh({{"attributes", {{"POSITION", positions}}}})}});
+  maker.json["bufferViews"][0]["byteStride"] = 252;
+  maker.json["accessors"][0]["count"] = 73'201'365'371'863'302ull;
+  EXPECT_EQ(252ull * (73'201'365'371'863'302ull - 1), 236ull);
+  EXPECT_CONTAINS(error_of(maker), "do not fit bufferView 0");
+}
+
 TEST(GltfGate, SmallFilesThatAskForMuchMemoryAreRefused) {
   GltfMaker maker = one_triangle();
   maker.json["accessors"][0].erase("bufferView");
