@@ -168,8 +168,10 @@ void LightTree::collapse(const std::vector<Pair>& pairs, std::uint32_t pair, std
     set_child(nodes_[at], i, p.bounds);
     nodes_[at].leaf[i] = p.leaf;
     nodes_[at].child[i] = p.leaf ? p.light : std::uint32_t(nodes_.size());
-    if (p.leaf) place_[p.light] = place;
-    else collapse(pairs, chosen[i], place);
+    if (p.leaf)
+      place_[p.light] = place;
+    else
+      collapse(pairs, chosen[i], place);
   }
 }
 
@@ -239,7 +241,8 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
   float factor[kWidth];
   const float no_normal = normal == Vec3{} ? 1.0f : 0.0f;
   for (int i = 0; i < kWidth; ++i) {
-    const float x = node.centre[0][i] - point.x, y = node.centre[1][i] - point.y, z = node.centre[2][i] - point.z;
+    const float x = node.centre[0][i] - point.x, y = node.centre[1][i] - point.y,
+                z = node.centre[2][i] - point.z;
     const float distance2 = x * x + y * y + z * z, radius = node.radius[i];
     const float inverse = 1 / std::sqrt(std::max(distance2, 1e-18f));
     const float sin_size = std::min(1.0f, radius * inverse), cos_size = safe_sqrt(1 - sin_size * sin_size);
@@ -283,7 +286,8 @@ bool LightTree::choose(Vec3 point, Vec3 normal, float u, Choice& choice) const {
       const double sum = importances(*node, point, normal, each);
       if (!(sum > 0)) return false;
       left *= sum;
-      // The lane in which the running sum passes `left`; the last one that counts, should rounding pass them all.
+      // The lane in which the running sum passes `left`; the last one that counts, should rounding pass them
+      // all.
       for (int i = 0; i < kWidth; ++i) {
         if (!(each[i] > 0)) continue;
         lane = i;

@@ -16,11 +16,11 @@ namespace tempolux {
 /// What is known of one light, or of all lights below a node.
 struct LightBounds {
   Box3 box;
-  Vec3 axis{0, 0, 1};     ///< unit: middle of the normals
-  double weight = 0;      ///< greatest irradiance at 1 m, facing it: L A, or I; summed over lights
-  float cos_spread = 1;   ///< all normals are within this angle of the axis
-  float cos_reach = 0;    ///< and shine no farther than this angle from their normal (at most pi/2)
-  bool two_sided = false; ///< some shine backwards as well
+  Vec3 axis{0, 0, 1};      ///< unit: middle of the normals
+  double weight = 0;       ///< greatest irradiance at 1 m, facing it: L A, or I; summed over lights
+  float cos_spread = 1;    ///< all normals are within this angle of the axis
+  float cos_reach = 0;     ///< and shine no farther than this angle from their normal (at most pi/2)
+  bool two_sided = false;  ///< some shine backwards as well
 };
 
 class LightTree {
@@ -29,16 +29,16 @@ class LightTree {
   explicit LightTree(const std::vector<LightBounds>& lights);
 
   bool empty() const { return nodes_.empty(); }
-  /// Estimate of the irradiance that all of it gives, in the unit of weight / m^2; 0 only if no light can reach
-  /// the point.
+  /// Estimate of the irradiance that all of it gives, in the unit of weight / m^2; 0 only if no light can
+  /// reach the point.
   double importance(Vec3 point, Vec3 normal) const;
   struct Choice {
     std::uint32_t light = 0;
     double probability = 0;  ///< of the light, at this point and normal
   };
   /// Walks down by the importance of both children: an upper bound of weight cos cos / distance^2. `normal`:
-  /// unit, or zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at a
-  /// node of which no light can reach the point.
+  /// unit, or zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at
+  /// a node of which no light can reach the point.
   bool choose(Vec3 point, Vec3 normal, float u, Choice& choice) const;
   /// Probability with which choose() takes this light. [1]
   double probability(Vec3 point, Vec3 normal, std::uint32_t light) const;
@@ -48,10 +48,10 @@ class LightTree {
   struct alignas(32) Node {
     float centre[3][kWidth], radius[kWidth];  ///< of the sphere around the child's box
     float axis[3][kWidth], cos_spread[kWidth], sin_spread[kWidth], cos_reach[kWidth];
-    float two_sided[kWidth];                  ///< 1 or 0
-    double weight[kWidth];                    ///< in parts of the whole tree's; 0: no child
-    std::uint32_t child[kWidth];              ///< a node, or the light of a leaf
-    std::uint32_t parent;                     ///< kWidth x node + lane
+    float two_sided[kWidth];      ///< 1 or 0
+    double weight[kWidth];        ///< in parts of the whole tree's; 0: no child
+    std::uint32_t child[kWidth];  ///< a node, or the light of a leaf
+    std::uint32_t parent;         ///< kWidth x node + lane
     std::uint8_t leaf[kWidth], count;
   };
   struct Item;

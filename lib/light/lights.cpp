@@ -15,9 +15,12 @@ namespace {
 
 EmissionSlot::Kind slot_kind(PunctualLight::Kind kind) {
   switch (kind) {
-    case PunctualLight::Kind::point: return EmissionSlot::Kind::point;
-    case PunctualLight::Kind::spot: return EmissionSlot::Kind::spot;
-    case PunctualLight::Kind::directional: return EmissionSlot::Kind::directional;
+    case PunctualLight::Kind::point:
+      return EmissionSlot::Kind::point;
+    case PunctualLight::Kind::spot:
+      return EmissionSlot::Kind::spot;
+    case PunctualLight::Kind::directional:
+      return EmissionSlot::Kind::directional;
   }
   return EmissionSlot::Kind::point;
 }
@@ -66,12 +69,12 @@ struct Lights::Impl {
   Vec3 sphere_centre;
   double sphere_radius;
   std::vector<EmissionSlot> slots;
-  std::vector<TriangleLight> triangles;          // of the first slots, same order
-  std::vector<double> cumulative;                // of the probabilities; by slot its upper end
-  std::vector<std::uint32_t> first_slot;         // by surface; kNone: emits nothing
-  std::vector<std::uint32_t> tree_index;         // by slot: its light in the tree, kNone: emits nothing
-  std::vector<std::uint32_t> tree_slot;          // and back
-  std::vector<std::uint32_t> suns;               // indices of directional lights that shine
+  std::vector<TriangleLight> triangles;   // of the first slots, same order
+  std::vector<double> cumulative;         // of the probabilities; by slot its upper end
+  std::vector<std::uint32_t> first_slot;  // by surface; kNone: emits nothing
+  std::vector<std::uint32_t> tree_index;  // by slot: its light in the tree, kNone: emits nothing
+  std::vector<std::uint32_t> tree_slot;   // and back
+  std::vector<std::uint32_t> suns;        // indices of directional lights that shine
   LightTree tree{{}};
 
   Impl(const SceneFrame& frame_, const EmissionTable& table);
@@ -146,7 +149,8 @@ const std::vector<EmissionSlot>& Lights::slots() const { return impl_->slots; }
 Rgbd Lights::total_flux() const {
   Rgbd sum;
   for (const TriangleLight& t : impl_->triangles) sum += t.flux();
-  for (const PlacedLight& placed : impl_->frame->lights) sum += punctual_flux(placed.light, impl_->sphere_radius);
+  for (const PlacedLight& placed : impl_->frame->lights)
+    sum += punctual_flux(placed.light, impl_->sphere_radius);
   return sum;
 }
 
@@ -249,15 +253,18 @@ Rgb Lights::emitted(std::uint32_t surface, Vec3 normal_geometric, Vec3 wo) const
 void Lights::Impl::emit_triangle(const TriangleLight& t, const double u[4], PhotonEmission& e) const {
   // Heitz' map from square to triangle, as sample_triangle, in double.
   double b1 = u[0], b2 = u[1];
-  if (b2 > b1) b1 *= 0.5, b2 -= b1;
-  else b2 *= 0.5, b1 -= b2;
+  if (b2 > b1)
+    b1 *= 0.5, b2 -= b1;
+  else
+    b2 *= 0.5, b1 -= b2;
   const bool back = t.two_sided && u[2] >= 0.5;
   const double u2 = t.two_sided ? stretch(u[2], back ? 0.5 : 0, 0.5) : u[2];
   e.origin = t.point(b1, b2);
   e.normal = back ? -t.normal : t.normal;
   e.origin_offset = t.offset;
-  e.travel = t.area > 0 ? normalize(Frame(e.normal).to_world(sample_hemisphere_cos({to_float(u2), to_float(u[3])})))
-                        : Vec3{0, 0, 1};
+  e.travel = t.area > 0
+                 ? normalize(Frame(e.normal).to_world(sample_hemisphere_cos({to_float(u2), to_float(u[3])})))
+                 : Vec3{0, 0, 1};
 }
 
 void Lights::Impl::emit_punctual(const PlacedLight& placed, const double u[4], PhotonEmission& e) const {

@@ -12,25 +12,25 @@
 
 namespace tempolux {
 
-/// One slot of the emission table: an emissive triangle (both sides, twice the flux, if its material is double
-/// sided) or a punctual light. Slots and probabilities are frozen over a segment: a lamp that dims or moves
-/// keeps its slot and changes the photon's weight.
+/// One slot of the emission table: an emissive triangle (both sides, twice the flux, if its material is
+/// double sided) or a punctual light. Slots and probabilities are frozen over a segment: a lamp that dims or
+/// moves keeps its slot and changes the photon's weight.
 struct EmissionSlot {
   enum class Kind : std::uint8_t { triangle, point, spot, directional };
   Kind kind = Kind::triangle;
-  std::uint32_t surface = kNone, triangle = 0;   ///< of a triangle
-  std::uint32_t light = kNone;                   ///< index into SceneFrame::lights
-  double probability = 0;                        ///< of being chosen for a photon; sums to 1 over the table
+  std::uint32_t surface = kNone, triangle = 0;  ///< of a triangle
+  std::uint32_t light = kNone;                  ///< index into SceneFrame::lights
+  double probability = 0;                       ///< of being chosen for a photon; sums to 1 over the table
 };
 
 /// What is frozen over a segment. Slots are the triangles of `surfaces`, one after the other, then the
 /// frame's punctual lights; probability is proportional to the maximum flux over the segment's frames
-/// (luminance, but at least 5 % of the largest channel, so that blue lamps count; a directional light's flux is
-/// its irradiance times the area pi R^2 of the scene sphere's disc).
+/// (luminance, but at least 5 % of the largest channel, so that blue lamps count; a directional light's flux
+/// is its irradiance times the area pi R^2 of the scene sphere's disc).
 struct EmissionTable {
-  std::vector<std::uint32_t> surfaces;           ///< that emit at some frame: indices into SceneFrame::surfaces
-  std::vector<double> probability;               ///< by slot, sums to 1; equal if nothing ever emits
-  Vec3d sphere_centre{};                         ///< scene sphere over the segment, scene space, m
+  std::vector<std::uint32_t> surfaces;  ///< that emit at some frame: indices into SceneFrame::surfaces
+  std::vector<double> probability;      ///< by slot, sums to 1; equal if nothing ever emits
+  Vec3d sphere_centre{};                ///< scene sphere over the segment, scene space, m
   double sphere_radius = 0;
 };
 
@@ -41,19 +41,19 @@ EmissionTable build_emission_table(const Scene& scene, const Segment& segment, c
 EmissionTable build_emission_table(std::span<const SceneFrame> frames);
 
 struct LightSample {
-  Vec3 wi{};                    ///< unit, from the point towards the light
-  Vec3 position{};              ///< on the light; for directional lights beyond the scene
-  float position_offset = 0;    ///< m: the shadow ray ends this far before position
-  Rgb radiance{0.0f};           ///< L / pdf of an area light, I / d^2 or E of a delta light: multiply by f cos
-  float pdf_solid_angle = 0;    ///< [1/sr], choice included; 0 if delta
+  Vec3 wi{};                  ///< unit, from the point towards the light
+  Vec3 position{};            ///< on the light; for directional lights beyond the scene
+  float position_offset = 0;  ///< m: the shadow ray ends this far before position
+  Rgb radiance{0.0f};         ///< L / pdf of an area light, I / d^2 or E of a delta light: multiply by f cos
+  float pdf_solid_angle = 0;  ///< [1/sr], choice included; 0 if delta
   bool delta = false;
 };
 
 struct PhotonEmission {
-  Vec3 origin{}, travel{};      ///< travel: unit direction of flight
-  float origin_offset = 0;      ///< start this far along the emitting side's normal
-  Vec3 normal{};                ///< of the emitting side; zero for punctual lights
-  Rgb flux{0.0f};               ///< W, of one photon if `photon_count` are emitted: divide by the count yourself
+  Vec3 origin{}, travel{};  ///< travel: unit direction of flight
+  float origin_offset = 0;  ///< start this far along the emitting side's normal
+  Vec3 normal{};            ///< of the emitting side; zero for punctual lights
+  Rgb flux{0.0f};           ///< W, of one photon if `photon_count` are emitted: divide by the count yourself
   std::uint32_t slot = 0;
 };
 
@@ -75,21 +75,24 @@ class Lights {
   /// discard lights below the surface; zero vector: none.
   bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const;
   /// Density per solid angle with which sample() at (point, normal) would have chosen the position
-  /// `on_light` of this emissive triangle, seen from its front or (two-sided) back; 0 if it is no light.
-  float pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle,
-                        Vec3 on_light, Vec3 light_normal) const;
+  /// `on_light` of this emissive triangle, seen from its front or (two-sided) back; 0 if it is no light. The
+  /// triangle's own plane decides, as in sample(); light_normal is not looked at.
+  float pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
+                        Vec3 light_normal) const;
   /// Radiance that the triangle's material emits towards `wo` (unit, away from it); zero from the back of a
   /// one-sided emitter.
   Rgb emitted(std::uint32_t surface, Vec3 normal_geometric, Vec3 wo) const;
 
-  /// A photon from the frozen table: u[0] chooses the slot and, stretched, is the first coordinate on it, u[1]
-  /// the second; u[2], u[3] the direction (of a two-sided triangle the lower half of u[2] leaves the front).
-  /// Point and spot lights have no place to choose and take u[0], u[1] for the direction, directional lights
-  /// for the place on the scene sphere's disc. All maps keep neighbours together. Not for an empty table.
+  /// A photon from the frozen table: u[0] chooses the slot and, stretched, is the first coordinate on it,
+  /// u[1] the second; u[2], u[3] the direction (of a two-sided triangle the lower half of u[2] leaves the
+  /// front). Point and spot lights have no place to choose and take u[0], u[1] for the direction, directional
+  /// lights for the place on the scene sphere's disc. All maps keep neighbours together. Not for an empty
+  /// table.
   ///
-  /// flux = (what the slot emits at this frame) / probability: the mean over u is total_flux(). Triangle: pi L A
-  /// (twice if two-sided), by the cosine; point: 4 pi I, uniform; spot: as its intensity; directional: E pi R^2,
-  /// origin on the disc of radius R outside the scene. Zero flux for what emits nothing at this frame.
+  /// flux = (what the slot emits at this frame) / probability: the mean over u is total_flux(). Triangle: pi
+  /// L A (twice if two-sided), by the cosine; point: 4 pi I, uniform; spot: as its intensity; directional: E
+  /// pi R^2, origin on the disc of radius R outside the scene. Zero flux for what emits nothing at this
+  /// frame.
   PhotonEmission emit(const double u[4]) const;
 
  private:

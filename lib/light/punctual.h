@@ -11,7 +11,7 @@ namespace tempolux {
 /// gives, but for its floor of 0.001 under the denominator, which would dim the axis of cones below 2.6
 /// degrees. Angles are held as 1 - cos, which keeps its digits for narrow cones.
 struct SpotProfile {
-  double inner = 0, outer = 0;                   ///< 1 - cos of the half angles, inner <= outer
+  double inner = 0, outer = 0;  ///< 1 - cos of the half angles, inner <= outer
 
   explicit SpotProfile(const PunctualLight& light);
   /// s^2 [1] at one_minus_cos = 1 - cos t.

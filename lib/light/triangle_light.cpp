@@ -14,9 +14,9 @@ constexpr float kOffsetScale = 0x1p-20f;  // of the largest coordinate, as for r
 
 /// The triangle as seen from a point.
 struct View {
-  Vec3 v0, v1, v2;         // to the corners
-  float l0, l1, l2;        // their lengths
-  float height;            // of the point above the plane, positive on an emitting side
+  Vec3 v0, v1, v2;           // to the corners
+  float l0, l1, l2;          // their lengths
+  float height;              // of the point above the plane, positive on an emitting side
   float opposite, adjacent;  // tan(solid angle / 2) = opposite / adjacent
   bool visible;
 
@@ -103,8 +103,9 @@ bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoin
   float omega = 0;
   if (large) {
     omega = view.solid_angle();
-    b = project(light, view, sample_spherical_triangle(unit(Vec3d(view.v0)), unit(Vec3d(view.v1)),
-                                                       unit(Vec3d(view.v2)), omega, u));
+    b = project(light, view,
+                sample_spherical_triangle(unit(Vec3d(view.v0)), unit(Vec3d(view.v1)), unit(Vec3d(view.v2)),
+                                          omega, u));
   } else {
     b = sample_triangle(u);
   }

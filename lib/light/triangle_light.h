@@ -9,22 +9,22 @@ namespace tempolux {
 /// An emissive triangle at a frame, scene space. The front is where the normal points.
 struct TriangleLight {
   Vec3 corner{}, edge1{}, edge2{};
-  Vec3 normal{};                 ///< unit; zero if the triangle has no area
-  float offset = 0;              ///< m: rays that leave or reach it stay this far off its plane
-  double area = 0;               ///< m^2
-  Rgb radiance{0.0f};            ///< W/(m^2 sr)
+  Vec3 normal{};       ///< unit; zero if the triangle has no area
+  float offset = 0;    ///< m: rays that leave or reach it stay this far off its plane
+  double area = 0;     ///< m^2
+  Rgb radiance{0.0f};  ///< W/(m^2 sr)
   bool two_sided = false;
 
   /// Triangle `index` of a surface, with the material's emission at the frame.
   TriangleLight(const Surface& surface, std::uint32_t index, const Material& material);
   bool emits() const { return area > 0 && max_component(radiance) > 0; }
-  Rgbd flux() const;             ///< pi L A, twice that if two-sided [W]
+  Rgbd flux() const;                       ///< pi L A, twice that if two-sided [W]
   Vec3 point(double b1, double b2) const;  ///< by the barycentrics of corners 1 and 2
 };
 
 struct TrianglePoint {
-  Vec3 position{}, wi{};         ///< wi: unit, from the point that looks towards position
-  double pdf_solid_angle = 0;    ///< [1/sr]
+  Vec3 position{}, wi{};       ///< wi: unit, from the point that looks towards position
+  double pdf_solid_angle = 0;  ///< [1/sr]
 };
 
 /// A point of the triangle as seen from `from`; false if it shows no emitting side there, or lies edge-on.
@@ -36,8 +36,8 @@ bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoin
 /// Density per solid angle of sample_triangle at `position`; 0 where it would have returned false.
 double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 position);
 
-/// Solid angle [sr] that the triangle fills seen from `from`, either side. Van Oosterom & Strackee, "The Solid
-/// Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.
+/// Solid angle [sr] that the triangle fills seen from `from`, either side. Van Oosterom & Strackee, "The
+/// Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.
 double solid_angle(const TriangleLight& light, Vec3 from);
 
 }  // namespace tempolux

@@ -12,8 +12,8 @@ struct AlbedoPair {
 };
 
 /// Albedo of the single-scattering lobe of ggx.h for one alpha. Bicubic in a table of 28 x 48
-/// (albedo_table.cpp) over alpha^(1/4) and the square root of x = cos (1 + alpha) / (cos + alpha): a + b is within
-/// 5e-5 and b within 8e-5 of the integrals over the whole domain (tested).
+/// (albedo_table.cpp) over alpha^(1/4) and the square root of x = cos (1 + alpha) / (cos + alpha): a + b is
+/// within 5e-5 and b within 8e-5 of the integrals over the whole domain (tested).
 class GgxAlbedo {
  public:
   /// alpha is held within [0.0004, 1], the table's range.

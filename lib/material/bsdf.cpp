@@ -30,7 +30,8 @@ Rgb fresnel(Rgb f0, float f90, float cos_h) {
 Rgb dielectric_f0(const Material& m) {
   const float r = (m.ior - 1) / (m.ior + 1), f = r * r;
   return Rgb{std::min(1.0f, f * m.specular_color.r), std::min(1.0f, f * m.specular_color.g),
-             std::min(1.0f, f * m.specular_color.b)} * m.specular;
+             std::min(1.0f, f * m.specular_color.b)} *
+         m.specular;
 }
 
 }  // namespace
@@ -39,7 +40,8 @@ Bsdf::Bsdf(const Material& material, bool front) {
   const float metallic = material.metallic;
   transmission_ = material.transmission * (1 - metallic);
   if (transmission_ > 0) {
-    const float ior = material.ior > 0 ? material.ior : 1e4f;   // ior 0: reflects everything, says KHR_materials_ior
+    const float ior =
+        material.ior > 0 ? material.ior : 1e4f;  // ior 0: reflects everything, says KHR_materials_ior
     transmission_tint_ = material.base_color;
     eta_reflected_ = material.thin_walled || front ? 1 / ior : ior;
     eta_ = material.thin_walled ? 1 : eta_reflected_;
@@ -73,8 +75,10 @@ Bsdf::Bsdf(const Material& material, bool front) {
   }
   // A lobe that reflects everything leaves nothing to the Lambert lobe.
   const float rest = 1 - mean_albedo_;
-  if (rest > 1e-6f) coupling_scale_ = 1 / std::sqrt(rest);
-  else diffuse_ = false;
+  if (rest > 1e-6f)
+    coupling_scale_ = 1 / std::sqrt(rest);
+  else
+    diffuse_ = false;
 }
 
 Bsdf::Reflection Bsdf::reflection(float cos_theta) const {
@@ -137,7 +141,8 @@ Rgb Bsdf::eval_specular(Vec3 wi, Vec3 wo) const {
 
 float Bsdf::pdf_diffuse(Vec3 wi, Vec3 wo) const {
   if (!diffuse_ || !(wi.z > 0) || !(wo.z > 0)) return 0;
-  return (specular_ ? diffuse_probability(reflection(wo.z)) : 1) * pdf_hemisphere_cos(wi.z) * (1 - transmission_);
+  return (specular_ ? diffuse_probability(reflection(wo.z)) : 1) * pdf_hemisphere_cos(wi.z) *
+         (1 - transmission_);
 }
 
 /// What is reflected more than once, as a share of event S.
@@ -149,7 +154,8 @@ float Bsdf::multiple_share(const Reflection& r) {
 /// Of event S, without P(S): visible normals and, for what is reflected more than once, the cosine.
 float Bsdf::specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const {
   const float share = multiple_share(r);
-  return (1 - share) * ggx::pdf_reflected(normalize(wi + wo), wo.z, alpha2_) + share * pdf_hemisphere_cos(wi.z);
+  return (1 - share) * ggx::pdf_reflected(normalize(wi + wo), wo.z, alpha2_) +
+         share * pdf_hemisphere_cos(wi.z);
 }
 
 float Bsdf::pdf_specular(Vec3 wi, Vec3 wo) const {
@@ -225,8 +231,10 @@ Bsdf::Sample Bsdf::sample_opaque(Vec3 wo, float u_lobe, Vec2 u) const {
   if (!(wo.z > 0)) return s;
   const Reflection r = reflection(wo.z);
   const float p = diffuse_probability(r);
-  if (u_lobe < p) sample_diffuse(wo, u, r, s);
-  else if (specular_ && max_component(r.single) > 0) sample_specular(wo, (u_lobe - p) / (1 - p), u, r, s);
+  if (u_lobe < p)
+    sample_diffuse(wo, u, r, s);
+  else if (specular_ && max_component(r.single) > 0)
+    sample_specular(wo, (u_lobe - p) / (1 - p), u, r, s);
   return s;
 }
 

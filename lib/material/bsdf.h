@@ -30,13 +30,13 @@ namespace tempolux {
 /// A of the channel with the largest F0, A_mean = 2 integral_0^1 A(mu) mu dmu. Then
 ///     integral of c(w) cos / pi = (1 - A_mean) / sqrt(1 - A_mean) = sqrt(1 - A_mean), and
 ///     integral of f_D(wi, wo) cos_i = rho c(wo) sqrt(1 - A_mean) = rho (1 - A(wo)):
-/// the Lambert lobe gets what is not reflected, and D + S returns A + rho (1 - A) <= 1 from either side. For a
-/// matte material (F0 = F90 = 0) there is no f_S and c is 1 exactly.
+/// the Lambert lobe gets what is not reflected, and D + S returns A + rho (1 - A) <= 1 from either side. For
+/// a matte material (F0 = F90 = 0) there is no f_S and c is 1 exactly.
 ///
 /// Glass (KHR_materials_transmission) takes its share, transmission (1 - metallic), of all this: a smooth
 /// boundary that reflects by the exact Fresnel equations and lets the rest through, tinted by base_color at
-/// each boundary; refracted at a solid (index ior inside), straight through a thin wall. Radiance is not scaled
-/// by the index squared inside a solid: what enters leaves, and nothing scatters inside.
+/// each boundary; refracted at a solid (index ior inside), straight through a thin wall. Radiance is not
+/// scaled by the index squared inside a solid: what enters leaves, and nothing scatters inside.
 class Bsdf {
  public:
   /// front: wo is on the front side of the triangle, outside a solid of glass.
@@ -44,14 +44,15 @@ class Bsdf {
 
   /// Does light arrive at a Lambert lobe here? True of a black one too: what it receives can be measured.
   bool has_lambert() const { return lambert_; }
-  bool has_diffuse() const { return diffuse_; }   ///< a Lambert lobe that reflects
+  bool has_diffuse() const { return diffuse_; }  ///< a Lambert lobe that reflects
   bool has_specular() const { return specular_ || transmission_ > 0; }
   bool specular_is_delta() const { return delta_ || !specular_; }
   /// rho of the Lambert lobe, before coupling.
   Rgb diffuse_albedo() const { return rho_; }
   /// c(w) above, 1 for a matte material; cos_theta > 0.
   float diffuse_coupling(float cos_theta) const;
-  /// A_S(wo): what the S lobes reflect of uniform light towards wo, by the albedo table; 0 for a matte material.
+  /// A_S(wo): what the S lobes reflect of uniform light towards wo, by the albedo table; 0 for a matte
+  /// material.
   Rgb specular_albedo(float cos_o) const;
   /// What the Lambert lobe reflects of uniform light towards wo: rho (1 - A_S(wo)), rho for a matte material.
   Rgb diffuse_reflectance(float cos_o) const;
@@ -64,10 +65,11 @@ class Bsdf {
   Rgb eval_specular(Vec3 wi, Vec3 wo) const;
 
   struct Sample {
-    Vec3 wi{};                 ///< unit, away from the surface
-    Rgb weight{0.0f};          ///< f cos / pdf of the chosen lobe's component, divided by its choice probability
-    float pdf_solid_angle = 0; ///< of wi by all non-delta lobes [1/sr]; for a delta lobe its choice probability
-    bool diffuse = false;      ///< event D, else S
+    Vec3 wi{};         ///< unit, away from the surface
+    Rgb weight{0.0f};  ///< f cos / pdf of the chosen lobe's component, divided by its choice probability
+    float pdf_solid_angle =
+        0;                 ///< of wi by all non-delta lobes [1/sr]; for a delta lobe its choice probability
+    bool diffuse = false;  ///< event D, else S
     bool delta = false;
     bool transmitted = false;  ///< wi is on the other side, z < 0
   };
@@ -82,7 +84,7 @@ class Bsdf {
  private:
   struct Reflection {  ///< of uniform light towards a direction: by one and by several microfacet reflections
     Rgb single{0.0f}, multiple{0.0f};
-    float lost = 0;    ///< 1 - E: what GGX alone would lose at F = 1
+    float lost = 0;  ///< 1 - E: what GGX alone would lose at F = 1
   };
   Reflection reflection(float cos_theta) const;
   float diffuse_probability(const Reflection& r) const;
@@ -95,17 +97,17 @@ class Bsdf {
   void sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, Sample& s) const;
 
   Rgb rho_{0.0f}, f0_{0.0f};
-  Rgb multiple_{0.0f};              ///< F_ms / (1 - E_mean)
+  Rgb multiple_{0.0f};  ///< F_ms / (1 - E_mean)
   float f0_max_ = 0, f90_ = 0;
   float alpha_ = 1, alpha2_ = 1;
   GgxAlbedo albedo_;
-  float mean_lost_ = 0;             ///< 1 - E_mean
-  float mean_albedo_ = 0;           ///< A_mean of the channel with the largest F0
-  float coupling_scale_ = 1;        ///< 1 / sqrt(1 - A_mean)
+  float mean_lost_ = 0;       ///< 1 - E_mean
+  float mean_albedo_ = 0;     ///< A_mean of the channel with the largest F0
+  float coupling_scale_ = 1;  ///< 1 / sqrt(1 - A_mean)
   Rgb transmission_tint_{0.0f};
-  float transmission_ = 0;          ///< share of smooth glass, event S; the rest scatters as described above
-  float eta_ = 1;                   ///< index on wo's side / index beyond; 1 for a thin wall's way through
-  float eta_reflected_ = 1;         ///< the same for its Fresnel term
+  float transmission_ = 0;   ///< share of smooth glass, event S; the rest scatters as described above
+  float eta_ = 1;            ///< index on wo's side / index beyond; 1 for a thin wall's way through
+  float eta_reflected_ = 1;  ///< the same for its Fresnel term
   bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
 };
 

@@ -1,4 +1,5 @@
-// lib/material/ggx.h -- the GGX microfacet lobe with Smith's height-correlated masking, local frame, z = normal.
+// lib/material/ggx.h -- the GGX microfacet lobe with Smith's height-correlated masking, local frame, z =
+// normal.
 //
 // Walter et al., "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007; Heitz, "Understanding
 // the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2), 2014. alpha in (0, 1], isotropic.

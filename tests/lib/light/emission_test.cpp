@@ -107,21 +107,24 @@ TEST(Emission, AreaLightsEmitUniformlyByTheCosine) {
   }
 }
 
-// The share of the flux within the inner cone is (1 - cos i) / (1 - cos i + (cos i - cos o) / 3).
+// With a = 1 - cos i and w = cos i - cos o: the share within the inner cone is a / (a + w / 3), and within
+// the angle where s = 1/2, of a quarter of the intensity, (a + w (1 - 1/8) / 3) / (a + w / 3).
 TEST(Emission, SpotsEmitByTheirFalloff) {
   LightScene scene;
   const Vec3 axis = normalize(Vec3{1, -2, 0.5f});
   scene.add(PunctualLight::Kind::spot, Rgb(1.0f), {0, 1, 0}, axis, 0.4f, 0.9f);
-  int inner = 0;
+  int inner = 0, half = 0;
   emit_all(scene.lights(), kCount, [&](const PhotonEmission& e) {
     const float c = dot(e.travel, axis);
     ASSERT_GE(c, std::cos(0.9f) - 1e-5f);
     ASSERT_EQ(e.origin, (Vec3{0, 1, 0}));
     ASSERT_EQ(e.normal, Vec3{});
     inner += c > std::cos(0.4f);
+    half += c > (std::cos(0.4f) + std::cos(0.9f)) / 2;
   });
-  const double a = 1 - std::cos(0.4), b = (std::cos(0.4) - std::cos(0.9)) / 3;
-  EXPECT_NEAR(double(inner) / kCount, a / (a + b), 2e-3);
+  const double a = 1 - std::cos(0.4), w = std::cos(0.4) - std::cos(0.9);
+  EXPECT_NEAR(double(inner) / kCount, a / (a + w / 3), 2e-3);
+  EXPECT_NEAR(double(half) / kCount, (a + w * 7 / 24) / (a + w / 3), 2e-3);
 }
 
 TEST(Emission, PointsEmitEverywhereAlike) {
@@ -154,7 +157,8 @@ TEST(Emission, DirectionalLightsStartOnADiscOutsideTheScene) {
   EXPECT_NEAR(square, 24, 0.05);
 }
 
-// Three frames: a lamp dims to nothing, another shrinks to nothing. Slots and probabilities stay, weights change.
+// Three frames: a lamp dims to nothing, another shrinks to nothing. Slots and probabilities stay, weights
+// change.
 TEST(Emission, TableIsFrozenOverTheSegment) {
   std::vector<LightScene> scenes(3);
   const float emission[] = {1, 4, 0}, half[] = {0.5f, 0, 1};
@@ -183,6 +187,42 @@ TEST(Emission, TableIsFrozenOverTheSegment) {
     EXPECT_NEAR(sum.g, lights.total_flux().g, 2e-3 * lights.total_flux().g);
     EXPECT_NEAR(lights.total_flux().g, kPiD * 4 * (emission[f] + half[f] * half[f]), 1e-4);
   }
+}
+
+// Two equal emitters, one growing from scale 1 at frame 0 to 3 at frame 24: over the frames 0..23 of the
+// segment its largest area is (1 + 2 23/24)^2 times the other's, whatever frame is asked for.
+TEST(Emission, TableKnowsTheLargestSizeOfAnAnimatedEmitter) {
+  Scene scene;
+  Primitive square;
+  square.positions = square_facing_down({0, 0, 0}, 1);
+  square.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.materials.emplace_back();
+  scene.materials[0].emission = Rgb(1.0f);
+  scene.meshes.push_back({"lamp", {square}});
+  scene.nodes.resize(2);
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    scene.nodes[i].mesh = 0;
+    scene.nodes[i].object = i;
+    scene.nodes[i].translation = {10.0 * i, 0, 0};
+    scene.object_names.push_back("lamp");
+  }
+  AnimationTrack grow;
+  grow.node = 0;
+  grow.path = AnimationTrack::Path::scale;
+  grow.times_s = {0, 1};
+  grow.values = {{1, 1, 1, 0}, {3, 3, 3, 0}};
+  scene.animations.push_back({"grow", {grow}});
+  scene.duration_s = 1;
+  const TimeOptions options;
+  const Segment segment = segment_of(scene, 5, options);
+  ASSERT_EQ(segment.last, 23);
+  const EmissionTable table = build_emission_table(scene, segment, options);
+  ASSERT_EQ(table.probability.size(), 4u);
+  const double largest = std::pow(1 + 2 * 23.0 / 24, 2);
+  const double moving = table.probability[2] + table.probability[3];  // static surfaces come first
+  EXPECT_NEAR(moving, largest / (1 + largest), 1e-6);
+  const SceneFrame frame = scene_at_frame(scene, segment, 0, options);
+  EXPECT_NEAR(Lights(frame, table).total_flux().r, 2 * 4 * kPiD, 1e-5);
 }
 
 TEST(Emission, NoLightIsEmptyAndDark) {

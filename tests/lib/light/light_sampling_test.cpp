@@ -35,11 +35,11 @@ Rgbd irradiance(const Lights& lights, Vec3 point, Vec3 normal, int count, double
   return mean;
 }
 
-// Height and side from a lamp far above to one that fills half the sky; the tolerance is 4 sigma plus the single
-// precision of the positions.
+// Height and side from a lamp far above to one that fills half the sky; the tolerance is 4 sigma plus the
+// single precision of the positions.
 TEST(AreaLight, GivesLambertsIrradianceAtAnyDistance) {
-  for (const auto& [height, half] : {std::pair{100.0f, 0.5f}, {5.0f, 0.5f}, {1.0f, 0.5f}, {0.2f, 0.5f}, {0.01f, 0.5f},
-                                     {2.0f, 30.0f}}) {
+  for (const auto& [height, half] :
+       {std::pair{100.0f, 0.5f}, {5.0f, 0.5f}, {1.0f, 0.5f}, {0.2f, 0.5f}, {0.01f, 0.5f}, {2.0f, 30.0f}}) {
     LightScene scene;
     const auto corners = square_facing_down({0.1f, 0.2f, height}, half);
     scene.add(corners, Rgb(1, 2, 3));
@@ -132,9 +132,11 @@ TEST(PunctualLights, SpotsFallOffAsGltfSays) {
   scene.add(PunctualLight::Kind::spot, Rgb(10.0f), {0, 0, 2}, {0, 0, -1}, 0.2f, 0.4f);
   const Lights lights = scene.lights();
   for (float angle : {0.0f, 0.19f, 0.25f, 0.3f, 0.39f, 0.41f, 1.0f}) {
-    const double s = std::clamp((std::cos(angle) - std::cos(0.4)) / (std::cos(0.2) - std::cos(0.4)), 0.0, 1.0);
+    const double s =
+        std::clamp((std::cos(angle) - std::cos(0.4)) / (std::cos(0.2) - std::cos(0.4)), 0.0, 1.0);
     const double d2 = 4 / (std::cos(angle) * std::cos(angle));
-    EXPECT_NEAR(irradiance(lights, {2 * std::tan(angle), 0, 0}, kUp, 4).r, 10 * s * s / d2 * std::cos(angle), 2e-5);
+    EXPECT_NEAR(irradiance(lights, {2 * std::tan(angle), 0, 0}, kUp, 4).r, 10 * s * s / d2 * std::cos(angle),
+                2e-5);
   }
 }
 
@@ -168,9 +170,13 @@ LightScene crowd(int count, bool suns) {
     const Vec2 place = random.get2(i, Purpose::test, 1), size = random.get2(i, Purpose::test, 2);
     const Vec3 at = Vec3{place.x, place.y, size.x} * 6.0f - Vec3{3, 3, 3};
     const Rgb emission = Rgb(0.1f + place.x, 0.2f, size.y);
-    if (i % 5 == 3) scene.add(PunctualLight::Kind::point, emission, at, n);
-    else if (i % 5 == 4) scene.add(PunctualLight::Kind::spot, emission, at, n, 0.3f, 0.3f + size.x);
-    else scene.add({at, at + Vec3{0.2f * n.y, 0.3f * n.z, 0.1f}, at + Vec3{0.1f, 0.2f * n.x, -0.3f * n.y}}, emission, i % 5 == 2);
+    if (i % 5 == 3)
+      scene.add(PunctualLight::Kind::point, emission, at, n);
+    else if (i % 5 == 4)
+      scene.add(PunctualLight::Kind::spot, emission, at, n, 0.3f, 0.3f + size.x);
+    else
+      scene.add({at, at + Vec3{0.2f * n.y, 0.3f * n.z, 0.1f}, at + Vec3{0.1f, 0.2f * n.x, -0.3f * n.y}},
+                emission, i % 5 == 2);
   }
   if (suns) {
     scene.add(PunctualLight::Kind::directional, Rgb(0.01f), {}, {0, 0, -1});
@@ -179,8 +185,8 @@ LightScene crowd(int count, bool suns) {
   return scene;
 }
 
-// What sample() returned is what pdf_solid_angle() says of the place it returned: the same decisions from the same
-// numbers. 1e-4 for the rounding of the position.
+// What sample() returned is what pdf_solid_angle() says of the place it returned: the same decisions from the
+// same numbers. 1e-4 for the rounding of the position.
 TEST(Lights, PdfIsThatOfTheSample) {
   const LightScene scene = crowd(200, true);
   const Lights lights = scene.lights();
@@ -188,19 +194,25 @@ TEST(Lights, PdfIsThatOfTheSample) {
   int found = 0;
   for (std::uint32_t i = 0; i < 20000; ++i) {
     const Vec3 point = (Vec3{random.get1(i, Purpose::place, 0), random.get1(i, Purpose::place, 1),
-                             random.get1(i, Purpose::place, 2)} - Vec3{0.5f, 0.5f, 0.5f}) * 8.0f;
+                             random.get1(i, Purpose::place, 2)} -
+                        Vec3{0.5f, 0.5f, 0.5f}) *
+                       8.0f;
     const Vec3 normal = i % 3 ? sample_sphere(random.get2(i, Purpose::test)) : Vec3{};
     LightSample s;
-    if (!lights.sample(point, normal, random.get1(i, Purpose::light_choice), random.get2(i, Purpose::light_point), s))
+    if (!lights.sample(point, normal, random.get1(i, Purpose::light_choice),
+                       random.get2(i, Purpose::light_point), s))
       continue;
     if (s.delta) continue;
     // The triangle is the one whose density agrees; there must be one.
     double best = INFINITY;
     for (const EmissionSlot& slot : lights.slots()) {
       if (slot.kind != EmissionSlot::Kind::triangle) continue;
-      const TriangleLight t(scene.frame.surfaces[slot.surface], slot.triangle, scene.frame.materials[scene.frame.surfaces[slot.surface].material]);
-      if (std::abs(dot(t.normal, s.position - t.corner)) > 1e-4f || length(s.position - t.corner) > 0.6f) continue;
-      const double pdf = lights.pdf_solid_angle(point, normal, slot.surface, slot.triangle, s.position, t.normal);
+      const TriangleLight t(scene.frame.surfaces[slot.surface], slot.triangle,
+                            scene.frame.materials[scene.frame.surfaces[slot.surface].material]);
+      if (std::abs(dot(t.normal, s.position - t.corner)) > 1e-4f || length(s.position - t.corner) > 0.6f)
+        continue;
+      const double pdf =
+          lights.pdf_solid_angle(point, normal, slot.surface, slot.triangle, s.position, t.normal);
       best = std::min(best, std::abs(pdf / s.pdf_solid_angle - 1));
     }
     EXPECT_LT(best, 2e-4) << i;
@@ -220,17 +232,21 @@ TEST(Lights, ManyTogetherGiveTheSumOfEach) {
       SceneFrame one = scene.frame;
       one.lights.clear();
       for (Material& m : one.materials) m.emission = Rgb(0.0f);
-      if (i < one.surfaces.size()) one.materials[i] = scene.frame.materials[i];
-      else one.lights.push_back(scene.frame.lights[i - one.surfaces.size()]);
-      sum += irradiance(Lights(one, build_emission_table(std::span<const SceneFrame>(&one, 1))), point, normal, 1 << 12).r;
+      if (i < one.surfaces.size())
+        one.materials[i] = scene.frame.materials[i];
+      else
+        one.lights.push_back(scene.frame.lights[i - one.surfaces.size()]);
+      sum += irradiance(Lights(one, build_emission_table(std::span<const SceneFrame>(&one, 1))), point,
+                        normal, 1 << 12)
+                 .r;
     }
     const Rgbd e = irradiance(all, point, normal, 1 << 18, &sigma);
     EXPECT_NEAR(e.r, sum, 4 * sigma + 1e-3 * sum) << sigma / sum;
   }
 }
 
-// Choice probabilities of all lights sum to 1 less the walks that end where nothing reaches the point; and each is
-// how often choose() takes the light: u in equal steps of 2^-16 hits each within 1 step per level.
+// Choice probabilities of all lights sum to 1 less the walks that end where nothing reaches the point; and
+// each is how often choose() takes the light: u in equal steps of 2^-16 hits each within 1 step per level.
 TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
   std::vector<LightBounds> bounds;
   const PathRandom random(4, 4);
@@ -247,7 +263,10 @@ TEST(LightTree, ProbabilitiesAreTheFrequenciesAndSumToOne) {
   }
   const LightTree tree(bounds);
   for (std::uint32_t k = 0; k < 20; ++k) {
-    const Vec3 point = Vec3{random.get1(k, Purpose::place, 0), random.get1(k, Purpose::place, 1), random.get1(k, Purpose::place, 2)} * 8.0f - Vec3{2, 2, 3};
+    const Vec3 point = Vec3{random.get1(k, Purpose::place, 0), random.get1(k, Purpose::place, 1),
+                            random.get1(k, Purpose::place, 2)} *
+                           8.0f -
+                       Vec3{2, 2, 3};
     const Vec3 normal = k % 2 ? sample_sphere(random.get2(k, Purpose::test, 9)) : Vec3{};
     std::vector<double> count(bounds.size(), 0);
     double lost = 0, sum = 0;
@@ -288,12 +307,16 @@ TEST(Lights, SurviveExtremeNumbers) {
     const float scale = std::pow(10.0f, float(i % 12) - 8);
     const Vec3 point = Vec3{0, float(i % 2), 1} + sample_sphere(random.get2(i, Purpose::place)) * scale;
     LightSample s;
-    if (lights.sample(point, i % 2 ? kUp : Vec3{}, random.get1(i, Purpose::light_choice), random.get2(i, Purpose::light_point), s)) {
-      EXPECT_TRUE(is_finite(s.radiance) && is_finite(s.wi) && is_finite(s.position) && std::isfinite(s.pdf_solid_angle));
+    if (lights.sample(point, i % 2 ? kUp : Vec3{}, random.get1(i, Purpose::light_choice),
+                      random.get2(i, Purpose::light_point), s)) {
+      EXPECT_TRUE(is_finite(s.radiance) && is_finite(s.wi) && is_finite(s.position) &&
+                  std::isfinite(s.pdf_solid_angle));
     }
     for (std::uint32_t surface = 0; surface < 5; ++surface)
-      EXPECT_TRUE(std::isfinite(lights.pdf_solid_angle(point, {}, surface, 0, scene.frame.surfaces[surface].positions[1], kUp)));
-    const double u[4] = {random.get1(i, Purpose::emit, 1), random.get1(i, Purpose::emit, 2), random.get1(i, Purpose::emit, 3), random.get1(i, Purpose::emit, 4)};
+      EXPECT_TRUE(std::isfinite(
+          lights.pdf_solid_angle(point, {}, surface, 0, scene.frame.surfaces[surface].positions[1], kUp)));
+    const double u[4] = {random.get1(i, Purpose::emit, 1), random.get1(i, Purpose::emit, 2),
+                         random.get1(i, Purpose::emit, 3), random.get1(i, Purpose::emit, 4)};
     const PhotonEmission e = lights.emit(u);
     EXPECT_TRUE(is_finite(e.flux) && is_finite(e.origin) && is_finite(e.travel));
   }

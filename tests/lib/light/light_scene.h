@@ -21,7 +21,8 @@ struct LightScene {
     frame.bounds.add(Vec3{half, half, half});
   }
   /// Fan over the corners, counter-clockwise seen from the front.
-  std::uint32_t add(const std::vector<Vec3>& corners, Rgb emission, bool double_sided = false, bool flipped = false) {
+  std::uint32_t add(const std::vector<Vec3>& corners, Rgb emission, bool double_sided = false,
+                    bool flipped = false) {
     Material material;
     material.emission = emission;
     material.double_sided = double_sided;
@@ -38,7 +39,8 @@ struct LightScene {
     frame.static_count = frame.surfaces.size();
     return std::uint32_t(frame.surfaces.size() - 1);
   }
-  void add(PunctualLight::Kind kind, Rgb intensity, Vec3 position, Vec3 direction, float inner = 0, float outer = 0.7f) {
+  void add(PunctualLight::Kind kind, Rgb intensity, Vec3 position, Vec3 direction, float inner = 0,
+           float outer = 0.7f) {
     PlacedLight placed;
     placed.light.kind = kind;
     placed.light.intensity = intensity;

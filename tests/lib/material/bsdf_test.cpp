@@ -1,4 +1,6 @@
 // Scattering at a surface: what comes back, from where, and whether samples say the same as the formulas.
+#include "lib/material/bsdf.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
-#include "lib/material/bsdf.h"
 #include "tests/lib/material/ggx_reference.h"
 
 namespace tempolux {
@@ -106,11 +107,12 @@ TEST(Mirror, ReflectsTheWholeDirectionAndOnlyThat) {
   EXPECT_EQ(bsdf.pdf_specular(s.wi, wo), 0);
 }
 
-// D: rho (1 - A), to the table's 1e-4. S: quadrature of f against the mean of the weights; lobe and direction are
-// independent sequences of 2^16 points, so at worst as good as random: sigma 0.5 / 256 for weights up to 1; 2 sigma.
+// D: rho (1 - A), to the table's 1e-4. S: quadrature of f against the mean of the weights; lobe and direction
+// are independent sequences of 2^16 points, so at worst as good as random: sigma 0.5 / 256 for weights up to
+// 1; 2 sigma.
 TEST(Bsdf, SamplesWeighWhatTheFormulasIntegrateTo) {
-  for (const Material& m : {dielectric({0.8f, 0.5f, 0.2f}, 0.6f), metal({0.9f, 0.6f, 0.2f}, 0.8f),
-                            dielectric(Rgb(1.0f), 1.0f)}) {
+  for (const Material& m :
+       {dielectric({0.8f, 0.5f, 0.2f}, 0.6f), metal({0.9f, 0.6f, 0.2f}, 0.8f), dielectric(Rgb(1.0f), 1.0f)}) {
     const Bsdf bsdf(m);
     for (float c : {0.15f, 0.5f, 0.95f}) {
       const Vec3 wo = direction(c, 0.4f);
@@ -139,10 +141,9 @@ TEST(Bsdf, CouplingAveragesToWhatItsNormalisationSays) {
   }
 }
 
-// Uniform light 1 comes back as 1 at most: rho = 1 and any F0, all angles. S: the albedo by the table, put right by
-// what the table lacks of the integrals (that sample() and eval agree with it is tested above and below), D: from
-// the table as it is. Kulla and Conty's term makes a rough white metal exactly
-// white.
+// Uniform light 1 comes back as 1 at most: rho = 1 and any F0, all angles. S: the albedo by the table, put
+// right by what the table lacks of the integrals (that sample() and eval agree with it is tested above and
+// below), D: from the table as it is. Kulla and Conty's term makes a rough white metal exactly white.
 TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
   const reference::GaussLegendre rule(96);
   for (float roughness : {0.021f, 0.05f, 0.1f, 0.2f, 0.35f, 0.5f, 0.75f, 1.0f}) {
@@ -158,7 +159,8 @@ TEST(Furnace, ReturnsAtMostWhatArrivesFromEitherSide) {
           const reference::Albedo e = reference::ggx_albedo(c, alpha, rule);
           const AlbedoPair table = GgxAlbedo(float(alpha)).at(c);
           const double f90 = 1, f = metallic == 1 ? f0 : metallic + (1 - metallic) * f0;
-          const double corrected = bsdf.specular_albedo(c).r + f * (e.total - e.b - table.a) + f90 * (e.b - table.b);
+          const double corrected =
+              bsdf.specular_albedo(c).r + f * (e.total - e.b - table.a) + f90 * (e.b - table.b);
           const double total = corrected + bsdf.diffuse_reflectance(c).r;
           EXPECT_LE(total, 1 + 1e-4) << roughness << ' ' << metallic << ' ' << f0 << ' ' << c;
           if (metallic == 1 && f0 == 1 && roughness >= 0.35f) {
@@ -186,9 +188,9 @@ TEST(Bsdf, IsReciprocal) {
   }
 }
 
-// Directions by sample() counted in 12 x 16 cells of equal cos and phi, against the densities integrated over the
-// cells (24 x 24 points each; the table counts samples lost below the horizon as one more cell). Chi-square with
-// k cells has mean k - 1 and variance 2 (k - 1): a limit of mean + 5 sigma.
+// Directions by sample() counted in 12 x 16 cells of equal cos and phi, against the densities integrated over
+// the cells (24 x 24 points each; the table counts samples lost below the horizon as one more cell).
+// Chi-square with k cells has mean k - 1 and variance 2 (k - 1): a limit of mean + 5 sigma.
 void check_distribution(const Material& m, float cos_o) {
   const Bsdf bsdf(m);
   const Vec3 wo = direction(cos_o, 0.7f);
@@ -197,7 +199,8 @@ void check_distribution(const Material& m, float cos_o) {
   double inside = 0, lost = 0;
   for (int i = 0; i < kCos * kSub; ++i)
     for (int j = 0; j < kPhi * kSub; ++j) {
-      const Vec3 wi = direction((float(i) + 0.5f) / (kCos * kSub), 2 * kPi * (float(j) + 0.5f) / (kPhi * kSub));
+      const Vec3 wi =
+          direction((float(i) + 0.5f) / (kCos * kSub), 2 * kPi * (float(j) + 0.5f) / (kPhi * kSub));
       const double p = (double(bsdf.pdf_diffuse(wi, wo)) + bsdf.pdf_specular(wi, wo)) * 2 * std::numbers::pi /
                        (kCos * kSub * double(kPhi * kSub));
       expected[std::size_t(i / kSub * kPhi + j / kSub)] += p * kCount;
@@ -234,7 +237,8 @@ void check_distribution(const Material& m, float cos_o) {
     chi2 += (pooled_seen - pooled_expected) * (pooled_seen - pooled_expected) / pooled_expected;
     ++cells;
   }
-  EXPECT_LT(chi2, cells - 1 + 5 * std::sqrt(2.0 * (cells - 1))) << m.roughness << ' ' << cos_o << ' ' << cells;
+  EXPECT_LT(chi2, cells - 1 + 5 * std::sqrt(2.0 * (cells - 1)))
+      << m.roughness << ' ' << cos_o << ' ' << cells;
 }
 
 TEST(Bsdf, SamplesFallWhereThePdfSays) {
@@ -272,7 +276,8 @@ TEST(Bsdf, IsFiniteAtEveryEdge) {
           for (float co : edges) {
             const Vec3 wo = direction(co, 0);
             for (float ci : edges)
-              for (const Vec3 wi : {direction(ci, 0), direction(ci, kPi), -wo, wo, Vec3{-wo.x, -wo.y, wo.z}}) {
+              for (const Vec3 wi :
+                   {direction(ci, 0), direction(ci, kPi), -wo, wo, Vec3{-wo.x, -wo.y, wo.z}}) {
                 ASSERT_TRUE(is_finite(bsdf.eval_diffuse(wi, wo)));
                 ASSERT_TRUE(is_finite(bsdf.eval_specular(wi, wo))) << roughness << ' ' << co << ' ' << ci;
                 ASSERT_TRUE(std::isfinite(bsdf.pdf_diffuse(wi, wo)));
@@ -282,7 +287,8 @@ TEST(Bsdf, IsFiniteAtEveryEdge) {
               for (float v : {0.0f, 0.5f, kOneMinusEpsilon}) {
                 const Bsdf::Sample s = bsdf.sample(wo, u, {v, u});
                 ASSERT_TRUE(is_finite(s.weight) && is_finite(s.wi) && std::isfinite(s.pdf_solid_angle));
-                ASSERT_LE(max_component(s.weight), 20.0f) << roughness << ' ' << base << ' ' << metallic << ' ' << co;
+                ASSERT_LE(max_component(s.weight), 20.0f)
+                    << roughness << ' ' << base << ' ' << metallic << ' ' << co;
                 if (!is_black(s.weight)) {
                   ASSERT_GT(s.wi.z, 0);
                 }

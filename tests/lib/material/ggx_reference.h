@@ -1,4 +1,5 @@
-// tests/lib/material/ggx_reference.h -- the albedo of GGX by quadrature, the reference of the table in lib/material.
+// tests/lib/material/ggx_reference.h -- the albedo of GGX by quadrature, the reference of the table in
+// lib/material.
 #pragma once
 
 #include <cmath>
