@@ -32,6 +32,8 @@ std::string leaf_text(const Facts& value) {
   return text.empty() ? "none" : text;
 }
 
+std::string short_text(const Facts& value) { return is_leaf(value) ? leaf_text(value) : value.dump(); }
+
 void print(const Facts& value, const std::string& indent, std::string& text);
 
 void print_member(const std::string& key, const Facts& value, const std::string& indent, std::string& text) {
@@ -59,12 +61,22 @@ void print(const Facts& value, const std::string& indent, std::string& text) {
     std::string line;
     if (item.is_object())
       for (const auto& [key, member] : item.items())
-        line += (line.empty() ? "" : "   ") + key + " " + (is_leaf(member) ? leaf_text(member) : member.dump());
-    text += indent + (item.is_object() ? line : is_leaf(item) ? leaf_text(item) : item.dump()) + "\n";
+        line += (line.empty() ? "" : "   ") + key + " " + short_text(member);
+    text += indent + (item.is_object() ? line : short_text(item)) + "\n";
   }
 }
 
 }  // namespace
+
+Facts lines_of(const std::string& text) {
+  Facts lines = Facts::array();
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
 
 FileType file_type(const std::string& path) {
   if (path == "-") return FileType::photons;

@@ -17,6 +17,9 @@ enum class FileType { photons, image, json };
 /// By the first bytes, not by the name; "-" is a .photons stream. Throws InputError.
 FileType file_type(const std::string& path);
 
+/// The lines of a history.
+Facts lines_of(const std::string& text);
+
 /// Reads the whole file, so every one of these is also a check. Throws InputError naming the place.
 Facts photon_facts(const std::string& path);
 Facts image_facts(const std::string& path, bool allow_nan);

@@ -27,12 +27,29 @@ Image load(const std::string& path, bool allow_nan) {
   return load_exr(path, options);
 }
 
+constexpr std::string_view kHistory = "tempolux:history", kIdentity = "tempolux:identity.";
+
+/// History and identity by themselves, then all other attributes by their names in the file.
 Facts attribute_facts(const Image& image) {
-  Facts facts = Facts::object();
-  for (const auto& [name, value] : image.text) facts[name] = value;
+  Facts facts = {{"history", Facts::array()}, {"identity", nullptr}};
+  for (const auto& [name, value] : image.text) {
+    if (name == kHistory) facts["history"] = lines_of(value);
+    else if (name.starts_with(kIdentity)) facts["identity"][name.substr(kIdentity.size())] = value;
+    else facts[name] = value;
+  }
   for (const auto& [name, value] : image.numbers) facts[name] = value;
   for (const auto& [name, value] : image.matrices) facts[name] = value;
   return facts;
+}
+
+/// Errors of lib/image about layers do not know the file's name.
+template <class Make>
+auto named(const std::string& path, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  }
 }
 
 Facts channel_facts(const ChannelStatistics& channel) {
@@ -48,7 +65,7 @@ Facts channel_facts(const ChannelStatistics& channel) {
 Facts image_facts(const std::string& path, bool allow_nan) {
   const Image image = load(path, allow_nan);
   Facts facts = {{"file", path}, {"type", "image"}, {"width", image.width}, {"height", image.height}};
-  facts["attributes"] = attribute_facts(image);
+  facts.update(attribute_facts(image));
   facts["layers"] = Facts::array();
   for (const std::string& layer : image.layers()) facts["layers"].push_back(layer.empty() ? "RGB" : layer);
   facts["channels"] = Facts::array();
@@ -93,20 +110,26 @@ Facts image_difference(const std::string& a, const std::string& b) {
 
 void write_picture(const std::string& path, const PictureOptions& options, Output& output) {
   const Image image = load(path, true);
-  save_png(output.temporary_path(), make_picture(image, {options.layer, options.exposure_stops}));
+  const PreviewOptions preview{options.layer, options.exposure_stops};
+  save_png(output.temporary_path(), named(path, [&] { return make_picture(image, preview); }));
 }
 
 void write_sheet(const std::vector<std::string>& paths, const PictureOptions& options, Output& output) {
   PreviewOptions preview{options.layer, options.exposure_stops};
   if (!preview.exposure_stops) {   // frames are read twice, so that one at a time is in memory
     std::vector<double> stops;
-    for (const std::string& path : paths)
-      stops.push_back(auto_exposure_stops(load(path, true), options.layer));
+    for (const std::string& path : paths) {
+      const Image image = load(path, true);
+      stops.push_back(named(path, [&] { return auto_exposure_stops(image, options.layer); }));
+    }
     preview.exposure_stops = sequence_exposure_stops(stops);
   }
   std::vector<Picture> pictures;
-  for (const std::string& path : paths)
-    pictures.push_back(contact_sheet({make_picture(load(path, true), preview)}, 1, options.tile_width));
+  for (const std::string& path : paths) {
+    const Image image = load(path, true);
+    const Picture picture = named(path, [&] { return make_picture(image, preview); });
+    pictures.push_back(contact_sheet({picture}, 1, options.tile_width));
+  }
   save_png(output.temporary_path(), contact_sheet(pictures, options.columns, options.tile_width));
 }
 

@@ -18,16 +18,6 @@ using namespace formats;
 
 constexpr const char* kKindNames[] = {"direct", "caustic", "indirect", "volume"};
 
-Facts lines_of(const std::string& text) {
-  Facts lines = Facts::array();
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    lines.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return lines;
-}
-
 Facts identity_facts(const Identity& identity) {
   if (!identity.known()) return nullptr;
   Facts facts = {{"frames", {identity.first_frame, identity.last_frame}}};
@@ -184,7 +174,7 @@ void export_photons(const std::string& path, const std::string& format, Output& 
   double white = 0;
   std::string text = "x_m,y_m,z_m,flux_r_W,flux_g_W,flux_b_W,nx,ny,nz,object,kind,bounce\n";
   if (ply) {   // its header says the count and colours need the brightest photon: the file is read twice
-    if (path == "-") throw InputError("-: PLY needs to read its input twice; save the stream to a file first");
+    if (path == "-") throw InputError("-: PLY reads its input twice; save the stream to a file first");
     PhotonReader first(path, {.digest = false});
     const PhotonSummary summary = summarise(first);
     white = summary.largest_flux;

@@ -106,7 +106,7 @@ int answer(tools::Tool& tool, Request& request) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("tempolux-info", "Tell what is in .photons, frames (EXR, other images) and our JSON files.",
+  tools::Tool tool("tempolux-info", "Tell what is in .photons, frames and other images, and our JSON files.",
                    argc, argv);
   Request request;
   CLI::App& app = tool.app();
@@ -133,9 +133,9 @@ int main(int argc, char** argv) {
                  "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
       ->type_name("STOPS")->capture_default_str();
   app.add_option("--columns", request.picture.columns, "of --sheet; 0: about square")
-      ->type_name("N")->capture_default_str()->check(CLI::Range(0, 1000));
+      ->type_name("N")->capture_default_str()->check(CLI::Range(0, 1000).description(""));
   app.add_option("--tile", request.picture.tile_width, "largest width of an image in --sheet, pixels")
-      ->type_name("PX")->capture_default_str()->check(CLI::Range(1, 65536));
+      ->type_name("PX")->capture_default_str()->check(CLI::Range(1, 65536).description(""));
   const std::vector<CLI::Option*> modes{check, digest, diff, format, png, sheet};
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)

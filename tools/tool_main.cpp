@@ -79,7 +79,7 @@ Tool::Tool(std::string name, std::string what, int argc, char** argv) {
                        "print versions and exit");
   app.footer(
       "Exit codes: 0 done; 1 differs or not valid (aqm-compare, tempolux-info only); 2 usage, bad or stale\n"
-      "input; 3 could not be done (no memory, disk full, write failed); 128+n by signal n.");
+      "input; 3 could not be done (no memory, disk full, write failed); 128+n by signal n.\n");
   const char* terminal = std::getenv("TERM");
   state_->bar_allowed = isatty(STDERR_FILENO) && terminal && std::strcmp(terminal, "dumb") != 0;
 }
