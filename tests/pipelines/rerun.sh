@@ -28,12 +28,13 @@ plan=scene-plan:plan
 trace() { for f; do echo photon-trace:photons/$f.photons; done; }
 photon() { for f; do echo frame-render:photon/$f.exr tempolux-info:photon/$f.png; done; }
 path() { for f; do echo frame-render:path/$f.exr tempolux-info:path/$f.png; done; }
+exposure=tempolux-info:stdout  # of the first frame of the reference; all pictures hang on it
 sheet=tempolux-info:out/sheet.png
 
 all='0000 0001 0002 0003'
 
 cp "$source" "$scene"
-make_runs 'the first run makes everything' "$plan $(trace $all) $(photon $all) $(path $all) $sheet"
+make_runs 'the first run makes everything' "$plan $(trace $all) $(photon $all) $exposure $(path $all) $sheet"
 make_runs 'nothing changed: nothing runs' ''
 touch "$scene"
 make_runs 'scene touched: only scene-plan' "$plan"
@@ -46,29 +47,29 @@ cp "$source" "$scene"
 make_runs 'camera put back: the same again' "$plan $(photon 0002 0003) $(path 0002 0003) $sheet"
 
 make_runs 'options of the photon view: neither photons nor the reference' "$(photon $all) $sheet" SAMPLES=2
-make_runs 'options of the reference: nothing else but pictures' "$(path $all) $(for f in $all; do echo tempolux-info:photon/$f.png; done) $sheet" SAMPLES=2 PATHS=4
+make_runs 'options of the reference: nothing else but pictures' "$exposure $(path $all) $(for f in $all; do echo tempolux-info:photon/$f.png; done) $sheet" SAMPLES=2 PATHS=4
 make_runs 'more photons: no reference' "$(trace $all) $(photon $all) $sheet" SAMPLES=2 PATHS=4 PHOTONS=3k
 make_runs 'fewer frames: no stage but the plan' "$plan $sheet" SAMPLES=2 PATHS=4 PHOTONS=3k FRAMES=0-2
 make_runs 'and all of them again' "$plan $sheet" SAMPLES=2 PATHS=4 PHOTONS=3k
 
 rm -r "$work/out"
 edit "$source" "$scene" lamp
-make_runs 'with a moving lamp' "$plan $(trace $all) $(photon $all) $(path $all) $sheet"
+make_runs 'with a moving lamp' "$plan $(trace $all) $(photon $all) $exposure $(path $all) $sheet"
 edit "$source" "$scene" lamp 3
 make_runs 'lamp edited at frame 3: only what frame 3 shows' "$plan $(trace 0003) $(photon 0003) $(path 0003) $sheet"
 
 rm -r "$work/out"
 edit "$source" "$scene" still
-make_runs 'a still scene: one photon map' "$plan $(trace 0000) $(photon $all) $(path $all) $sheet"
+make_runs 'a still scene: one photon map' "$plan $(trace 0000) $(photon $all) $exposure $(path $all) $sheet"
 edit "$scene" "$work/walk.glb" camera-from 2 && mv "$work/walk.glb" "$scene"
 make_runs 'the camera starts to move: still one, and untouched' "$plan $(photon 0002 0003) $(path 0002 0003) $sheet"
 edit "$scene" "$work/bright.glb" emission 2 && mv "$work/bright.glb" "$scene"
-make_runs 'a lamp made brighter: one photon map, all frames' "$plan $(trace 0000) $(photon $all) $(path $all) $sheet"
+make_runs 'a lamp made brighter: one photon map, all frames' "$plan $(trace 0000) $(photon $all) $exposure $(path $all) $sheet"
 
 rm -r "$work/out"
 edit "$source" "$work/scene.gltf" same
 scene=$work/scene.gltf
-make_runs 'a scene of two files' "$plan $(trace $all) $(photon $all) $(path $all) $sheet"
+make_runs 'a scene of two files' "$plan $(trace $all) $(photon $all) $exposure $(path $all) $sheet"
 touch "$work/scene.bin"
 make_runs 'its buffer touched: only scene-plan' "$plan"
 
