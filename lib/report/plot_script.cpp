@@ -77,7 +77,7 @@ std::string plot_script(const SceneReport& report, TimeKind kind, PlotFormat for
   return std::string("set terminal ") +
          (format == PlotFormat::svg ? "svg size 800,560 noenhanced background rgb 'white'\n"
                                     : "pngcairo size 1200,840 noenhanced fontscale 1.2\n") +
-         "set logscale xy\nset grid\nset key outside bottom center maxcols 1\nset samples 400\n" +
+         "set logscale xy\nset grid\nset key top right opaque box lc rgb '#cccccc'\nset samples 400\n" +
          "set format '%g'\n" + "set title " + quoted(report.scene) + "\nset xlabel " +
          (kind == TimeKind::cpu ? "'CPU s'" : "'wall s'") + "\nset ylabel 'RMSE'\nset xrange " + time.text() +
          "\nset yrange " + error.text() + "\n" + data + plots + "\n";

@@ -18,7 +18,7 @@ std::string csv_cell(const std::string& text) {
 std::string csv_line(const std::vector<std::string>& cells) {
   std::string line;
   for (std::size_t i = 0; i < cells.size(); ++i) line += (i ? "," : "") + csv_cell(cells[i]);
-  return line + "\r\n";
+  return line + "\n";
 }
 
 /// Named numbers of a run in order of appearance: seconds by phase, then counts; equal names add up.

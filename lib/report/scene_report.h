@@ -28,7 +28,7 @@ struct SceneReport {
 /// One per scene, in order of first appearance.
 std::vector<SceneReport> scene_reports(const ReportInput& input, TimeKind kind);
 
-/// All runs, one line each, RFC 4180: scene, curve, label, x, parameters, stages, seconds by phase, counts (rays, bytes
+/// All runs, one line each, quoted as in RFC 4180, lines end in LF: scene, curve, label, x, parameters, stages, seconds by phase, counts (rays, bytes
 /// ...), peak memory, errors. Phases and counts are columns "TOOL.PHASE cpu_s" and "TOOL.COUNT" over all runs; what
 /// a run does not have is empty.
 std::string report_csv(const ReportInput& input);
