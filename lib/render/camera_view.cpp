@@ -33,20 +33,20 @@ double CameraView::depth(Vec3 point) const { return -camera_from_scene_.point(Ve
 std::array<double, 16> CameraView::world_to_camera() const {
   const auto& m = camera_from_scene_.row;
   const Vec3d t = camera_from_scene_.translation - camera_from_scene_.direction(origin_);
-  return {m[0].x, m[1].x, m[2].x, 0, m[0].y, m[1].y, m[2].y, 0, m[0].z, m[1].z, m[2].z, 0, t.x, t.y, t.z, 1};
+  return {m[0].x, m[1].x, -m[2].x, 0, m[0].y, m[1].y, -m[2].y, 0, m[0].z, m[1].z, -m[2].z, 0, t.x, t.y, -t.z, 1};
 }
 
 std::array<double, 16> CameraView::world_to_ndc() const {
   const std::array<double, 16> c = world_to_camera();
   std::array<double, 16> ndc{};
   const bool perspective = camera_.camera.kind == Camera::Kind::perspective;
-  // Perspective: w = -z, NDC depth 1 (no clipping planes); orthographic: w = 1, NDC depth = -z.
+  // Perspective: w = z, so NDC depth is 1 (there are no clipping planes); orthographic: w = 1, NDC depth is z.
   for (std::size_t row = 0; row < 4; ++row) {
-    const double x = c[row * 4], y = c[row * 4 + 1], z = c[row * 4 + 2], w = c[row * 4 + 3];
-    ndc[row * 4] = x / half_width_;
-    ndc[row * 4 + 1] = y / half_height_;
-    ndc[row * 4 + 2] = -z;
-    ndc[row * 4 + 3] = perspective ? -z : w;
+    const double x = c[row * 4], y = c[row * 4 + 1], z = c[row * 4 + 2], w = perspective ? z : c[row * 4 + 3];
+    ndc[row * 4] = (x / half_width_ + w) / 2;
+    ndc[row * 4 + 1] = (w - y / half_height_) / 2;
+    ndc[row * 4 + 2] = z;
+    ndc[row * 4 + 3] = w;
   }
   return ndc;
 }

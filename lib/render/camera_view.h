@@ -26,7 +26,8 @@ class CameraView {
   /// Distance along the view axis, m: the Z channel.
   double depth(Vec3 point) const;
 
-  /// OpenEXR's attributes: row-vector matrices, row-major; camera looks down -Z; visible NDC is [-1, 1]^2.
+  /// OpenEXR's standard attributes: row-vector matrices, row-major. Camera space is left-handed, +x right, +y up,
+  /// +z into the picture; NDC is (0, 0) at the top left and (1, 1) at the bottom right of the picture.
   std::array<double, 16> world_to_camera() const;
   std::array<double, 16> world_to_ndc() const;
 

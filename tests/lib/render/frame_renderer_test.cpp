@@ -203,8 +203,9 @@ TEST(CameraView, NdcAttributeAgreesWithProjection) {
   double h[4];
   for (int k = 0; k < 4; ++k) h[k] = p.x * m[k] + p.y * m[4 + k] + p.z * m[8 + k] + m[12 + k];
   const auto raster = c.view.project(Vec3(p));
-  EXPECT_NEAR((h[0] / h[3] + 1) * 32, (*raster)[0], 1e-4);
-  EXPECT_NEAR((1 - h[1] / h[3]) * 18, (*raster)[1], 1e-4);
+  EXPECT_NEAR(h[0] / h[3] * 64, (*raster)[0], 1e-4);
+  EXPECT_NEAR(h[1] / h[3] * 36, (*raster)[1], 1e-4);
+  EXPECT_NEAR(h[3], c.view.depth(Vec3(p)), 1e-6);
 }
 
 }  // namespace

@@ -1,0 +1,64 @@
+// lib/gather/final_gather.h -- one point's indirect irradiance by rays over the hemisphere, with gradients.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "lib/irradcache/points.h"
+#include "lib/irradcache/records.h"
+#include "lib/light/lights.h"
+#include "lib/trace/trace.h"
+
+namespace tempolux {
+
+struct GatherOptions {
+  std::uint64_t seed = 0;
+  int rays = 800;                   ///< wanted; rounded to M rings x N_phi sectors with N_phi about pi M
+  float near_factor = 2;            ///< hits nearer than about this many estimate radii continue one bounce
+};
+
+/// Rings M and sectors N_phi for about `rays` cells of equal weight.
+void gather_strata(int rays, int& rings, int& sectors);
+
+struct GatherCounts {
+  std::uint64_t rays = 0, near_hits = 0, points_read = 0, unanswered = 0;
+  GatherCounts& operator+=(const GatherCounts& o) {
+    rays += o.rays; near_hits += o.near_hits; points_read += o.points_read; unanswered += o.unanswered;
+    return *this;
+  }
+};
+
+/// Gathers the light of kind indirect that arrives at surface points. Thread-safe.
+class FinalGather {
+ public:
+  FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options);
+
+  /// Irradiance at `from` over the hemisphere about `normal` (unit, on the lit side), with its gradients:
+  ///
+  ///     E     = pi/(M N) sum L_jk            cells j = 0..M-1 (rings, equal cosine-weighted area), k = 0..N-1
+  ///     dE/dn = pi/(M N) sum_k v_k sum_j T_j L_jk                                      [Ward & Heckbert 1992]
+  ///     dE/dx = sum_k { u_k 2pi/N sum_{j>=1} sin t_j- cos^2 t_j- / min(r_jk, r_j-1,k) (L_jk - L_j-1,k)
+  ///                   + v_k- sum_j (sin t_j+ - sin t_j-) / min(r_jk, r_j,k-1) (L_jk - L_j,k-1) }
+  ///
+  /// u_k at the middle of sector k, v_k 90 degrees on, v_k- at its lower edge + 90 degrees; T_j is the ring's mean
+  /// of tan t (algorithms.md 8.2: the signs are those of E(n) = E + (n_i x n) . dE/dn). radius_unclamped receives the
+  /// harmonic mean distance; radius is the same. Random numbers come from the position: the record of a place does
+  /// not depend on which records were made before.
+  IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
+
+  /// Radiance arriving along one ray that counts as indirect at its start, and the distance of its first hit
+  /// (infinity: none).
+  Rgb radiance(const Ray& ray, std::uint64_t key, float& distance, GatherCounts& counts) const;
+
+ private:
+  Rgb reflected(const SurfacePoint& hit, Vec3 wo, float distance, std::uint64_t key, int depth, GatherCounts& counts) const;
+
+  const Tracer& tracer_;
+  const Lights& lights_;
+  const PointLookup& points_;
+  GatherOptions options_;
+  int rings_ = 0, sectors_ = 0;
+  std::vector<float> ring_tangent_;   ///< T_j
+};
+
+}  // namespace tempolux

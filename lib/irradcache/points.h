@@ -1,0 +1,52 @@
+// lib/irradcache/points.h -- irradiance points: what a gather ray reads at its hit.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lib/core/vec.h"
+#include "lib/density/photon_index.h"
+
+namespace tempolux {
+
+/// Irradiance at one side of a surface point, by kind of the light that arrives [W/m^2].
+struct IrradiancePoint {
+  Vec3 position;               ///< m, scene space
+  Vec3 normal;                 ///< unit, geometric, on the side that is lit
+  std::uint32_t object = 0;    ///< id.object
+  float radius = 0;            ///< m: of the density estimate behind `indirect`; 0: none was possible
+  Rgb direct{0.0f};            ///< L D, by light sampling
+  Rgb caustic{0.0f};           ///< L S+ D, by density
+  Rgb indirect{0.0f};          ///< everything else, by density
+  Rgb total() const { return direct + caustic + indirect; }
+};
+
+/// Finds the point to read at a hit: the one nearest to the middle of the hit's cell (of the spacing of the
+/// points) among those of the same object that face the same way, else the nearest that faces the same way.
+/// A cell's answer depends on the cell alone and is remembered, so most look-ups are one table access; results
+/// are the same for any number of threads.
+class PointLookup {
+ public:
+  /// spacing: mean distance of neighbouring points, m, > 0. Keeps the span; it must outlive this.
+  PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing);
+
+  /// nullptr if no point faces this way. Thread-safe.
+  const IrradiancePoint* find(Vec3 position, Vec3 normal, std::uint32_t object) const;
+  std::size_t size() const { return points_.size(); }
+
+ private:
+  std::uint32_t search(Vec3 position, Vec3 normal, std::uint32_t object) const;
+
+  std::span<const IrradiancePoint> points_;
+  PhotonIndex index_;
+  Vec3 lower_;
+  float inverse_cell_ = 0, cell_ = 0;
+  std::size_t mask_ = 0;
+  mutable std::unique_ptr<std::atomic<std::uint64_t>[]> keys_;     // 0: empty
+  mutable std::unique_ptr<std::atomic<std::uint32_t>[]> values_;   // index + 2; 0: not there yet, 1: none
+};
+
+}  // namespace tempolux
