@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 namespace tempolux::formats {
@@ -24,6 +25,19 @@ class ExactSum {
 
  private:
   std::array<std::int64_t, 512> bins_{};   ///< [256 s + e]: multiples of (-1)^s 2^(max(e, 1) - 150)
+};
+
+/// One exact sum per channel.
+struct ExactRgbSum {
+  std::array<ExactSum, 3> channels;
+
+  /// `value` must be finite.
+  void add(const std::array<float, 3>& value) {
+    for (std::size_t c = 0; c < 3; ++c) channels[c].add(value[c]);
+  }
+  std::array<double, 3> rounded() const {
+    return {channels[0].rounded(), channels[1].rounded(), channels[2].rounded()};
+  }
 };
 
 }  // namespace tempolux::formats

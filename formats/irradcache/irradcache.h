@@ -20,24 +20,25 @@ namespace tempolux::formats {
 
 /// Optional columns: present for every record of the file or for none.
 enum IrradcacheColumns : std::uint32_t {
-  column_influence = 1,   ///< IrradianceCacheRecord::influence
-  column_update = 2,      ///< IrradianceCacheRecord::update
+  column_influence = 1,  ///< IrradianceCacheRecord::influence
+  column_update = 2,     ///< IrradianceCacheRecord::update
 };
 
 /// Indirect irradiance gathered at one point, how it changes around it, and how far that holds.
 struct IrradianceCacheRecord {
-  std::array<float, 3> position{};            ///< m; world space minus the header's origin
-  std::array<float, 3> normal{0, 0, 1};       ///< shading normal on the lit side; length 1 within 1e-4
-  std::uint16_t object = 0xffff;              ///< id.object it rides on; 0xffff if not known
+  std::array<float, 3> position{};       ///< m; world space minus the header's origin
+  std::array<float, 3> normal{0, 0, 1};  ///< shading normal on the lit side; length 1 within 1e-4
+  std::uint16_t object = 0xffff;         ///< id.object it rides on; 0xffff if not known
   SurfaceSet set = SurfaceSet::static_set;
-  std::uint8_t reserved = 0;                  ///< written as 0, read as 0
-  std::array<float, 3> irradiance{};          ///< W/m^2, linear Rec. 709, >= 0
-  /// Per channel: E(n) = E + (n_i x n) . g [W/m^2] and E(x) = E + (x - x_i) . g [W/m^3]; n_i, x_i the record's.
+  std::uint8_t reserved = 0;          ///< written as 0, read as 0
+  std::array<float, 3> irradiance{};  ///< W/m^2, linear Rec. 709, >= 0
+  /// Per channel: E(n) = E + (n_i x n) . g [W/m^2] and E(x) = E + (x - x_i) . g [W/m^3]; n_i, x_i the
+  /// record's.
   std::array<std::array<float, 3>, 3> rotational{}, translational{};
-  float radius = 1;                           ///< m, > 0: how far the record is valid, after clamping
-  float radius_unclamped = 1;                 ///< m, >= 0, before limits and neighbours; +inf: nothing was near
-  float influence = 0;                        ///< W/m^2, >= 0: change by what moves; 0 without column_influence
-  std::array<float, 3> update{};              ///< W/m^2: E_t of this frame; may be < 0; 0 without column_update
+  float radius = 1;               ///< m, > 0: how far the record is valid, after clamping
+  float radius_unclamped = 1;     ///< m, >= 0, before limits and neighbours; +inf: nothing was near
+  float influence = 0;            ///< W/m^2, >= 0: change by what moves; 0 without column_influence
+  std::array<float, 3> update{};  ///< W/m^2: E_t of this frame; may be < 0; 0 without column_update
 
   bool operator==(const IrradianceCacheRecord&) const = default;
 };
@@ -45,29 +46,30 @@ static_assert(sizeof(IrradianceCacheRecord) == 136);
 
 /// What the header says.
 struct IrradcacheHeader {
-  std::string history;                        ///< one line per tool, each ending in LF
-  Identity identity;                          ///< scene state and frames for which the records are valid; may be empty
-  std::array<double, 3> origin{};             ///< m, world space
-  std::uint32_t columns = 0;                  ///< IrradcacheColumns
+  std::string history;             ///< one line per tool, each ending in LF
+  Identity identity;               ///< scene state and frames for which the records are valid; may be empty
+  std::array<double, 3> origin{};  ///< m, world space
+  std::uint32_t columns = 0;       ///< IrradcacheColumns
   // How it was gathered, for whoever extends it. 0: not known.
-  std::uint32_t rays = 0;                     ///< gather rays per record
-  double error_bound = 0;                     ///< accuracy that set the radii; its meaning is the maker's
-  double min_radius = 0, max_radius = 0;      ///< m: limits that radii were clamped to; max 0: not known
-  /// Ranges {first, last} of the frames whose cameras it was placed for, ascending and apart; empty: not known.
+  std::uint32_t rays = 0;                 ///< gather rays per record
+  double error_bound = 0;                 ///< accuracy that set the radii; its meaning is the maker's
+  double min_radius = 0, max_radius = 0;  ///< m: limits that radii were clamped to; max 0: not known
+  /// Ranges {first, last} of the frames whose cameras it was placed for, ascending and apart; empty: not
+  /// known.
   std::vector<std::array<std::int32_t, 2>> placed_frames;
 };
 
 /// Closing totals.
 struct IrradcacheTotals {
   std::uint64_t record_count = 0;
-  std::array<double, 3> irradiance{};         ///< W/m^2: exact sum over the records, rounded once
+  std::array<double, 3> irradiance{};  ///< W/m^2: exact sum over the records, rounded once
 
   bool operator==(const IrradcacheTotals&) const = default;
 };
 
-/// Writes one .irradcache stream front to back; never seeks, so a pipe will do. A mistake of the caller (a value
-/// out of the format's range, a value of a column the header does not name) is std::invalid_argument: nothing
-/// that a reader would refuse is written.
+/// Writes one .irradcache stream front to back; never seeks, so a pipe will do. A mistake of the caller (a
+/// value out of the format's range, a value of a column the header does not name) is std::invalid_argument:
+/// nothing that a reader would refuse is written.
 class IrradcacheWriter {
  public:
   /// `sink` is called with pieces of the file, in order; it throws if it cannot write.
@@ -91,12 +93,12 @@ struct IrradcacheFile {
 };
 
 /// Reads and checks a file; "-" is standard input. Every truncation, flipped bit and value out of range is an
-/// InputError "FILE: byte OFFSET: REASON; REMEDY". An unknown identity is no error: header.identity.known() is
-/// false, and the tool warns. Memory: 136 bytes per record and one block.
+/// InputError "FILE: byte OFFSET: REASON; REMEDY". An unknown identity is no error: header.identity.known()
+/// is false, and the tool warns. Memory: 136 bytes per record and one block.
 IrradcacheFile load_irradcache(const std::string& path);
 
-/// Hash of the data without header and history (irradcache.md, section 7): equal records in equal order have equal
-/// digests, however they were cut into blocks.
+/// Hash of the data without header and history (irradcache.md, section 7): equal records in equal order have
+/// equal digests, however they were cut into blocks.
 std::string digest_of(const IrradcacheFile& file);
 
 }  // namespace tempolux::formats

@@ -1,7 +1,7 @@
 // formats/photons/file_reader.h -- one .photons file as it stands, overlays not resolved.
 #pragma once
 
-#include "formats/byte_reader.h"
+#include "formats/container.h"
 #include "formats/photons/layout.h"
 
 namespace tempolux::formats::photons {
@@ -18,26 +18,24 @@ class FileReader {
   /// Both after the last block.
   const PhotonTotals& totals() const { return totals_; }
   const std::vector<GroupFlux>& ledger() const { return ledger_; }
-  std::uint64_t photon_count_bound() const { return bytes_.size() / photon_size(header_.columns); }
+  std::uint64_t photon_count_bound() const { return in_.bytes().size() / photon_size(header_.columns); }
   /// Throws InputError about the place reached.
   [[noreturn]] void fail(const std::string& reason, const std::string& remedy) const {
-    bytes_.fail(bytes_.offset(), reason, remedy);
+    in_.bytes().fail(in_.bytes().offset(), reason, remedy);
   }
 
  private:
-  void read_header();
-  void read_body(PhotonBlock& block, std::size_t count, std::uint32_t crc, std::uint32_t expected);
+  void read_body(PhotonBlock& block, std::size_t count);
   void check_body(const PhotonBlock& block, std::uint64_t start) const;
   void read_ledger();
   void read_end();
   void check_flux(const std::array<double, 3>& flux, std::uint64_t offset, const char* name) const;
 
-  ByteReader bytes_;
+  ContainerReader in_;
   PhotonHeader header_;
   RecordRules rules_;
-  std::uint32_t chain_ = 0;
   std::uint32_t last_group_ = 0;
-  std::vector<std::uint32_t> groups_;   ///< of an overlay: those that have a block
+  std::vector<std::uint32_t> groups_;  ///< of an overlay: those that have a block
   std::uint64_t photon_count_ = 0;
   FluxSum stored_flux_;
   PhotonTotals totals_;

@@ -7,18 +7,16 @@
 #include <string>
 #include <string_view>
 
+#include "formats/container.h"
 #include "formats/exact_sum.h"
 #include "formats/photons/photons.h"
 
 namespace tempolux::formats::photons {
 
-inline constexpr std::string_view kMagic{"\x89TPHOT\r\n", 8};
-inline constexpr std::uint16_t kVersionMajor = 1, kVersionMinor = 0;
-inline constexpr std::size_t kHeaderFixedSize = 16, kMaxTextSize = std::size_t(1) << 20;
+inline constexpr Format kFormat{{"\x89TPHOT\r\n", 8}, ".photons", "photon-trace or photonmap-split"};
 inline constexpr std::uint32_t kMaxGroupCount = 1u << 24;
-inline constexpr std::string_view kBlockMark = "PHOT", kLedgerMark = "LEDG", kEndMark = "END!";
-inline constexpr std::size_t kMaxBlockCount = 65536;
-inline constexpr std::size_t kBlockHeadSize = 16, kLedgerHeadSize = 12, kLedgerEntrySize = 76, kEndSize = 112;
+inline constexpr std::string_view kBlockMark = "PHOT", kLedgerMark = "LEDG";
+inline constexpr std::size_t kBlockHeadSize = 16, kLedgerEntrySize = 76, kEndBodySize = 104;
 
 /// Bytes of one photon in a block with these columns.
 constexpr std::size_t photon_size(std::uint32_t columns) {
@@ -28,17 +26,12 @@ constexpr std::size_t photon_size(std::uint32_t columns) {
 /// The text of a header. std::invalid_argument if a value is out of range.
 std::string header_text(const PhotonHeader& header);
 
-/// What is wrong with a header's text, and where in it.
-struct HeaderError {
-  std::size_t offset = 0;
-  std::string reason;
-};
 /// Parses a text; unknown keys pass if `allow_unknown`. Nothing if the header is good.
 std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown, PhotonHeader& header);
 
 /// What records of this file may hold.
 struct RecordRules {
-  std::uint32_t kinds = 15;      ///< bit k: PathKind k
+  std::uint32_t kinds = 15;  ///< bit k: PathKind k
   bool signed_flux = true;
 };
 /// The rules of a good header.
@@ -46,19 +39,16 @@ RecordRules rules_of(const PhotonHeader& header);
 
 /// The first photon (or column entry) that breaks the rules of photons.md, sections 4 and 5.
 struct RecordError {
-  std::size_t index = 0;        ///< in its array
+  std::size_t index = 0;  ///< in its array
   std::string_view reason;
 };
 std::optional<RecordError> find_bad_photon(std::span<const Photon> photons, const RecordRules& rules);
 std::optional<RecordError> find_bad_direction(std::span<const std::array<std::uint16_t, 2>> directions);
 
 /// Exact sums of flux, one per channel.
-struct FluxSum {
-  std::array<ExactSum, 3> channels;
-
+struct FluxSum : ExactRgbSum {
   /// `photons` must have finite flux.
   void add(std::span<const Photon> photons);
-  std::array<double, 3> rounded() const;
 };
 
 /// Sets emitted, escaped and absorbed flux to the ledger's sums, added in its order.

@@ -17,6 +17,7 @@
 
 #include "formats/error.h"
 #include "formats/identity.h"
+#include "formats/octahedral.h"
 
 namespace tempolux::formats {
 
@@ -35,11 +36,6 @@ struct Photon {
   bool operator==(const Photon&) const = default;
 };
 static_assert(sizeof(Photon) == 32);
-
-/// Octahedral encoding (conventions.md) of a vector that is not zero, of any length, in two 16-bit numbers of
-/// 0 .. 65534, and back (unit length to 1e-7). The axes are exact; the angle is off by at most 6.5e-5 rad.
-std::array<std::uint16_t, 2> encode_normal(std::array<float, 3> n);
-std::array<float, 3> decode_normal(std::array<std::uint16_t, 2> code);
 
 /// Optional columns: present for every photon of the file or for none.
 enum PhotonColumns : std::uint32_t {

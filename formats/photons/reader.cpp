@@ -25,17 +25,10 @@ class Digest {
 
   std::string hex(const PhotonHeader& header) {
     end_group();
-    constexpr std::string_view digits = "0123456789abcdef";
-    std::string origin;
-    for (double x : header.origin)
-      for (unsigned char byte : std::bit_cast<std::array<unsigned char, 8>>(x)) {
-        origin += digits[byte >> 4];
-        origin += digits[byte & 15];
-      }
     const auto column = [&](PhotonColumns bit, const Hasher& hash) {
       return header.columns & bit ? std::string("#").append(hash.hex()) : std::string("none");
     };
-    return hash_hex("photons: 1\nmap: " + header.map + "\norigin: " + origin + "\ngroups: " +
+    return hash_hex("photons: 1\nmap: " + header.map + "\norigin: " + hex_of(header.origin) + "\ngroups: " +
                     std::to_string(header.group_count) + " #" + groups_.hex() + "\nrecords: #" +
                     records_.hex() + "\ndirection: " + column(column_direction, directions_) +
                     "\nalbedo: " + column(column_albedo, albedos_) + "\n");
@@ -74,14 +67,14 @@ std::vector<GroupFlux> merge_ledgers(const std::vector<GroupFlux>& overlay,
 
 struct PhotonReader::State {
   FileReader file;
-  std::unique_ptr<FileReader> base;          ///< of an overlay
+  std::unique_ptr<FileReader> base;  ///< of an overlay
   std::optional<Digest> digest, base_digest;
-  PhotonBlock next, next_base;               ///< of an overlay: the first block of each not yet delivered
+  PhotonBlock next, next_base;  ///< of an overlay: the first block of each not yet delivered
   bool has_next = false, has_next_base = false;
-  std::int64_t last_replaced = -1;           ///< the last group that the overlay was seen to hold
+  std::int64_t last_replaced = -1;  ///< the last group that the overlay was seen to hold
   PhotonTotals totals;
   std::vector<GroupFlux> ledger;
-  FluxSum stored_flux;                       ///< of an overlay's whole map
+  FluxSum stored_flux;  ///< of an overlay's whole map
   bool ended = false;
 
   State(const std::string& path, const PhotonReadOptions& options) : file(path) {

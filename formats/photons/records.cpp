@@ -2,50 +2,20 @@
 #include <immintrin.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <limits>
 
+#include "formats/float_bits.h"
 #include "formats/photons/layout.h"
 
-namespace tempolux::formats {
-
-std::array<std::uint16_t, 2> encode_normal(std::array<float, 3> n) {
-  const double s = std::abs(double(n[0])) + std::abs(double(n[1])) + std::abs(double(n[2]));
-  double p = n[0] / s, q = n[1] / s;
-  if (n[2] < 0) {
-    const double folded = (1 - std::abs(q)) * (p < 0 ? -1 : 1);
-    q = (1 - std::abs(p)) * (q < 0 ? -1 : 1);
-    p = folded;
-  }
-  const auto code = [](double t) { return std::uint16_t(std::floor(32767 * t + 0.5) + 32767); };
-  return {code(p), code(q)};
-}
-
-std::array<float, 3> decode_normal(std::array<std::uint16_t, 2> code) {
-  double p = (double(code[0]) - 32767) / 32767, q = (double(code[1]) - 32767) / 32767;
-  const double z = 1 - std::abs(p) - std::abs(q);
-  if (z < 0) {
-    const double folded = (1 - std::abs(q)) * (p < 0 ? -1 : 1);
-    q = (1 - std::abs(p)) * (q < 0 ? -1 : 1);
-    p = folded;
-  }
-  const double length = std::sqrt(p * p + q * q + z * z);
-  return {float(p / length), float(q / length), float(z / length)};
-}
-
-namespace photons {
+namespace tempolux::formats::photons {
 namespace {
-
-/// Below zero by its bits: the same where denormal numbers count as zero.
-bool is_negative(float x) { return std::signbit(x) && std::bit_cast<std::uint32_t>(x) != 0x80000000u; }
 
 /// The reason why this photon is refused; "" if it is good. The predicate of the format.
 std::string_view fault_of(const Photon& photon, const RecordRules& rules) {
   for (float x : photon.position)
-    if (!std::isfinite(x)) return "position is not finite";
+    if (!is_finite(x)) return "position is not finite";
   for (float x : photon.flux) {
-    if (!std::isfinite(x)) return "flux is not finite";
+    if (!is_finite(x)) return "flux is not finite";
     if (is_negative(x) && !rules.signed_flux) return "flux is negative, which only map dynamic allows";
   }
   if (photon.normal[0] == 0xffff || photon.normal[1] == 0xffff) return "normal is above 65534";
@@ -57,7 +27,7 @@ std::string_view fault_of(const Photon& photon, const RecordRules& rules) {
 
 /// The same for many at once, without the reason.
 bool any_bad(std::span<const Photon> photons, const RecordRules& rules) {
-  const int exponent = 0x7f800000, none = 1;   // exponent & anything is never 1
+  const int exponent = 0x7f800000, none = 1;  // exponent & anything is never 1
   const __m256i mask = _mm256_setr_epi32(exponent, exponent, exponent, exponent, exponent, exponent, 0, 0);
   const __m256i infinite =
       _mm256_setr_epi32(exponent, exponent, exponent, exponent, exponent, exponent, none, none);
@@ -98,12 +68,7 @@ std::optional<RecordError> find_bad_direction(std::span<const std::array<std::ui
 }
 
 void FluxSum::add(std::span<const Photon> photons) {
-  for (const Photon& photon : photons)
-    for (std::size_t c = 0; c < 3; ++c) channels[c].add(photon.flux[c]);
-}
-
-std::array<double, 3> FluxSum::rounded() const {
-  return {channels[0].rounded(), channels[1].rounded(), channels[2].rounded()};
+  for (const Photon& photon : photons) ExactRgbSum::add(photon.flux);
 }
 
 void add_up(std::span<const GroupFlux> ledger, PhotonTotals& totals) {
@@ -116,5 +81,4 @@ void add_up(std::span<const GroupFlux> ledger, PhotonTotals& totals) {
     }
 }
 
-}  // namespace photons
-}  // namespace tempolux::formats
+}  // namespace tempolux::formats::photons

@@ -4,23 +4,12 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "formats/crc32.h"
 #include "formats/photons/layout.h"
 
 namespace tempolux::formats {
 namespace {
 
 using namespace photons;
-
-template <class T>
-void put(std::string& bytes, const T& value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
-}
-
-template <class T>
-void put_array(std::string& bytes, std::span<const T> values) {
-  bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
-}
 
 void put_flux(std::string& bytes, const std::array<double, 3>& flux) {
   for (double x : flux) put(bytes, x);
@@ -33,17 +22,12 @@ void put_flux(std::string& bytes, const std::array<double, 3>& flux) {
 /// Appends one block of at most kMaxBlockCount photons, [first, first + count) of `block`.
 void append_block(std::string& bytes, const PhotonBlock& block, std::uint32_t columns, std::size_t first,
                   std::size_t count) {
-  const std::size_t head = bytes.size();
-  bytes.append(kBlockMark);
-  put(bytes, block.group);
-  put(bytes, std::uint32_t(count));
-  put(bytes, std::uint32_t(0));
+  const std::array<std::uint32_t, 2> words{block.group, std::uint32_t(count)};
+  const std::size_t head = begin_block(bytes, kBlockMark, words);
   put_array(bytes, std::span(block.photons).subspan(first, count));
   if (columns & column_direction) put_array(bytes, std::span(block.directions).subspan(first, count));
   if (columns & column_albedo) put_array(bytes, std::span(block.albedos).subspan(first, count));
-  const char* body = bytes.data() + head + kBlockHeadSize;
-  const std::uint32_t crc = crc32(body, count * photon_size(columns), crc32(bytes.data() + head, 12));
-  std::memcpy(bytes.data() + head + 12, &crc, 4);
+  seal_block(bytes, head, words.size());
 }
 
 }  // namespace
@@ -59,7 +43,7 @@ std::string encode_block(const PhotonBlock& block, std::uint32_t columns) {
   bytes.reserve(count * photon_size(columns) + (count / kMaxBlockCount + 1) * kBlockHeadSize);
   std::size_t first = 0;
   do {
-    const std::size_t size = std::min(count - first, kMaxBlockCount);
+    const std::size_t size = std::min<std::size_t>(count - first, kMaxBlockCount);
     append_block(bytes, block, columns, first, size);
     first += size;
   } while (first < count);
@@ -67,25 +51,27 @@ std::string encode_block(const PhotonBlock& block, std::uint32_t columns) {
 }
 
 struct PhotonWriter::State {
-  std::function<void(const void*, std::size_t)> sink;
+  ContainerWriter out;
   PhotonHeader header;
   RecordRules rules;
-  std::uint32_t chain = 0;
   std::uint32_t last_group = 0;
-  std::vector<std::uint32_t> groups;   ///< of an overlay: those it holds
+  std::vector<std::uint32_t> groups;  ///< of an overlay: those it holds
   std::uint64_t photon_count = 0;
   FluxSum stored_flux;
-  bool finished = false;
 
+  State(ContainerWriter::Sink sink, const PhotonHeader& h)
+      : out(std::move(sink), kFormat, header_text(h)), header(h), rules(rules_of(h)) {}
   bool is_overlay() const { return !header.base_name.empty(); }
-  /// Of the blocks in `bytes`: their checksums join the chain. They must be those of `block`.
-  void take_checksums(std::string_view bytes, const PhotonBlock& block);
+  /// Checksums of the blocks in `bytes`, which must be those of `block`.
+  std::vector<std::uint32_t> checksums_of(std::string_view bytes, const PhotonBlock& block) const;
   void check_ledger(std::span<const GroupFlux> ledger) const;
   void check_totals(const PhotonTotals& totals) const;
   void write_ledger(std::span<const GroupFlux> ledger);
 };
 
-void PhotonWriter::State::take_checksums(std::string_view bytes, const PhotonBlock& block) {
+std::vector<std::uint32_t> PhotonWriter::State::checksums_of(std::string_view bytes,
+                                                             const PhotonBlock& block) const {
+  std::vector<std::uint32_t> checksums;
   std::size_t photon_total = 0, at = 0;
   while (at < bytes.size()) {
     std::array<std::uint32_t, 4> head{};
@@ -93,11 +79,12 @@ void PhotonWriter::State::take_checksums(std::string_view bytes, const PhotonBlo
       refuse("these are not blocks");
     std::memcpy(head.data(), bytes.data() + at, kBlockHeadSize);
     if (head[1] != block.group) refuse("a block of another group was encoded");
-    chain = crc32(&head[3], 4, chain);
+    checksums.push_back(head[3]);
     photon_total += head[2];
     at += kBlockHeadSize + head[2] * photon_size(header.columns);
   }
   if (at != bytes.size() || photon_total != block.photons.size()) refuse("another block was encoded");
+  return checksums;
 }
 
 void PhotonWriter::State::check_ledger(std::span<const GroupFlux> ledger) const {
@@ -122,31 +109,11 @@ void PhotonWriter::State::write_ledger(std::span<const GroupFlux> ledger) {
     put_flux(body, group.escaped);
     put_flux(body, group.absorbed);
   }
-  std::string head(kLedgerMark);
-  put(head, std::uint32_t(ledger.size()));
-  const std::uint32_t crc = crc32(body.data(), body.size(), crc32(head.data(), head.size()));
-  put(head, crc);
-  chain = crc32(&crc, 4, chain);
-  sink(head.data(), head.size());
-  if (!body.empty()) sink(body.data(), body.size());
+  out.write_block(kLedgerMark, {std::uint32_t(ledger.size())}, body);
 }
 
 PhotonWriter::PhotonWriter(std::function<void(const void*, std::size_t)> sink, const PhotonHeader& header)
-    : state_(std::make_unique<State>()) {
-  state_->sink = std::move(sink);
-  state_->header = header;
-  const std::string text = header_text(header);
-  state_->rules = rules_of(header);
-  std::string bytes(kMagic);
-  put(bytes, kVersionMajor);
-  put(bytes, kVersionMinor);
-  put(bytes, std::uint32_t(text.size()));
-  bytes += text;
-  const std::uint32_t crc = crc32(bytes.data(), bytes.size());
-  put(bytes, crc);
-  state_->chain = crc32(&crc, 4);
-  state_->sink(bytes.data(), bytes.size());
-}
+    : state_(std::make_unique<State>(std::move(sink), header)) {}
 
 PhotonWriter::~PhotonWriter() = default;
 
@@ -156,24 +123,24 @@ void PhotonWriter::write(const PhotonBlock& block) {
 
 void PhotonWriter::write_encoded(std::string_view bytes, const PhotonBlock& block) {
   State& s = *state_;
-  if (s.finished) refuse("a block after the end");
+  if (s.out.finished()) refuse("a block after the end");
   if (block.group >= s.header.group_count || block.group < s.last_group)
     refuse("group " + std::to_string(block.group) + " is out of range or descends");
   if (block.photons.empty() && !s.is_overlay()) return;
   if (const auto bad = find_bad_photon(block.photons, s.rules))
     refuse("photon " + std::to_string(bad->index) + " of group " + std::to_string(block.group) + ": " +
            std::string(bad->reason));
-  s.take_checksums(bytes, block);
+  const std::vector<std::uint32_t> checksums = s.checksums_of(bytes, block);
   if (s.is_overlay() && (s.groups.empty() || s.groups.back() != block.group)) s.groups.push_back(block.group);
   s.last_group = block.group;
   s.photon_count += block.photons.size();
   s.stored_flux.add(block.photons);
-  s.sink(bytes.data(), bytes.size());
+  s.out.write_sealed(bytes, checksums);
 }
 
 PhotonTotals PhotonWriter::finish(const PhotonTotals& given, std::span<const GroupFlux> ledger) {
   State& s = *state_;
-  if (s.finished) refuse("finished twice");
+  if (s.out.finished()) refuse("finished twice");
   PhotonTotals totals = given;
   totals.photon_count = s.photon_count;
   totals.stored_flux = s.stored_flux.rounded();
@@ -186,15 +153,13 @@ PhotonTotals PhotonWriter::finish(const PhotonTotals& given, std::span<const Gro
   }
   s.check_totals(totals);
   if (has_ledger) s.write_ledger(ledger);
-  std::string bytes(kEndMark);
+  std::string bytes;
   put(bytes, totals.photon_count);
   put_flux(bytes, totals.stored_flux);
   put_flux(bytes, totals.emitted_flux);
   put_flux(bytes, totals.escaped_flux);
   put_flux(bytes, totals.absorbed_flux);
-  put(bytes, crc32(bytes.data(), bytes.size(), s.chain));
-  s.sink(bytes.data(), bytes.size());
-  s.finished = true;
+  s.out.finish(bytes);
   return totals;
 }
 

@@ -40,6 +40,7 @@ std::string rich_bytes() {
 
 /// What reading says about these bytes; "" if they are good.
 std::string fault_of(const Folder& folder, const std::string& bytes) {
+  std::filesystem::remove(folder / "x.photons");   // some systems write a file to disk when it is replaced
   save(folder / "x.photons", bytes);
   try {
     read_all(folder / "x.photons");

@@ -1,0 +1,23 @@
+// formats/float_bits.h -- what a float32 is, by its bits: the same in every floating-point mode.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace tempolux::formats {
+
+/// Neither infinite nor NaN.
+inline bool is_finite(float x) { return (std::bit_cast<std::uint32_t>(x) & 0x7f800000u) != 0x7f800000u; }
+
+/// Below zero, where denormal numbers count as zero too; -0 is not. NaN with a sign is.
+inline bool is_negative(float x) { return std::bit_cast<std::uint32_t>(x) > 0x80000000u; }
+
+inline bool is_finite(const std::array<float, 3>& v) {
+  return is_finite(v[0]) && is_finite(v[1]) && is_finite(v[2]);
+}
+inline bool is_negative(const std::array<float, 3>& v) {
+  return is_negative(v[0]) || is_negative(v[1]) || is_negative(v[2]);
+}
+
+}  // namespace tempolux::formats
