@@ -181,7 +181,10 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     record.rotational[c] = frame.to_world(Vec3(rotational[c]));
     record.translational[c] = frame.to_world(Vec3(translational[c]));
   }
-  record.radius = record.radius_unclamped = inverse_sum > 0 ? float(double(M) * N / inverse_sum) : INFINITY;
+  record.radius_unclamped = inverse_sum > 0 ? float(double(M) * N / inverse_sum) : INFINITY;
+  float nearest = 0;
+  for (int k = 0; k < N; ++k) nearest = std::max(nearest, inverse_distance[cell(M - 1, k)]);
+  record.radius = nearest > 0 ? 1 / nearest : INFINITY;
   return record;
 }
 

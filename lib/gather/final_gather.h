@@ -42,7 +42,8 @@ class FinalGather {
   ///
   /// u_k at the middle of sector k, v_k 90 degrees on, v_k- at its lower edge + 90 degrees; T_j is the ring's mean
   /// of tan t (algorithms.md 8.2: the signs are those of E(n) = E + (n_i x n) . dE/dn). radius_unclamped receives the
-  /// harmonic mean distance; radius is the same. Random numbers come from the position: the record of a place does
+  /// harmonic mean distance, radius the distance across the tangent plane to the nearest of what the outermost
+  /// ring met (limit_radius makes the validity of both). Random numbers come from the position: the record of a place does
   /// not depend on which records were made before.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
 

@@ -26,6 +26,12 @@ class CameraView {
   /// Distance along the view axis, m: the Z channel.
   double depth(Vec3 point) const;
 
+  /// Size of a pixel at this distance from the camera, m.
+  float pixel_size(float distance) const {
+    const double at_one = 2 * half_height_ / height_;
+    return float(camera_.camera.kind == Camera::Kind::perspective ? at_one * double(distance) : at_one);
+  }
+
   /// OpenEXR's standard attributes: row-vector matrices, row-major. Camera space is left-handed, +x right, +y up,
   /// +z into the picture; NDC is (0, 0) at the top left and (1, 1) at the bottom right of the picture.
   std::array<double, 16> world_to_camera() const;

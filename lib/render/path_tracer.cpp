@@ -78,7 +78,7 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     const bool ends_here = diffuse_light && x.bsdf.has_diffuse();
     add_sampled_light(scene, x, throughput, path, random, bounce, !ends_here, result, counts);
     if (ends_here) {
-      const DiffuseLight::Irradiance e = diffuse_light->at(point.position, x.normal_geometric, point.object);
+      const DiffuseLight::Irradiance e = diffuse_light->at(point, x.normal_geometric, x.normal);
       ++counts.lookups;
       // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
       const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi;

@@ -89,8 +89,8 @@ class DiffuseLight {
     Rgb caustic{0.0f}, indirect{0.0f};
   };
   virtual ~DiffuseLight() = default;
-  /// Light arriving at the point on the side of `normal` (unit, scene space). Thread-safe.
-  virtual Irradiance at(Vec3 position, Vec3 normal, std::uint32_t object) const = 0;
+  /// Light arriving at the point; both normals are unit and on the side seen. Thread-safe.
+  virtual Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const = 0;
 };
 
 /// The scene as a renderer sees it; all must outlive it.

@@ -33,8 +33,8 @@ Rgb PhotonLight::estimate(const PhotonIndex& index, Vec3 position, Vec3 normal) 
   return Rgb(estimate_irradiance(index, position, normal, options_, scratch).irradiance);
 }
 
-DiffuseLight::Irradiance PhotonLight::at(Vec3 position, Vec3 normal, std::uint32_t) const {
-  return {estimate(caustic_, position, normal), estimate(indirect_, position, normal)};
+DiffuseLight::Irradiance PhotonLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3) const {
+  return {estimate(caustic_, surface.position, geometric), estimate(indirect_, surface.position, geometric)};
 }
 
 }  // namespace tempolux

@@ -21,7 +21,8 @@ class PhotonLight : public DiffuseLight {
   PhotonLight(std::span<const formats::Photon> photons, Vec3d photon_shift, const Box3& bounds,
               const PhotonLightOptions& options);
 
-  Irradiance at(Vec3 position, Vec3 normal, std::uint32_t object) const override;
+  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const override;
+  Rgb caustic(Vec3 position, Vec3 normal) const { return estimate(caustic_, position, normal); }
   std::size_t photon_count() const { return caustic_.size() + indirect_.size(); }
 
  private:

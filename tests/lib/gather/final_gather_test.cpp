@@ -109,8 +109,10 @@ TEST(FinalGather, UniformRoomIsUniform) {
   EXPECT_NEAR(length(record.rotational[0]), 0, 1e-4f);
   EXPECT_EQ(counts.unanswered, 0u);
   // Harmonic mean distance in a cube seen from its floor is between the nearest and the farthest wall.
-  EXPECT_GT(record.radius, 0.7f);
-  EXPECT_LT(record.radius, 2.2f);
+  EXPECT_GT(record.radius_unclamped, 0.7f);
+  EXPECT_LT(record.radius_unclamped, 2.2f);
+  // The nearest wall is 0.7 away, seen by the outermost ring a little above the floor.
+  EXPECT_NEAR(record.radius, 0.72f, 0.05f);
 }
 
 TEST(FinalGather, AllMissesGiveNothingAndAnInfiniteRadius) {
@@ -129,6 +131,7 @@ TEST(FinalGather, AllMissesGiveNothingAndAnInfiniteRadius) {
   EXPECT_EQ(record.irradiance, Rgb(0.0f));
   EXPECT_EQ(record.translational[0], Vec3{});
   EXPECT_EQ(record.radius, INFINITY);
+  EXPECT_EQ(record.radius_unclamped, INFINITY);
 }
 
 }  // namespace

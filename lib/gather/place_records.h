@@ -1,0 +1,44 @@
+// lib/gather/place_records.h -- put irradiance records where a camera needs them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "lib/gather/final_gather.h"
+
+namespace tempolux {
+
+struct PlacementOptions {
+  float error_bound = 0.36f;          ///< validity radius / harmonic mean distance to what is seen
+  float min_radius_px = 1.5f;         ///< a record is valid this many pixels around it at least
+  float max_radius = 0;               ///< m; 0: a tenth of the scene's diagonal
+  float min_weight = 0.1f;            ///< sum of weights that counts as covered
+};
+
+/// A surface point that a camera sees at a pixel, directly or through mirrors and glass.
+struct SeenPoint {
+  SurfacePoint surface;
+  Vec3 normal;                        ///< shading normal on the side seen
+  float footprint = 0;                ///< m: size of a pixel there
+};
+
+/// What pixel number i of a picture sees; nothing if it needs no indirect light.
+using PixelView = std::function<std::optional<SeenPoint>(std::size_t pixel)>;
+
+/// Adds records until every pixel's point is covered: lattices of 16, 8, 4, 2 and 1 pixels one after the other, each
+/// in a fixed shuffled order and in batches of fixed size: a batch is tested and gathered in parallel, its
+/// records are added in order. The same records for any number of threads. Returns how many were added.
+std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,
+                          const Box3& bounds, const PlacementOptions& options, RecordStore& store,
+                          GatherCounts& counts, const std::function<void(double)>& progress = {});
+
+/// Sets a gathered record's radius from its harmonic mean distance:
+///
+///     r = min(error_bound x min(R, |E| / |dE/dx|), nearest surface along the tangent plane, max_radius),
+///
+/// and at least min_radius_px footprints. radius_unclamped keeps error_bound x R.
+void limit_radius(IrradianceRecord& record, float footprint, float max_radius, const PlacementOptions& options);
+
+}  // namespace tempolux

@@ -1,0 +1,49 @@
+#include "lib/render/cache_light.h"
+
+#include "lib/render/shading.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kMirrorsInARow = 16;
+
+}  // namespace
+
+DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const {
+  Irradiance result;
+  if (photons_) result.caustic = photons_->caustic(surface.position, geometric);
+  const RecordStore::Interpolated found = records_.interpolate(surface.position, shading);
+  if (found.weight > 0) {
+    result.indirect = found.irradiance;
+  } else if (gather_) {
+    missing_.fetch_add(1, std::memory_order_relaxed);
+    GatherCounts counts;
+    result.indirect = gather_->gather(surface, shading, counts).irradiance;
+  }
+  return result;
+}
+
+std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, std::size_t pixel) {
+  const auto x = float(int(pixel % std::size_t(view.width()))) + 0.5f, y = float(int(pixel / std::size_t(view.width()))) + 0.5f;
+  Ray ray = view.ray(x, y);
+  float distance = 0;
+  for (int mirrors = 0; mirrors < kMirrorsInARow; ++mirrors) {
+    Hit hit;
+    if (!tracer.intersect(ray, hit)) return std::nullopt;
+    const SurfacePoint point = tracer.surface_point(hit);
+    distance += hit.t;
+    const ShadingPoint shading(point, -ray.direction, tracer.frame().materials[point.material]);
+    if (shading.bsdf.has_diffuse()) {
+      // Size of a pixel there: the angle to the neighbouring pixel's ray times the whole way.
+      const float step = view.pixel_size(distance);
+      return SeenPoint{point, shading.normal, step};
+    }
+    // u = 0.5 follows what is more than half of the light.
+    const Bsdf::Sample next = shading.bsdf.sample(shading.wo_local, 0.5f, {0.5f, 0.5f});
+    if (is_black(next.weight)) return std::nullopt;
+    ray = spawn_ray(point, shading.frame.to_world(next.wi));
+  }
+  return std::nullopt;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,34 @@
+// lib/render/cache_light.h -- indirect light from irradiance records, caustic light from photons.
+#pragma once
+
+#include <atomic>
+#include <optional>
+
+#include "lib/gather/place_records.h"
+#include "lib/render/camera_view.h"
+#include "lib/render/photon_light.h"
+
+namespace tempolux {
+
+/// Indirect irradiance interpolated between records; where none is valid it is gathered on the spot, which is
+/// slow, exact and counted. Caustic irradiance is that of `photons`, if given.
+class CacheLight : public DiffuseLight {
+ public:
+  CacheLight(const RecordStore& records, const FinalGather* gather, const PhotonLight* photons)
+      : records_(records), gather_(gather), photons_(photons) {}
+
+  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const override;
+  std::uint64_t gathered_on_the_spot() const { return missing_.load(); }
+
+ private:
+  const RecordStore& records_;
+  const FinalGather* gather_;
+  const PhotonLight* photons_;
+  mutable std::atomic<std::uint64_t> missing_{0};
+};
+
+/// What a pixel sees through its centre: the first surface with a Lambert lobe, through mirrors and glass by the
+/// likelier of reflection and transmission.
+std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, std::size_t pixel);
+
+}  // namespace tempolux
