@@ -53,7 +53,7 @@ void append_item(std::string_view item, std::string_view whole, std::vector<int>
     bad(whole, "more than 10^6 frames");
   for (int i = 0; i <= distance; i += others ? 1 : step) {
     if (!others || i % step != 0) frames.push_back(last >= first ? first + i : first - i);
-    if (distance - i < step && !others) break;   // i + step could pass the end of int
+    if (distance - i < step && !others) break;  // i + step could pass the end of int
   }
 }
 
@@ -166,11 +166,11 @@ bool has_frame_pattern(const std::string& pattern) {
 std::uint64_t parse_count(const std::string& text) {
   const std::size_t digits = end_of_digits(text);
   const std::string suffix = text.substr(digits);
-  const std::uint64_t factor = suffix.empty()                    ? 1
-                               : suffix == "k" || suffix == "K"  ? 1'000
-                               : suffix == "M"                   ? 1'000'000
-                               : suffix == "G"                   ? 1'000'000'000
-                                                                 : 0;
+  const std::uint64_t factor = suffix.empty()                   ? 1
+                               : suffix == "k" || suffix == "K" ? 1'000
+                               : suffix == "M"                  ? 1'000'000
+                               : suffix == "G"                  ? 1'000'000'000
+                                                                : 0;
   std::uint64_t count = 0;
   if (factor == 0 || !scaled(std::string_view(text).substr(0, digits), factor, count))
     bad(text, "not a count; write a whole number such as 250000, 10k, 1.5M or 1G");

@@ -17,8 +17,10 @@ std::string quoted(const std::string& word) {
   if (!word.empty() && std::ranges::all_of(word, plain)) return word;
   std::string text = "'";
   for (const char c : word) {
-    if (c == '\'') text += "'\\''";
-    else text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+    if (c == '\'')
+      text += "'\\''";
+    else
+      text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
   }
   return text + "'";
 }

@@ -9,7 +9,7 @@
 namespace tempolux::tools {
 namespace {
 
-constexpr std::size_t kMostItems = 12;   // of a list of objects
+constexpr std::size_t kMostItems = 12;  // of a list of objects
 
 bool is_leaf(const Facts& value) {
   if (!value.is_structured()) return true;
@@ -96,9 +96,12 @@ FileType file_type(const std::string& path) {
 
 Facts facts_of(const std::string& path, bool allow_nan) {
   switch (file_type(path)) {
-    case FileType::photons: return photon_facts(path);
-    case FileType::image: return image_facts(path, allow_nan);
-    case FileType::json: break;
+    case FileType::photons:
+      return photon_facts(path);
+    case FileType::image:
+      return image_facts(path, allow_nan);
+    case FileType::json:
+      break;
   }
   return json_facts(path);
 }
@@ -109,9 +112,12 @@ Facts difference_of(const std::string& a, const std::string& b) {
   const FileType type = file_type(a);
   if (type != file_type(b)) throw InputError(b + ": of another type than " + a + "; nothing to compare");
   switch (type) {
-    case FileType::photons: return photon_difference(a, b);
-    case FileType::image: return image_difference(a, b);
-    case FileType::json: break;
+    case FileType::photons:
+      return photon_difference(a, b);
+    case FileType::image:
+      return image_difference(a, b);
+    case FileType::json:
+      break;
   }
   return json_difference(a, b);
 }

@@ -43,9 +43,9 @@ std::string facts_as_text(const Facts& facts);
 void export_photons(const std::string& path, const std::string& format, Output& output);
 
 struct PictureOptions {
-  std::string layer;                        ///< "": R, G, B
-  std::optional<double> exposure_stops;     ///< nothing: auto
-  int columns = 0, tile_width = 320;        ///< of a sheet; columns 0: about square
+  std::string layer;                     ///< "": R, G, B
+  std::optional<double> exposure_stops;  ///< nothing: auto
+  int columns = 0, tile_width = 320;     ///< of a sheet; columns 0: about square
 };
 /// An image as PNG.
 void write_picture(const std::string& path, const PictureOptions& options, Output& output);

@@ -33,9 +33,12 @@ constexpr std::string_view kHistory = "tempolux:history", kIdentity = "tempolux:
 Facts attribute_facts(const Image& image) {
   Facts facts = {{"history", Facts::array()}, {"identity", nullptr}};
   for (const auto& [name, value] : image.text) {
-    if (name == kHistory) facts["history"] = lines_of(value);
-    else if (name.starts_with(kIdentity)) facts["identity"][name.substr(kIdentity.size())] = value;
-    else facts[name] = value;
+    if (name == kHistory)
+      facts["history"] = lines_of(value);
+    else if (name.starts_with(kIdentity))
+      facts["identity"][name.substr(kIdentity.size())] = value;
+    else
+      facts[name] = value;
   }
   for (const auto& [name, value] : image.numbers) facts[name] = value;
   for (const auto& [name, value] : image.matrices) facts[name] = value;
@@ -116,7 +119,7 @@ void write_picture(const std::string& path, const PictureOptions& options, Outpu
 
 void write_sheet(const std::vector<std::string>& paths, const PictureOptions& options, Output& output) {
   PreviewOptions preview{options.layer, options.exposure_stops};
-  if (!preview.exposure_stops) {   // frames are read twice, so that one at a time is in memory
+  if (!preview.exposure_stops) {  // frames are read twice, so that one at a time is in memory
     std::vector<double> stops;
     for (const std::string& path : paths) {
       const Image image = load(path, true);

@@ -65,7 +65,7 @@ Facts load(const std::string& path) {
 
 std::string digest_of_document(Facts document) {
   for (const char* key : {"command", "history", "tool_version"}) document.erase(key);
-  return hash_hex(nlohmann::json(document).dump());   // keys sorted
+  return hash_hex(nlohmann::json(document).dump());  // keys sorted
 }
 
 }  // namespace

@@ -41,12 +41,9 @@ std::string column_names(std::uint32_t columns) {
 
 /// The header but for history and identity.
 Facts header_facts(const PhotonHeader& header) {
-  Facts facts = {{"map", header.map},
-                 {"kinds", header.kinds},
-                 {"columns", column_names(header.columns)},
-                 {"origin_m", header.origin},
-                 {"groups", header.group_count},
-                 {"emitted_paths", header.emitted_count}};
+  Facts facts = {
+      {"map", header.map},         {"kinds", header.kinds},        {"columns", column_names(header.columns)},
+      {"origin_m", header.origin}, {"groups", header.group_count}, {"emitted_paths", header.emitted_count}};
   if (!header.base_name.empty()) {
     facts["overlay_of"] = header.base_name;
     facts["base_digest"] = header.base_digest;
@@ -103,11 +100,11 @@ void append_vertex(std::string& to, const std::array<double, 3>& position, const
 void append_row(std::string& to, const std::array<double, 3>& position, const Photon& photon) {
   const auto normal = decode_normal(photon.normal);
   char text[400];
-  const int length = std::snprintf(
-      text, sizeof text, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6g,%.6g,%.6g,%u,%s,%u\n", position[0], position[1],
-      position[2], double(photon.flux[0]), double(photon.flux[1]), double(photon.flux[2]), double(normal[0]),
-      double(normal[1]), double(normal[2]), unsigned(photon.object), kKindNames[std::size_t(photon.kind)],
-      unsigned(photon.bounce));
+  const int length =
+      std::snprintf(text, sizeof text, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6g,%.6g,%.6g,%u,%s,%u\n", position[0],
+                    position[1], position[2], double(photon.flux[0]), double(photon.flux[1]),
+                    double(photon.flux[2]), double(normal[0]), double(normal[1]), double(normal[2]),
+                    unsigned(photon.object), kKindNames[std::size_t(photon.kind)], unsigned(photon.bounce));
   to.append(text, std::size_t(length));
 }
 
@@ -173,7 +170,7 @@ void export_photons(const std::string& path, const std::string& format, Output& 
   const bool ply = format == "ply";
   double white = 0;
   std::string text = "x_m,y_m,z_m,flux_r_W,flux_g_W,flux_b_W,nx,ny,nz,object,kind,bounce\n";
-  if (ply) {   // its header says the count and colours need the brightest photon: the file is read twice
+  if (ply) {  // its header says the count and colours need the brightest photon: the file is read twice
     if (path == "-") throw InputError("-: PLY reads its input twice; save the stream to a file first");
     PhotonReader first(path, {.digest = false});
     const PhotonSummary summary = summarise(first);
@@ -187,8 +184,10 @@ void export_photons(const std::string& path, const std::string& format, Output& 
     for (const Photon& photon : block.photons) {
       std::array<double, 3> position = origin;
       for (std::size_t c = 0; c < 3; ++c) position[c] += double(photon.position[c]);
-      if (ply) append_vertex(text, position, photon, white);
-      else append_row(text, position, photon);
+      if (ply)
+        append_vertex(text, position, photon, white);
+      else
+        append_row(text, position, photon);
     }
     output.write(text.data(), text.size());
     text.clear();

@@ -18,7 +18,7 @@ namespace {
 CLI::Option* parsed_option(CLI::App& app, const std::string& names, const std::string& help,
                            const std::string& shown_default,
                            const std::function<void(const std::string&)>& parse) {
-  const std::string last = names.substr(names.rfind(',') + 1);   // also npos + 1 == 0
+  const std::string last = names.substr(names.rfind(',') + 1);  // also npos + 1 == 0
   const std::function<void(const std::string&)> named = [last, parse](const std::string& text) {
     try {
       parse(text);
@@ -97,8 +97,9 @@ std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<H
 std::string version_text(const std::string& tool) {
   std::string libraries;
   dl_iterate_phdr(add_library, &libraries);
-  return tool + " (tempolux) " TEMPOLUX_VERSION "\ncompiler: " __VERSION__
-         "\nlibraries: CLI11-" CLI11_VERSION + libraries + '\n';
+  return tool +
+         " (tempolux) " TEMPOLUX_VERSION "\ncompiler: " __VERSION__ "\nlibraries: CLI11-" CLI11_VERSION +
+         libraries + '\n';
 }
 
 void Tool::common_options(unsigned flags) {
@@ -114,35 +115,47 @@ void Tool::common_options(unsigned flags) {
         ->type_name("FRAMES");
   if (flags & uses_camera)
     app.add_option("--camera", common.camera, "name of the camera; auto: the first of the scene")
-        ->type_name("NAME")->capture_default_str();
+        ->type_name("NAME")
+        ->capture_default_str();
   if (flags & uses_seed) {
     app.add_option("--seed", common.seed, "seed of the random numbers, 0 to 2^64-1")
-        ->type_name("N")->capture_default_str()
+        ->type_name("N")
+        ->capture_default_str()
         ->check([](const std::string& text) -> std::string {
           const bool whole = text.find_first_not_of("0123456789") == std::string::npos;
           return whole ? "" : "'" + text + "' is not a whole number";
         });
     app.add_option("--seed-mode", common.seed_mode, "fixed: one seed for all frames; frame: another for each")
-        ->type_name("MODE")->capture_default_str()->check(CLI::IsMember({"fixed", "frame"}));
+        ->type_name("MODE")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"fixed", "frame"}));
   }
   if (flags & uses_scene) {
     app.add_option("--fps", common.fps, "frames per second: frame f is at f / fps seconds")
-        ->type_name("RATE")->capture_default_str()->check(number_between(1e-3, 1e6, "from 0.001 to 1000000"));
+        ->type_name("RATE")
+        ->capture_default_str()
+        ->check(number_between(1e-3, 1e6, "from 0.001 to 1000000"));
     app.add_option("--segment", common.segment_length, "frames over which static means static")
-        ->type_name("FRAMES")->capture_default_str()->check(number_between(1, 1e6, "from 1 to 1000000"));
+        ->type_name("FRAMES")
+        ->capture_default_str()
+        ->check(number_between(1, 1e6, "from 1 to 1000000"));
     app.add_option("--light-units", common.light_units,
                    "raw: lights as they stand; spec: point, spot and sun lights divided by 683 lm/W")
-        ->type_name("UNITS")->capture_default_str()->check(CLI::IsMember({"raw", "spec"}));
+        ->type_name("UNITS")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"raw", "spec"}));
     left_out(app.add_option("--state", common.state_files,
                             "state files of scene-plan, listed by --depfile instead of the scene's files"))
         ->type_name("FILE");
-    left_out(app.add_flag("--allow-stale", common.allow_stale,
-                          "use inputs made for another state of the scene"));
+    left_out(
+        app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
     left_out(app.add_flag("--allow-outside", common.allow_outside,
                           "follow file names that leave the scene's folder"));
   }
   left_out(app.add_option("--threads", common.threads, "threads; 0: all processors this process may use"))
-      ->type_name("N")->capture_default_str()->envname("TEMPOLUX_THREADS")
+      ->type_name("N")
+      ->capture_default_str()
+      ->envname("TEMPOLUX_THREADS")
       ->check(number_between(0, 4096, "from 0 to 4096"));
   left_out(bytes_option("--max-memory", common.max_memory_bytes, "limit of memory, such as 300MiB; 0: none"));
   left_out(app.add_option("--stats", common.stats_file,

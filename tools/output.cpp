@@ -39,7 +39,7 @@ std::string host_name() {
 /// ".NAME.tmp.HOST." in the folder of `target`; a name too long for the file system is cut and hashed.
 std::filesystem::path temporary_stem(const std::filesystem::path& target, const std::string& host) {
   std::string name = target.filename().string();
-  constexpr std::size_t kDigits = 20;   // of the longest process id
+  constexpr std::size_t kDigits = 20;  // of the longest process id
   const std::size_t rest = std::strlen("..tmp..") + host.size() + kDigits;
   if (name.size() + rest > NAME_MAX) name = name.substr(0, 64) + "~" + hash_hex(name);
   return target.parent_path() / ("." + name + ".tmp." + host + ".");
@@ -71,15 +71,21 @@ std::string reason_and_remedy(int error) {
   const std::string reason = std::strerror(error);
   switch (error) {
     case ENOSPC:
-    case EDQUOT: return reason + "; free space there or choose another folder";
-    case EFBIG: return reason + "; raise the limit of file sizes (ulimit -f)";
-    case EPIPE: return reason + "; the reader of the pipe ended early";
+    case EDQUOT:
+      return reason + "; free space there or choose another folder";
+    case EFBIG:
+      return reason + "; raise the limit of file sizes (ulimit -f)";
+    case EPIPE:
+      return reason + "; the reader of the pipe ended early";
     case EROFS:
     case EACCES:
-    case EPERM: return reason + "; choose a folder that can be written";
+    case EPERM:
+      return reason + "; choose a folder that can be written";
     case ENOENT:
-    case ENOTDIR: return reason + "; make the folder first";
-    default: return reason;
+    case ENOTDIR:
+      return reason + "; make the folder first";
+    default:
+      return reason;
   }
 }
 
@@ -108,7 +114,7 @@ bool same_bytes(const std::string& a, const std::string& b) {
 struct Ledger {
   struct Line {
     std::string path, target, temporary;
-    std::string key;                       ///< target in one spelling
+    std::string key;  ///< target in one spelling
     enum class Stage { open, committed, dropped } stage = Stage::open;
   };
   std::mutex mutex;
@@ -126,7 +132,7 @@ struct Output::State : std::streambuf {
   std::string path, target, temporary_path;
   bool no_clobber = false;
   int file = -1;
-  std::optional<Temporary> temporary;    ///< absent: written in place
+  std::optional<Temporary> temporary;  ///< absent: written in place
   std::vector<char> buffer;
   std::size_t ledger_line = 0;
   std::ostream stream{this};
@@ -189,7 +195,7 @@ struct Output::State : std::streambuf {
     temporary_path = stem.string() + std::to_string(getpid());
     enter_in_ledger();
     remove_stale(stem);
-    unlink(temporary_path.c_str());   // of a dead process that had our number
+    unlink(temporary_path.c_str());  // of a dead process that had our number
     temporary.emplace(temporary_path);
     file = open(temporary_path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (file < 0) {
@@ -197,7 +203,7 @@ struct Output::State : std::streambuf {
       temporary->release();
       fail(path, "cannot create", error);
     }
-    flock(file, LOCK_EX | LOCK_NB);   // tells others that we live; not every file system can
+    flock(file, LOCK_EX | LOCK_NB);  // tells others that we live; not every file system can
     if (mode) fchmod(file, *mode);
   }
 
@@ -252,7 +258,7 @@ struct Output::State : std::streambuf {
     temporary->release();
     const std::string folder = std::filesystem::path(target).parent_path().string();
     const int handle = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (handle < 0) return;              // a folder that may be written but not read
+    if (handle < 0) return;  // a folder that may be written but not read
     fsync(handle);
     close(handle);
   }

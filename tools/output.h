@@ -18,7 +18,7 @@ namespace tempolux::tools {
 /// place; of a symbolic link the file it points to is replaced.
 class Output {
  public:
-  enum class Kind { binary, text };   ///< text may go to a terminal
+  enum class Kind { binary, text };  ///< text may go to a terminal
 
   /// Throws InputError (exit 2) if `path` is empty, a folder, a terminal, an output of this run already, or
   /// exists under no_clobber; ResourceError (exit 3) if the file cannot be created.
@@ -33,7 +33,7 @@ class Output {
 
   /// Writes bytes through a buffer of 1 MiB of its own; throws ResourceError with the reason.
   void write(const void* data, std::size_t size);
-  std::ostream& stream();                     ///< the same buffer as a std::ostream; errors throw as above
+  std::ostream& stream();  ///< the same buffer as a std::ostream; errors throw as above
 
   /// Flush, fsync, close (checked), rename, fsync the folder. Throws ResourceError, and InputError under
   /// no_clobber if the name has been taken meanwhile. Nothing may be written after it.

@@ -116,8 +116,8 @@ std::string Stats::summary() const {
   std::string text;
   for (const State::Phase& phase : state_->phases) {
     char line[160];
-    std::snprintf(line, sizeof line, "%s%s %.2f s (%.2f CPU s)", text.empty() ? "" : ", ",
-                  phase.name.c_str(), phase.wall_s, phase.cpu_s);
+    std::snprintf(line, sizeof line, "%s%s %.2f s (%.2f CPU s)", text.empty() ? "" : ", ", phase.name.c_str(),
+                  phase.wall_s, phase.cpu_s);
     text += line;
   }
   return text;

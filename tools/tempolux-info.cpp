@@ -27,8 +27,10 @@ struct Request {
 };
 
 void print(const Facts& facts, bool as_json) {
-  if (as_json) std::cout << facts.dump(2, ' ', false, Facts::error_handler_t::replace) << '\n';
-  else std::cout << tools::facts_as_text(facts);
+  if (as_json)
+    std::cout << facts.dump(2, ' ', false, Facts::error_handler_t::replace) << '\n';
+  else
+    std::cout << tools::facts_as_text(facts);
 }
 
 /// Exit 1 if one is not valid; a file that is not there is an error of the command.
@@ -53,9 +55,12 @@ int print_files(const Request& request) {
     const Facts facts = tools::facts_of(file, true);
     if (request.digest && !request.json)
       std::cout << facts["digest"].get<std::string>() << "  " << file << '\n';
-    else if (request.digest) all.push_back({{"file", file}, {"digest", facts["digest"]}});
-    else if (request.json) all.push_back(facts);
-    else print(facts, false);
+    else if (request.digest)
+      all.push_back({{"file", file}, {"digest", facts["digest"]}});
+    else if (request.json)
+      all.push_back(facts);
+    else
+      print(facts, false);
   }
   if (request.json) print(all.size() == 1 ? all[0] : all, true);
   return tools::exit_ok;
@@ -111,7 +116,8 @@ int main(int argc, char** argv) {
   Request request;
   CLI::App& app = tool.app();
   app.add_option("files", request.files, "files; - is a .photons stream on standard input")
-      ->type_name("FILE")->required();
+      ->type_name("FILE")
+      ->required();
   CLI::Option* check =
       app.add_flag("--check", request.check, "read each whole file; exit 1 if one is not valid");
   CLI::Option* digest =
@@ -120,9 +126,9 @@ int main(int argc, char** argv) {
       app.add_flag("--diff", request.diff, "of two files: where they differ; exit 1 if their data do");
   app.add_flag("--json", request.json, "facts as JSON instead of text");
   CLI::Option* format = app.add_option("--export", request.format, "photons as points, with -o: ply or csv")
-                            ->type_name("FORMAT")->check(CLI::IsMember({"ply", "csv"}));
-  CLI::Option* output =
-      tool.output_option(request.output, "file that --export writes; - is standard output");
+                            ->type_name("FORMAT")
+                            ->check(CLI::IsMember({"ply", "csv"}));
+  CLI::Option* output = tool.output_option(request.output, "file that --export writes; - is standard output");
   CLI::Option* png = tool.output_option(request.png, "the image as a picture", "--png");
   CLI::Option* sheet =
       tool.output_option(request.sheet, "all images in one picture, one exposure for all", "--sheet");
@@ -131,11 +137,16 @@ int main(int argc, char** argv) {
       ->type_name("NAME");
   app.add_option("--exposure", request.exposure,
                  "stops: brightness times 2^STOPS; auto: 98 % of the pixels below 0.9")
-      ->type_name("STOPS")->capture_default_str();
+      ->type_name("STOPS")
+      ->capture_default_str();
   app.add_option("--columns", request.picture.columns, "of --sheet; 0: about square")
-      ->type_name("N")->capture_default_str()->check(CLI::Range(0, 1000).description(""));
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1000).description(""));
   app.add_option("--tile", request.picture.tile_width, "largest width of an image in --sheet, pixels")
-      ->type_name("PX")->capture_default_str()->check(CLI::Range(1, 65536).description(""));
+      ->type_name("PX")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 65536).description(""));
   const std::vector<CLI::Option*> modes{check, digest, diff, format, png, sheet};
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)

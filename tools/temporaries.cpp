@@ -28,7 +28,7 @@ extern "C" void remove_temporaries_and_end(int signal) {
   struct sigaction standard = {};
   standard.sa_handler = SIG_DFL;
   sigaction(signal, &standard, nullptr);
-  raise(signal);   // pending until this handler returns
+  raise(signal);  // pending until this handler returns
   errno = saved;
 }
 

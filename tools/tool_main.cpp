@@ -75,8 +75,8 @@ Tool::Tool(std::string name, std::string what, int argc, char** argv) {
   CLI::App& app = state_->app;
   app.formatter(help_formatter());
   app.set_help_flag("-h,--help", "print this and exit");
-  app.set_version_flag("--version", [tool = state_->name] { return version_text(tool); },
-                       "print versions and exit");
+  app.set_version_flag(
+      "--version", [tool = state_->name] { return version_text(tool); }, "print versions and exit");
   app.footer(
       "Exit codes: 0 done; 1 differs or not valid (aqm-compare, tempolux-info only); 2 usage, bad or stale\n"
       "input; 3 could not be done (no memory, disk full, write failed); 128+n by signal n.\n");
@@ -138,7 +138,7 @@ void Tool::State::parse() {
 
 void Tool::State::apply_limits() const {
   if (common.max_memory_bytes == 0) return;
-  mallopt(M_ARENA_MAX, 2);   // each arena reserves 64 MiB of the address space that is counted
+  mallopt(M_ARENA_MAX, 2);  // each arena reserves 64 MiB of the address space that is counted
   const rlimit limit{common.max_memory_bytes, common.max_memory_bytes};
   if (setrlimit(RLIMIT_AS, &limit) != 0)
     throw ResourceError(std::string("--max-memory: cannot be set: ") + std::strerror(errno));

@@ -31,26 +31,26 @@ class Option;
 namespace tempolux::tools {
 
 enum ExitCode {
-  exit_ok = 0,          ///< done, all outputs complete
-  exit_differs = 1,     ///< aqm-compare --fail-above, tempolux-info --check and --diff only
-  exit_bad_input = 2,   ///< usage, bad or stale input
-  exit_cannot = 3,      ///< no memory, disk full, write failed
+  exit_ok = 0,         ///< done, all outputs complete
+  exit_differs = 1,    ///< aqm-compare --fail-above, tempolux-info --check and --diff only
+  exit_bad_input = 2,  ///< usage, bad or stale input
+  exit_cannot = 3,     ///< no memory, disk full, write failed
 };
 
 enum CommonOptions : unsigned {
-  uses_scene = 1,       ///< --fps --segment --light-units --state --allow-stale --allow-outside
-  uses_seed = 2,        ///< --seed --seed-mode
-  uses_camera = 4,      ///< --camera
-  uses_frames = 8,      ///< --frame N or --frames SPEC, into Common::frames
+  uses_scene = 1,   ///< --fps --segment --light-units --state --allow-stale --allow-outside
+  uses_seed = 2,    ///< --seed --seed-mode
+  uses_camera = 4,  ///< --camera
+  uses_frames = 8,  ///< --frame N or --frames SPEC, into Common::frames
 };
 
 /// Values of the common options.
 struct Common {
-  int threads = 0;                       ///< resolved: >= 1 after parsing
+  int threads = 0;  ///< resolved: >= 1 after parsing
   std::uint64_t seed = 0;
-  std::string seed_mode = "fixed";       ///< or "frame": the frame number is mixed into the seed
+  std::string seed_mode = "fixed";  ///< or "frame": the frame number is mixed into the seed
   std::string camera = "auto";
-  std::vector<int> frames{0};            ///< at least one
+  std::vector<int> frames{0};  ///< at least one
   double fps = 24;
   int segment_length = 24;
   std::string light_units = "raw";

@@ -87,7 +87,7 @@ PhotonDifference compare(PhotonReader& a, PhotonReader& b) {
     widen(difference.largest_position, stream_a.photon().position, stream_b.photon().position);
     widen(difference.largest_flux, stream_a.photon().flux, stream_b.photon().flux);
   }
-  while (more_a) more_a = stream_a.next();   // so that totals and digests are known
+  while (more_a) more_a = stream_a.next();  // so that totals and digests are known
   while (more_b) more_b = stream_b.next();
   return difference;
 }

@@ -12,16 +12,16 @@ namespace tempolux::formats {
 /// Number and flux of some of the photons.
 struct PhotonShare {
   std::uint64_t count = 0;
-  std::array<double, 3> flux{};               ///< W: sum in file order
+  std::array<double, 3> flux{};  ///< W: sum in file order
 };
 
 struct PhotonSummary {
   PhotonShare all;
-  std::array<PhotonShare, 4> by_kind;         ///< by PathKind
+  std::array<PhotonShare, 4> by_kind;  ///< by PathKind
   std::map<std::uint16_t, PhotonShare> by_object;
-  std::array<double, 3> bounds_min{}, bounds_max{};   ///< m, world space; min > max if there are no photons
-  std::array<double, 3> mean_flux{};          ///< W per photon and channel; 0 if there are no photons
-  double largest_flux = 0;                    ///< W: largest |flux| of any photon and channel
+  std::array<double, 3> bounds_min{}, bounds_max{};  ///< m, world space; min > max if there are no photons
+  std::array<double, 3> mean_flux{};                 ///< W per photon and channel; 0 if there are no photons
+  double largest_flux = 0;                           ///< W: largest |flux| of any photon and channel
   std::uint64_t largest_bounce = 0;
 };
 
@@ -30,10 +30,10 @@ PhotonSummary summarise(PhotonReader& reader);
 
 /// How two maps differ, record by record in file order.
 struct PhotonDifference {
-  std::uint64_t records = 0;                  ///< compared: the shorter of the two
-  std::uint64_t differing = 0;                ///< of these, records with any field, group or column unequal
-  std::uint64_t first = 0;                    ///< index of the first of them; only if differing > 0
-  std::array<double, 3> largest_position{}, largest_flux{};   ///< m, W: largest |a - b| by axis, by channel
+  std::uint64_t records = 0;    ///< compared: the shorter of the two
+  std::uint64_t differing = 0;  ///< of these, records with any field, group or column unequal
+  std::uint64_t first = 0;      ///< index of the first of them; only if differing > 0
+  std::array<double, 3> largest_position{}, largest_flux{};  ///< m, W: largest |a - b| by axis, by channel
 };
 
 /// Reads both to the end. Throws what the readers throw.

@@ -1,5 +1,5 @@
 #!/bin/sh
-# kill_nine.sh ROUNDS COMMAND... -- kills COMMAND (run in an empty folder, outputs named without a folder)
+# kill_nine.sh ROUNDS COMMAND... -- kills COMMAND (run in a folder of its own, into which it writes)
 # with signal 9 at ROUNDS random moments of its run time. After each kill every file under its final name
 # must be what an undisturbed run writes, or what stood there before; the next run must leave no temporary.
 rounds=$1; shift

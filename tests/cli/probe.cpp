@@ -31,7 +31,7 @@ void fail_as(const std::string& work) {
   if (work == "other-error") throw std::runtime_error("odd");
   if (work == "memory") {
     std::vector<std::unique_ptr<char[]>> blocks;
-    while (blocks.size() < 4096) {   // 4 GiB at most, should the limit not hold
+    while (blocks.size() < 4096) {  // 4 GiB at most, should the limit not hold
       blocks.push_back(std::make_unique<char[]>(1 << 20));
       blocks.back()[0] = 1;
     }
@@ -47,7 +47,9 @@ int main(int argc, char** argv) {
   unsigned pause_us = 0;
   tool.app().add_option("scene", scene, "a name; not opened")->required();
   tool.app().add_option("--work", work, "write, or how to fail")->capture_default_str();
-  tool.app().add_option("--pause", pause_us, "microseconds to sleep before each 64 KiB")->capture_default_str();
+  tool.app()
+      .add_option("--pause", pause_us, "microseconds to sleep before each 64 KiB")
+      ->capture_default_str();
   tool.output_option(output, "the file to write")->required();
   tool.output_option(second, "another file to write", "--second");
   tool.bytes_option("--bytes", bytes, "size of the files");

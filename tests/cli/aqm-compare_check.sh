@@ -1,0 +1,58 @@
+# aqm-compare: figures known on paper, exit codes, refusals that name the place and the remedy.
+exr() { "${PYTHON:-python3}" "$HERE/make_exr.py" "$@"; }
+try() { echo "> $*"; aqm-compare "$@"; echo "exit $?"; }
+scene='@tempolux:identity.lights=aa @tempolux:identity.materials=bb'
+exr x.exr 32x16 R=0.75 G=0.75 B=0.75 $scene
+exr r.exr 32x16 R=0.5 G=0.5 B=0.5 $scene
+exr a.exr 32x16 R=0.25 G=0.25 B=0.25 $scene
+exr walls.exr 32x16 'R=1.03|0.97' 'G=1.03|0.97' 'B=1.03|0.97' 'id.object:id=1|2' $scene
+exr ones.exr 32x16 R=1 G=1 B=1 Z=2 indirect.R=0 indirect.G=0 indirect.B=0 $scene
+exr other.exr 32x16 R=1 G=1 B=1 @tempolux:identity.lights=cc @tempolux:identity.materials=bb
+exr stranger.exr 32x16 R=1 G=1 B=1
+exr small.exr 16x16 R=1 G=1 B=1 $scene
+exr right.exr 32x16 'mask=0|1'
+exr hole.exr 32x16 'R=nan|1.5' G=1.5 B=1.5 $scene
+
+# x - r = 1/4 everywhere; with halves .25 and .5, (x-r1)(x-r2) = 1/8 and their own noise is 1/8.
+try x.exr r.exr
+try x.exr --reference-halves a.exr r.exr
+try a.exr r.exr --halves
+# a whole image without bias, and two objects with 3 %
+try walls.exr ones.exr
+try hole.exr ones.exr --mask right.exr
+# machines: JSON alone on standard output, words on standard error
+aqm-compare x.exr r.exr --json - 2>/dev/null |
+  "${PYTHON:-python3}" -c 'import json,sys; t=json.load(sys.stdin)["total"]; print(t["rmse"], t["bias"], t["objects"])'
+try x.exr r.exr --quiet --json out.json; ls out.json
+# thresholds: 1 means that the frame fails, nothing else
+try x.exr r.exr --quiet --fail-above 0.25
+try x.exr r.exr --quiet --fail-above 0.24
+# sequences: x alternates between .75 and .25 over .5: flicker 1/2
+for f in 00 02; do cp x.exr s.$f.exr; cp r.exr t.$f.exr; done
+for f in 01 03; do cp a.exr s.$f.exr; cp r.exr t.$f.exr; done
+try s.##.exr t.%02d.exr --frames 0-3 --difference d.##.png
+ls d.*
+try s.##.exr r.exr --frames 0-1 --quiet --difference e.##.exr; aqm-compare e.01.exr a.exr --quiet --fail-above 0.5; echo "exit $?"
+# refusals
+try x.exr
+try x.exr r.exr --reference-halves a.exr r.exr
+try x.exr --reference-halves a.exr a.exr
+try x.exr r.exr --metric aqm
+try x.exr r.exr --perceptual
+try x.exr r.exr --metric ssim
+try x.exr small.exr
+try x.exr ones.exr --layer indirect
+try ones.exr x.exr --layer Z
+try hole.exr ones.exr
+try walls.exr other.exr --quiet
+try walls.exr other.exr --allow-stale --min-object-pixels 1k
+try ones.exr stranger.exr
+try s.##.exr t.##.exr
+try x.exr r.exr --frames 0-3
+try s.##.exr t.##.exr --frames 3-4
+try x.exr r.exr --fail-above -1
+try x.exr r.exr --fail-above nan
+try x.exr r.exr --difference d.jpg
+try x.exr r.exr --json no/such/folder/out.json
+try no-such.exr r.exr
+ls -A | grep tmp || echo 'nothing left behind'
