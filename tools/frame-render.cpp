@@ -67,7 +67,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   const RenderScene scene{tracer, lights};
   tools::FrameDescription description{tools::identity_of(frame), "", frame.frame, input.time().fps, view.world_to_camera(), view.world_to_ndc()};
   const std::optional<PhotonLight> photon_light = open_photons(tool, options, frame, description.history);
-  description.history += tool.history_line();
+  description.history += tool.history_line(frame_number);
 
   tool.stats().phase("render", true);
   FrameOptions frame_options = options.frame;

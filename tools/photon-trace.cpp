@@ -35,7 +35,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   photon_options.group_count = options.groups == "auto" ? 0 : std::uint32_t(tools::parse_count(options.groups));
   photon_options.set_kinds(options.kinds);
   formats::PhotonHeader header;
-  header.history = tool.history_line();
+  header.history = tool.history_line(frame_number);
   header.identity = tools::identity_of(frame);
   header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
 

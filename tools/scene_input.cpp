@@ -11,7 +11,7 @@ SceneInput::SceneInput(Tool& tool, const std::string& path) : tool_(tool) {
   options.allow_outside = common.allow_outside;
   scene_ = load_gltf(path, options);
   for (const std::string& warning : scene_.warnings) tool.warn(warning);
-  for (const std::string& file : scene_.files) tool.depends_on(file);
+  for (const std::string& file : scene_.files) tool.depends_on(file, true);
   time_.fps = common.fps;
   time_.segment_length = common.segment_length;
   time_.light_units = common.light_units;
