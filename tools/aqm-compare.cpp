@@ -13,9 +13,9 @@
 
 #include "formats/error.h"
 #include "lib/aqm/difference.h"
-#include "lib/aqm/identity_check.h"
 #include "lib/image/exr_io.h"
 #include "lib/report/comparison.h"
+#include "tools/compare_inputs.h"
 #include "tools/tool_main.h"
 
 using namespace tempolux;
@@ -29,6 +29,7 @@ struct Options {
   double fail_above = -1, difference_scale = 0;
   std::uint64_t min_object_pixels = 64;
 
+  std::string layer_or_rgb() const { return layer == "RGB" ? "" : layer; }
   std::vector<std::string> references() const { return halves.empty() ? std::vector{reference} : halves; }
 };
 
@@ -45,89 +46,50 @@ void declare(tools::Tool& tool, Options& o) {
   app.add_option("--reference-halves", o.halves, "two independent halves of the reference: no noise floor")
       ->expected(2)->type_name("FILE");
   app.add_flag("--halves", o.own_halves, "the two frames are halves of one image: report its noise");
-  app.add_option("--layer", o.layer, "layer or channel, such as indirect, N, Z; RGB without")->type_name("NAME");
-  app.add_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count")->type_name("FILE");
+  app.add_option("--layer", o.layer, "layer or channel, such as indirect, N, Z; RGB without")
+      ->type_name("NAME");
+  app.add_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count")
+      ->type_name("FILE");
   app.add_option("--metric", o.metric, "error: RMSE, relMSE, bias, PSNR, flicker")->type_name("NAME")
       ->capture_default_str();
   app.add_flag("--perceptual", o.perceptual, "refused: the model of vision is not in this version");
   tool.count_option("--min-object-pixels", o.min_object_pixels, "flag the bias of objects of fewer pixels");
   tool.output_option(o.json, "write all figures as JSON; -: standard output", "--json");
-  tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)", "--difference");
+  tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)",
+                     "--difference");
   app.add_option("--difference-scale", o.difference_scale, "difference at full red in the PNG; 0: automatic")
       ->type_name("VALUE")->capture_default_str()->check(not_negative);
   app.add_option("--fail-above", o.fail_above, "exit 1 if the RMSE is above this")->type_name("RMSE")
       ->check(not_negative);
-  tool.leave_out_of_history(app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
+  tool.leave_out_of_history(
+      app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
   tool.common_options(tools::uses_frames);
 }
 
 void check(const tools::Tool& tool, const Options& o, bool frames_given) {
   if (o.perceptual || o.metric == "aqm")
-    throw InputError((o.perceptual ? "--perceptual" : "--metric aqm") +
-                     std::string(": the model of vision is not in this version; leave it out for the error figures"));
+    throw InputError(
+        (o.perceptual ? "--perceptual" : "--metric aqm") +
+        std::string(": the model of vision is not in this version; leave it out for the error figures"));
   if (o.metric != "error") throw InputError("--metric " + o.metric + ": unknown; there is: error");
   if (o.reference.empty() == o.halves.empty())
     throw InputError("give the reference either as second file or as --reference-halves A B");
-  if (o.own_halves && !o.halves.empty()) throw InputError("--halves: judges two files, without --reference-halves");
+  if (o.own_halves && !o.halves.empty())
+    throw InputError("--halves: judges two files, without --reference-halves");
   if (!o.halves.empty() && (o.halves[0] == o.halves[1] || o.test == o.halves[0] || o.test == o.halves[1]))
-    throw InputError("--reference-halves: the same file twice; the halves must be independent of each other and of x");
+    throw InputError(
+        "--reference-halves: the same file twice; the halves must be independent of each other and of x");
   if (frames_given && tool.common().frames.size() > 1 && !tools::has_frame_pattern(o.test))
     throw InputError(o.test + ": --frames names several frames; give a pattern such as f.####.exr");
   if (frames_given && tool.common().frames.size() > 1 && !o.difference.empty() &&
       !tools::has_frame_pattern(o.difference))
-    throw InputError("--difference " + o.difference + ": give a pattern such as d.####.png for several frames");
+    throw InputError("--difference " + o.difference +
+                     ": give a pattern such as d.####.png for several frames");
   if (!frames_given && tools::has_frame_pattern(o.test))
     throw InputError(o.test + ": a pattern of frames; say which with --frames, such as 0-47");
   if (!o.difference.empty() && !o.difference.ends_with(".exr") && !o.difference.ends_with(".png"))
     throw InputError("--difference " + o.difference + ": the name must end in .exr or .png");
 }
-
-/// The files of one frame, loaded.
-struct LoadedFrame {
-  Image test, reference, second, mask;
-  ComparedInputs inputs;
-};
-
-void load_frame(tools::Tool& tool, const Options& o, std::optional<int> frame, LoadedFrame& loaded) {
-  const auto load = [&](const std::string& pattern, Image& image) -> NamedImage {
-    const std::string file = frame ? tools::frame_name(pattern, *frame) : pattern;
-    image = load_exr(file, {.allow_nan = true});
-    tool.depends_on(file);
-    return {&image, file};
-  };
-  const std::vector<std::string> references = o.references();
-  loaded.inputs.layer = o.layer == "RGB" ? "" : o.layer;
-  loaded.inputs.test = load(o.test, loaded.test);
-  loaded.inputs.reference = load(references[0], loaded.reference);
-  if (references.size() > 1) loaded.inputs.second = load(references[1], loaded.second);
-  if (!o.mask.empty()) loaded.inputs.mask = load(o.mask, loaded.mask);
-}
-
-/// Refuses frames of different scene states; warns once per run about frames that do not say theirs.
-class IdentityGuard {
- public:
-  IdentityGuard(tools::Tool& tool, bool allow_stale) : tool_(tool), allow_stale_(allow_stale) {}
-  void check(const ComparedInputs& inputs) {
-    for (const NamedImage* reference : {&inputs.reference, &inputs.second}) {
-      if (!reference->image) continue;
-      const IdentityMatch match = match_identities(*inputs.test.image, *reference->image);
-      const std::string pair = inputs.test.name + " and " + reference->name;
-      if (!match.different.empty() && !allow_stale_)
-        throw InputError(pair + ": made for different states of the scene (" + match.different +
-                         "); render one of them again, or give --allow-stale");
-      if (!match.different.empty()) warn_once(pair + ": different states of the scene: " + match.different);
-      if (!match.known) warn_once(pair + ": do not both say which scene they show; compared unseen");
-    }
-  }
-
- private:
-  void warn_once(const std::string& message) {
-    if (!warned_) tool_.warn(message);
-    warned_ = true;
-  }
-  tools::Tool& tool_;
-  bool allow_stale_, warned_ = false;
-};
 
 /// Writes the difference as EXR or PNG; `scale` 0 is chosen by the first frame and kept.
 void write_difference(tools::Tool& tool, const Compared& pair, std::optional<int> frame, double& scale,
@@ -149,23 +111,19 @@ Comparison description(const tools::Tool& tool, const Options& o) {
   comparison.command.pop_back();  // LF
   comparison.test = o.test;
   comparison.references = o.references();
-  comparison.layer = o.layer == "RGB" ? "" : o.layer;
+  comparison.layer = o.layer_or_rgb();
   comparison.mode = !o.halves.empty() ? ComparisonMode::reference_halves
                     : o.own_halves    ? ComparisonMode::own_halves
                                       : ComparisonMode::one_reference;
   return comparison;
 }
 
-int frame_number(const Image& image) {
-  const auto found = image.numbers.find("tempolux:frame");
-  return found == image.numbers.end() ? 0 : int(found->second);
-}
-
 int compare(tools::Tool& tool, const Options& o, bool frames_given) {
   check(tool, o, frames_given);
   std::optional<tools::Output> json, difference;
   const auto difference_output = [&](std::optional<int> frame) {
-    return tools::Output(frame ? tools::frame_name(o.difference, *frame) : o.difference, tool.common().no_clobber);
+    return tools::Output(frame ? tools::frame_name(o.difference, *frame) : o.difference,
+                         tool.common().no_clobber);
   };
   std::vector<std::optional<int>> frames{std::nullopt};
   if (frames_given) frames.assign(tool.common().frames.begin(), tool.common().frames.end());
@@ -173,16 +131,16 @@ int compare(tools::Tool& tool, const Options& o, bool frames_given) {
   if (!o.difference.empty()) difference = difference_output(frames.front());
 
   ComparisonBuilder builder(description(tool, o), o.min_object_pixels);
-  IdentityGuard guard(tool, o.allow_stale);
+  tools::IdentityGuard identities(tool, o.allow_stale);
+  const tools::ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb()};
   double scale = o.difference_scale;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     tool.stats().phase("load");
-    LoadedFrame loaded;
-    load_frame(tool, o, frames[i], loaded);
-    guard.check(loaded.inputs);
+    const tools::LoadedFrame loaded(tool, names, frames[i]);
+    identities.check(loaded.inputs());
     tool.stats().phase("compare");
-    const Compared pair = compare_layers(loaded.inputs);
-    builder.add(pair, frames[i].value_or(frame_number(loaded.test)), loaded.inputs.test.name);
+    const Compared pair = compare_layers(loaded.inputs());
+    builder.add(pair, frames[i].value_or(loaded.frame_number()), loaded.inputs().test.name);
     tool.stats().phase("write");
     if (difference && i) difference = difference_output(frames[i]);
     if (difference) write_difference(tool, pair, frames[i], scale, std::move(*difference));

@@ -3,8 +3,8 @@
 //     error-report manifest.json -o report
 //     error-report -o report --run 'scene=S2,curve=photon map,x=1000000' trace.json+render.json error.json
 //
-// Writes report.csv, report.md, error-SCENE.svg, error-SCENE.png and index.html into the folder. Runs are pairs of
-// stats (formats/stats) and comparison (formats/comparison); manifest: formats/report/report.md.
+// Writes report.csv, report.md, error-SCENE.svg, error-SCENE.png and index.html into the folder. Runs are
+// pairs of stats (formats/stats) and comparison (formats/comparison); manifest: formats/report/report.md.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
@@ -30,7 +30,7 @@ void declare(tools::Tool& tool, Options& o) {
   CLI::App& app = tool.app();
   app.add_option("manifest", o.manifest, "JSON that lists the runs (formats/report/report.md)");
   app.add_option("--run", o.runs, "a run: KEY=VALUE,... (scene, curve, label, x) STATS+STATS... COMPARISON")
-      ->type_size(3)->type_name("WHAT STATS COMPARISON");
+      ->type_size(3)->allow_extra_args(false)->type_name("WHAT STATS COMPARISON");
   tool.output_option(o.folder, "folder of report.csv, report.md, index.html, plots")->capture_default_str();
   app.add_option("--title", o.title, "title of the report")->type_name("TEXT");
   app.add_option("--baseline", o.baseline, "curve that speed-ups are over; each scene's first without")
@@ -46,7 +46,8 @@ void declare(tools::Tool& tool, Options& o) {
 ReportInput read_input(const Options& o) {
   if (o.manifest.empty() && o.runs.empty()) throw InputError("no runs; give a manifest, or --run");
   ReportInput input = o.manifest.empty() ? ReportInput{} : read_manifest(o.manifest);
-  for (std::size_t i = 0; i + 2 < o.runs.size(); i += 3) add_run(input, o.runs[i], o.runs[i + 1], o.runs[i + 2]);
+  for (std::size_t i = 0; i + 2 < o.runs.size(); i += 3)
+    add_run(input, o.runs[i], o.runs[i + 1], o.runs[i + 2]);
   if (input.runs.empty() && input.points.empty()) throw InputError(o.manifest + ": lists no run");
   if (!o.title.empty()) input.title = o.title;
   if (!o.baseline.empty()) input.baseline = o.baseline;
@@ -65,6 +66,9 @@ Plots draw(const std::vector<SceneReport>& scenes, TimeKind kind, double timeout
 }
 
 int report(tools::Tool& tool, const Options& o) {
+  tool.stats().phase("load");
+  const ReportInput input = read_input(o);
+  for (const std::string& file : input.files) tool.depends_on(file);
   std::error_code error;
   std::filesystem::create_directories(o.folder, error);
   if (error) throw ResourceError(o.folder + ": cannot create this folder: " + error.message());
@@ -76,9 +80,6 @@ int report(tools::Tool& tool, const Options& o) {
     output.commit();
   };
 
-  tool.stats().phase("load");
-  const ReportInput input = read_input(o);
-  for (const std::string& file : input.files) tool.depends_on(file);
   tool.stats().phase("fit");
   const TimeKind kind = o.time == "cpu" ? TimeKind::cpu : TimeKind::wall;
   const std::vector<SceneReport> scenes = scene_reports(input, kind);
@@ -88,7 +89,8 @@ int report(tools::Tool& tool, const Options& o) {
   tool.stats().phase("write");
   const std::string html = report_html(input, scenes, plots);
   write(tools::Output(folder + "report.csv", keep, tools::Output::Kind::text), report_csv(input));
-  write(tools::Output(folder + "report.md", keep, tools::Output::Kind::text), report_markdown(input, scenes, plots));
+  write(tools::Output(folder + "report.md", keep, tools::Output::Kind::text),
+        report_markdown(input, scenes, plots));
   for (const auto& [name, bytes] : plots) write(tools::Output(folder + name, keep), bytes);
   write(std::move(page), html);
   tool.stats().count("runs", double(input.runs.size()));

@@ -16,7 +16,8 @@ std::string what_is_there(const Image& image) {
   std::set<std::string> in_layers;
   for (const std::string& layer : image.layers()) {
     layers += (layers.empty() ? "" : ", ") + (layer.empty() ? "RGB" : layer);
-    for (const char* suffix : {"R", "G", "B"}) in_layers.insert(layer.empty() ? suffix : layer + "." + suffix);
+    for (const char* suffix : {"R", "G", "B"})
+      in_layers.insert(layer.empty() ? suffix : layer + "." + suffix);
   }
   for (const Channel& channel : image.channels)
     if (!in_layers.contains(channel.name)) channels += (channels.empty() ? "" : ", ") + channel.name;
@@ -40,8 +41,9 @@ std::vector<const std::vector<float>*> planes_like(const NamedImage& image, cons
   if (found.suffixes == like) return found.planes;
   std::string wanted;
   for (const std::string& suffix : like) wanted += (wanted.empty() ? "" : ", ") + suffix;
-  throw InputError(image.name + ": layer " + layer_name(layer) + " has other channels than the test frame's (" +
-                   wanted + "); " + what_is_there(*image.image));
+  throw InputError(image.name + ": layer " + layer_name(layer) +
+                   " has other channels than the test frame's (" + wanted + "); " +
+                   what_is_there(*image.image));
 }
 
 std::vector<std::uint8_t> pixels_of_mask(const NamedImage& mask) {

@@ -18,12 +18,12 @@ struct NamedImage {
 
 /// Names and samples of a layer's channels.
 struct LayerPlanes {
-  std::vector<std::string> suffixes;                  ///< "R", "G", "B"; "X", "Y", "Z"; "" for a single channel
+  std::vector<std::string> suffixes;  ///< "R", "G", "B"; "X", "Y", "Z"; "" for a single channel
   std::vector<const std::vector<float>*> planes;
 };
 
-/// The float channels of a layer: LAYER.R .G .B; or the one channel LAYER ("Z"); or all channels LAYER.* ("N").
-/// Layer "" is R, G, B, or Y alone. Throws InputError that lists the layers and channels there are.
+/// The float channels of a layer: LAYER.R .G .B; or the one channel LAYER ("Z"); or all channels LAYER.*
+/// ("N"). Layer "" is R, G, B, or Y alone. Throws InputError that lists the layers and channels there are.
 LayerPlanes layer_planes(const NamedImage& image, const std::string& layer);
 
 /// A frame x, its reference r and what of them counts. References are views of images that outlive it.
@@ -31,7 +31,7 @@ struct Compared {
   int width = 0, height = 0;
   std::vector<std::string> channels;                  ///< suffixes of the planes
   std::vector<const std::vector<float>*> test, reference;
-  std::vector<const std::vector<float>*> second;      ///< the other half of the reference; empty: one reference
+  std::vector<const std::vector<float>*> second;  ///< the other half of the reference; empty: one reference
   const std::vector<std::uint32_t>* objects = nullptr;  ///< id.object of x, else of r; nullptr: unknown
   std::vector<std::uint8_t> counted;                  ///< per pixel; empty: all count
 
@@ -50,9 +50,9 @@ struct ComparedInputs {
   std::string layer;
 };
 
-/// Lays a frame beside its reference. Pixels where all channels of `mask` are 0 do not count. Throws InputError,
-/// naming file and remedy, if sizes or channels differ, the layer is missing, no pixel counts, or a sample
-/// that counts is infinite or not a number.
+/// Lays a frame beside its reference. Pixels where all channels of `mask` are 0 do not count. Throws
+/// InputError, naming file and remedy, if sizes or channels differ, the layer is missing, no pixel counts, or
+/// a sample that counts is infinite or not a number.
 Compared compare_layers(const ComparedInputs& inputs);
 
 }  // namespace tempolux

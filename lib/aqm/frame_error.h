@@ -1,10 +1,10 @@
 // lib/aqm/frame_error.h -- how wrong a frame is: RMSE, relMSE, bias, PSNR, by pixel and by object.
 //
 // x is the test frame, r the reference. With two independent halves r1, r2 of the reference every square
-// (x-r)^2 is replaced by the product (x-r1)(x-r2), whose expectation over the reference's noise is the squared
-// error against the noiseless reference: no noise floor. It may come out negative where the error is below what
-// the reference resolves. With one reference the squares include its noise.
-// Sums are doubles in pixel order: the same numbers for any number of threads.
+// (x-r)^2 is replaced by the product (x-r1)(x-r2), whose expectation over the reference's noise is the
+// squared error against the noiseless reference: no noise floor. It may come out negative where the error is
+// below what the reference resolves. With one reference the squares include its noise. Sums are doubles in
+// pixel order: the same numbers for any number of threads.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ struct LargestDifference {
 struct ObjectError {
   std::uint32_t id = 0;                               ///< id.object
   std::uint64_t pixels = 0;                           ///< over all frames
-  std::optional<Estimate> bias;                       ///< mean(x-r)/mean(r) over its pixels; nothing if mean(r) = 0
+  std::optional<Estimate> bias;  ///< mean(x-r)/mean(r) over its pixels; nothing if mean(r) = 0
   double share_of_squared_error = 0;                  ///< of the image's sum; 0 where that is not positive
   bool few_pixels = false;                            ///< fewer than asked for: noise, not a finding
 };
@@ -50,8 +50,8 @@ struct FrameError {
   std::uint64_t pixels = 0;                           ///< that count, over all frames
   bool halves = false;
   SquaredFigure squared_error;                        ///< mean over pixels and channels of (x-r)^2
-  /// Mean over pixels of |x-r|^2 / (|r|^2 + (0.1 mean r)^2), |.|^2 the mean over channels, mean r that of the frame;
-  /// r in the denominator is the mean of the halves. Nothing if mean r is 0 (black reference).
+  /// Mean over pixels of |x-r|^2 / (|r|^2 + (0.1 mean r)^2), |.|^2 the mean over channels, mean r that of the
+  /// frame; r in the denominator is the mean of the halves. Nothing if mean r is 0 (black reference).
   std::optional<Estimate> relative_squared_error;
   std::optional<Estimate> bias;                       ///< mean(x-r)/mean(r); nothing if mean r is 0
   std::optional<double> psnr_db;                      ///< 10 log10(peak^2 / mean square), peak the largest r;
@@ -59,7 +59,7 @@ struct FrameError {
   Estimate mean_difference;                           ///< mean(x-r)
   double mean_test = 0, mean_reference = 0;
   LargestDifference largest;
-  std::optional<double> reference_noise;              ///< RMS of (r1-r2)/2: the noise left in the mean of the halves
+  std::optional<double> reference_noise;  ///< RMS of (r1-r2)/2: the noise left in the mean of the halves
   std::vector<ObjectError> objects;                   ///< by id; empty without id.object
 };
 
@@ -73,7 +73,7 @@ struct ErrorSums {
   bool halves = false, relative_known = true;
   std::vector<Block> blocks;
   std::map<std::uint32_t, std::map<std::size_t, Block>> objects;   ///< by id and block
-  double half_difference_squared = 0;                 ///< sum over pixels of mean over channels of ((r1-r2)/2)^2
+  double half_difference_squared = 0;  ///< sum over pixels of mean over channels of ((r1-r2)/2)^2
   double peak = 0;                                    ///< largest r
   LargestDifference largest;
 };
@@ -103,7 +103,7 @@ class FlickerMeter {
  private:
   BlockGrid grid_;
   std::vector<BlockQuotient> blocks_;
-  std::vector<double> previous_, previous_second_;    ///< x - r1 and x - r2 of the frame before, by channel and pixel
+  std::vector<double> previous_, previous_second_;  ///< x - r1, x - r2 of the frame before, by channel, pixel
   std::vector<std::uint8_t> counted_;
   int pairs_ = 0;
 };

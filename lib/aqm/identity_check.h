@@ -12,8 +12,8 @@ struct IdentityMatch {
   std::string different;     ///< concerns whose hashes differ, "lights, materials"; empty if none do
 };
 
-/// Compares the string attributes "tempolux:identity.CONCERN" of two frames (static_geometry, moving_geometry,
-/// materials, lights, media). A concern that one of them leaves out or empty never differs.
+/// Compares the string attributes "tempolux:identity.CONCERN" of two frames (static_geometry,
+/// moving_geometry, materials, lights, media). A concern that one of them leaves out or empty never differs.
 IdentityMatch match_identities(const Image& a, const Image& b);
 
 }  // namespace tempolux

@@ -56,7 +56,7 @@ class ComparisonBuilder {
 /// The document of comparison.md, version 1.0. Equal comparisons give equal text.
 std::string comparison_json(const Comparison& comparison);
 
-/// Lines of at most 110 columns: one per frame, the total, flicker, the worst objects, and what to keep in mind.
+/// A table with one line per frame, then the total, flicker, the worst objects, and what to keep in mind.
 std::string comparison_text(const Comparison& comparison);
 
 }  // namespace tempolux

@@ -25,7 +25,8 @@ std::optional<double> value_of(const std::optional<Estimate>& estimate, double s
 }
 
 std::optional<double> standard_error_of(const std::optional<Estimate>& estimate, double scale = 1) {
-  return estimate && estimate->standard_error ? std::optional(*estimate->standard_error * scale) : std::nullopt;
+  return estimate && estimate->standard_error ? std::optional(*estimate->standard_error * scale)
+                                              : std::nullopt;
 }
 
 std::string error_line(const std::string& name, const FrameError& error) {
@@ -40,7 +41,8 @@ std::string caveat(const std::string& name, const SquaredFigure& figure) {
   if (figure.resolved()) return "";
   const std::string standard_error =
       figure.squared.standard_error ? format("%.3g", *figure.squared.standard_error) : "unknown";
-  const std::string square = format("%s: mean square %.3g, standard error ", name.c_str(), figure.squared.value);
+  const std::string square =
+      format("%s: mean square %.3g, standard error ", name.c_str(), figure.squared.value);
   if (figure.squared.value < 0)
     return square + standard_error + ": below what the reference resolves, reported as 0\n";
   if (figure.squared.value == 0) return "";
@@ -64,7 +66,8 @@ std::string worst_objects(const std::vector<ObjectError>& objects) {
   }
   if (judged.size() > kShown) text += format("and %zu objects with less bias\n", judged.size() - kShown);
   if (judged.size() < objects.size())
-    text += format("%zu objects not shown: too few pixels, or no light on them\n", objects.size() - judged.size());
+    text += format("%zu objects not shown: too few pixels, or no light on them\n",
+                   objects.size() - judged.size());
   return text;
 }
 
@@ -72,29 +75,36 @@ std::string worst_objects(const std::vector<ObjectError>& objects) {
 
 std::string comparison_text(const Comparison& comparison) {
   const FrameError& total = comparison.total;
-  std::string text = comparison.test + (comparison.mode == ComparisonMode::own_halves ? " and " : " against ");
+  std::string text =
+      comparison.test + (comparison.mode == ComparisonMode::own_halves ? " and " : " against ");
   for (std::size_t i = 0; i < comparison.references.size(); ++i)
     text += (i ? " + " : "") + comparison.references[i];
   text += format("\nlayer %s, %dx%d, %llu pixels counted\n",
-                 comparison.layer.empty() ? "RGB" : comparison.layer.c_str(), comparison.width, comparison.height,
-                 static_cast<unsigned long long>(total.pixels));
+                 comparison.layer.empty() ? "RGB" : comparison.layer.c_str(), comparison.width,
+                 comparison.height, static_cast<unsigned long long>(total.pixels));
 
-  text += format("%-8s%10s%10s%10s%10s%10s%10s\n", "frame", "RMSE", "+-", "relMSE", "bias %", "+-", "PSNR dB");
-  for (const Comparison::Frame& frame : comparison.frames) text += error_line(std::to_string(frame.frame), frame.error);
+  text +=
+      format("%-8s%10s%10s%10s%10s%10s%10s\n", "frame", "RMSE", "+-", "relMSE", "bias %", "+-", "PSNR dB");
+  for (const Comparison::Frame& frame : comparison.frames)
+    text += error_line(std::to_string(frame.frame), frame.error);
   if (comparison.frames.size() > 1) text += error_line("all", total);
   if (comparison.flicker) {
-    text += format("flicker %10.4g", comparison.flicker->root()) + cell(comparison.flicker->root_standard_error()) +
-            "\n";
+    text += format("flicker %10.4g", comparison.flicker->root()) +
+            cell(comparison.flicker->root_standard_error()) + "\n";
     text += caveat("flicker", *comparison.flicker);
   }
-  text += format("largest difference %.4g in channel %s at column %d, row %d of frame %d; mean difference %.4g\n",
-                 total.largest.value, total.largest.channel.empty() ? "Y" : total.largest.channel.c_str(),
-                 total.largest.x, total.largest.y, total.largest.frame, total.mean_difference.value);
+  if (total.largest.value == 0) text += "no sample differs\n";
+  else
+    text += format(
+        "largest difference %.4g in channel %s at column %d, row %d of frame %d; mean difference %.4g\n",
+        total.largest.value, total.largest.channel.empty() ? "Y" : total.largest.channel.c_str(),
+        total.largest.x, total.largest.y, total.largest.frame, total.mean_difference.value);
   text += worst_objects(total.objects);
   if (comparison.mode == ComparisonMode::own_halves)
     return text + format("noise of the mean of the two halves: RMS %.4g\n", noise_of_mean(total).root());
   text += caveat("RMSE", total.squared_error);
-  if (total.reference_noise) text += format("noise of the reference: RMS %.4g, not part of the RMSE\n", *total.reference_noise);
+  if (total.reference_noise)
+    text += format("noise of the reference: RMS %.4g, not part of the RMSE\n", *total.reference_noise);
   else text += "one reference: its noise is part of the RMSE\n";
   if (!total.bias) text += "the reference is black: no relMSE, no bias\n";
   return text;

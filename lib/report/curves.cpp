@@ -21,7 +21,8 @@ struct Setting {
   std::vector<double> times, squares;
   std::vector<std::optional<double>> standard_errors;
 
-  /// The mean error of the repetitions is positive and, where standard errors are known, above three of its own.
+  /// The mean error of the repetitions is positive and, where standard errors are known, above three of its
+  /// own.
   bool usable() const {
     double sum = 0, variance = 0;
     bool known = true;
@@ -182,7 +183,8 @@ std::optional<double> time_at_error(const std::vector<CurvePoint>& points, doubl
   return std::nullopt;
 }
 
-std::vector<SpeedUp> speed_ups(const std::vector<CurvePoint>& points, const std::vector<CurvePoint>& baseline) {
+std::vector<SpeedUp> speed_ups(const std::vector<CurvePoint>& points,
+                               const std::vector<CurvePoint>& baseline) {
   if (points.empty() || baseline.empty()) return {};
   const auto least = [](const std::vector<CurvePoint>& p) {
     return std::sqrt(std::ranges::min(p, {}, &CurvePoint::mse).mse);

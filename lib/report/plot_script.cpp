@@ -42,7 +42,9 @@ struct Range {
 std::string plot_script(const SceneReport& report, TimeKind kind, PlotFormat format) {
   std::string data, plots;
   Range time, error;
-  const auto add_plot = [&](const std::string& plot) { plots += (plots.empty() ? "plot " : ", \\\n  ") + plot; };
+  const auto add_plot = [&](const std::string& plot) {
+    plots += (plots.empty() ? "plot " : ", \\\n  ") + plot;
+  };
   std::size_t colour = 0;
   for (std::size_t i = 0; i < report.curves.size(); ++i) {
     const Curve& curve = report.curves[i];
@@ -56,11 +58,13 @@ std::string plot_script(const SceneReport& report, TimeKind kind, PlotFormat for
     }
     data += "END\n";
     const CurveFit& fit = report.fits[i];
-    add_plot(block + " with linespoints lw 2 pt 7 ps 0.7 lc " + style + " title " + quoted(key_text(curve, fit)));
+    add_plot(block + " with linespoints lw 2 pt 7 ps 0.7 lc " + style + " title " +
+             quoted(key_text(curve, fit)));
     if (fit.noise > 0 && fit.floor)
       add_plot("[" + number_text(curve.points.front().time_s, "%.9g") + ":" +
                number_text(curve.points.back().time_s, "%.9g") + "] sqrt(" + number_text(fit.noise, "%.9g") +
-               "/x + " + number_text(fit.floor_squared, "%.9g") + ") with lines dt 3 lc " + style + " notitle");
+               "/x + " + number_text(fit.floor_squared, "%.9g") + ") with lines dt 3 lc " + style +
+               " notitle");
   }
   if (kind == TimeKind::cpu)
     for (std::size_t i = 0; i < report.points.size(); ++i) {

@@ -84,9 +84,15 @@ std::string report_csv(const ReportInput& input) {
     header.push_back(name);
   std::string text = csv_line(header);
   for (const MeasuredRun& run : input.runs) {
-    std::vector<std::string> cells{run.scene, run.curve, run.label, number_text(run.x, "%.9g"), joined(run, false),
-                                   joined(run, true), number_text(run.cpu_s(), "%.6f"),
-                                   number_text(run.wall_s(), "%.6f"), number_text(run.peak_memory_bytes(), "%.0f")};
+    std::vector<std::string> cells{run.scene,
+                                   run.curve,
+                                   run.label,
+                                   number_text(run.x, "%.9g"),
+                                   joined(run, false),
+                                   joined(run, true),
+                                   number_text(run.cpu_s(), "%.6f"),
+                                   number_text(run.wall_s(), "%.6f"),
+                                   number_text(run.peak_memory_bytes(), "%.0f")};
     Columns columns = phases_of(run);
     for (auto& column : counts_of(run)) columns.push_back(std::move(column));
     for (const std::string& name : numbers) {

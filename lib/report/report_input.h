@@ -62,7 +62,7 @@ struct GivenPoint {
 
 struct ReportInput {
   std::string title = "Error against time";
-  std::string baseline;                               ///< curve that speed-ups are over; empty: each scene's first
+  std::string baseline;  ///< curve that speed-ups are over; empty: each scene's first
   std::vector<MeasuredRun> runs;
   std::vector<GivenPoint> points;
   std::map<std::string, std::string> references;      ///< scene -> PNG of its reference
@@ -73,11 +73,13 @@ struct ReportInput {
 StatsRecord read_stats(const std::string& path);
 ErrorRecord read_comparison(const std::string& path);
 
-/// Reads a manifest (formats/report/report.md) and all files it names, relative to its folder. Throws InputError.
+/// Reads a manifest (formats/report/report.md) and all files it names, relative to its folder. Throws
+/// InputError.
 ReportInput read_manifest(const std::string& path);
 
-/// Adds a run given on the command line: `what` is KEY=VALUE{,KEY=VALUE} with the keys scene, curve, label, x (others
-/// are parameters); `stats` is FILE{+FILE}; `comparison` is a file. Throws InputError.
-void add_run(ReportInput& input, const std::string& what, const std::string& stats, const std::string& comparison);
+/// Adds a run given on the command line: `what` is KEY=VALUE{,KEY=VALUE} with the keys scene, curve, label, x
+/// (others are parameters); `stats` is FILE{+FILE}; `comparison` is a file. Throws InputError.
+void add_run(ReportInput& input, const std::string& what, const std::string& stats,
+             const std::string& comparison);
 
 }  // namespace tempolux

@@ -73,15 +73,16 @@ std::string base64(const std::string& bytes) {
 }
 
 std::string figure(const std::string& type, const std::string& bytes, const std::string& caption) {
-  return "<figure><img alt=\"" + html_text(caption) + "\" src=\"data:image/" + type + ";base64," + base64(bytes) +
-         "\"><figcaption>" + html_text(caption) + "</figcaption></figure>\n";
+  return "<figure><img alt=\"" + html_text(caption) + "\" src=\"data:image/" + type + ";base64," +
+         base64(bytes) + "\"><figcaption>" + html_text(caption) + "</figcaption></figure>\n";
 }
 
 std::string png_figure(const std::string& path, const std::string& caption) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(path + ": cannot be read; the report names it as an image");
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) throw InputError(path + ": not a PNG; give images of runs as PNG");
+  if (!bytes.starts_with("\x89PNG\r\n\x1a\n"))
+    throw InputError(path + ": not a PNG; give images of runs as PNG");
   return figure("png", bytes, caption);
 }
 
@@ -99,14 +100,16 @@ std::string pictures(const ReportInput& input, const std::string& scene) {
 
 constexpr const char* kStyle =
     "body{font:15px/1.4 sans-serif;margin:2em auto;max-width:72em;padding:0 1em;color:#222}"
-    "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:2px 8px;text-align:right}"
+    "table{border-collapse:collapse;font-size:13px}td,th{border:1px solid #ccc;padding:2px "
+    "8px;text-align:right}"
     "td:first-child,td:nth-child(2),th{text-align:left}img{max-width:100%}"
     ".frames{display:flex;flex-wrap:wrap}.frames figure{margin:0 1em 1em 0;max-width:24em}"
     "figcaption{font-size:13px;color:#555}";
 
 }  // namespace
 
-std::string report_markdown(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots) {
+std::string report_markdown(const ReportInput& input, const std::vector<SceneReport>& scenes,
+                            const Plots& plots) {
   std::string text = "# " + markdown_cell(input.title) + "\n\n";
   for (const SceneReport& scene : scenes) {
     text += "## " + markdown_cell(scene.scene) + "\n\n";
@@ -117,7 +120,8 @@ std::string report_markdown(const ReportInput& input, const std::vector<SceneRep
   return text;
 }
 
-std::string report_html(const ReportInput& input, const std::vector<SceneReport>& scenes, const Plots& plots) {
+std::string report_html(const ReportInput& input, const std::vector<SceneReport>& scenes,
+                        const Plots& plots) {
   std::string text = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>" +
                      html_text(input.title) + "</title>\n<style>" + kStyle + "</style></head>\n<body>\n<h1>" +
                      html_text(input.title) + "</h1>\n";

@@ -22,15 +22,15 @@ struct SceneReport {
   std::vector<Curve> curves;
   std::vector<CurveFit> fits;                         ///< of each curve
   std::vector<GivenPoint> points;
-  std::vector<Table> tables;                          ///< runs, curves, speed-ups, given points; none is empty
+  std::vector<Table> tables;  ///< runs, curves, speed-ups, given points; none is empty
 };
 
 /// One per scene, in order of first appearance.
 std::vector<SceneReport> scene_reports(const ReportInput& input, TimeKind kind);
 
-/// All runs, one line each, quoted as in RFC 4180, lines end in LF: scene, curve, label, x, parameters, stages, seconds by phase, counts (rays, bytes
-/// ...), peak memory, errors. Phases and counts are columns "TOOL.PHASE cpu_s" and "TOOL.COUNT" over all runs; what
-/// a run does not have is empty.
+/// All runs, one line each, quoted as in RFC 4180, lines end in LF: scene, curve, label, x, parameters, stages,
+/// seconds by phase, counts (rays, bytes ...), peak memory, errors. Phases and counts are columns
+/// "TOOL.PHASE cpu_s" and "TOOL.COUNT" over all runs; what a run does not have is empty.
 std::string report_csv(const ReportInput& input);
 
 enum class PlotFormat { svg, png };

@@ -51,7 +51,8 @@ TEST(ComparedTest, NonFiniteSamplesAreRefusedWithTheirPlace) {
   Image bad = good;
   bad.find("B")->values[6] = std::numeric_limits<float>::infinity();
   EXPECT_EQ(refusal({{&good, "a.exr"}, {&good, "b.exr"}, {&bad, "c.exr"}, {}, ""}),
-            "c.exr: layer RGB channel B at column 2, row 1: not a finite number; leave such pixels out with --mask");
+            "c.exr: layer RGB channel B at column 2, row 1: not a finite number; leave such pixels out with "
+            "--mask");
 }
 
 TEST(ComparedTest, AnEmptyMaskIsRefused) {
@@ -67,13 +68,16 @@ TEST(DifferenceTest, IsSignedAgainstTheMeanOfTheHalves) {
 }
 
 TEST(DifferenceTest, PictureIsGreyAtZeroRedAboveAndBlueBelow) {
-  const Image x = rgb_image(3, 1, [](std::size_t i, std::uint32_t) { return i == 0 ? 1.0 : i == 1 ? 1.5 : 0.75; });
+  const Image x = rgb_image(3, 1, [](std::size_t i, std::uint32_t) {
+    return i == 0 ? 1.0 : i == 1 ? 1.5 : 0.75;
+  });
   const Image r = constant_image(3, 1, 1);
   const Picture picture = difference_picture(compare(x, r), 0.5);
   EXPECT_EQ(picture.rgb, (std::vector<std::uint8_t>{128, 128, 128, 255, 0, 0, 64, 64, 192}));
 }
 
-// 99 % of the pixels differ by 0.3 or less, one outlier in 256 by 100: the scale is the next of 1, 2, 5 above 0.3.
+// 99 % of the pixels differ by 0.3 or less, one outlier in 256 by 100: the scale is the next of 1, 2, 5 above
+// 0.3.
 TEST(DifferenceTest, ScaleIsARoundNumberThatIgnoresOutliers) {
   Image x = constant_image(16, 16, 1.3);
   for (const char* name : {"R", "G", "B"}) x.find(name)->values[3] = 101;

@@ -50,29 +50,33 @@ TEST(FrameErrorTest, LargestDifferenceNamesItsPixelAndChannel) {
   EXPECT_EQ(error.largest.channel, "G");
 }
 
-// relMSE scales out: brightness 1000 times that of another scene changes nothing (2000 is not a power of two, hence
-// the tolerance of a few float roundings).
+// relMSE scales out: brightness 1000 times that of another scene changes nothing (2000 is not a power of two,
+// hence the tolerance of a few float roundings).
 TEST(FrameErrorTest, RelativeErrorDoesNotDependOnBrightness) {
   const auto scaled = [](double s) {
     const Image r = rgb_image(16, 16, [=](std::size_t i, std::uint32_t) { return s * double(1 + i % 5); });
-    const Image x = rgb_image(16, 16, [=](std::size_t i, std::uint32_t) { return s * (1.25 + double(i % 5)); });
+    const Image x =
+        rgb_image(16, 16, [=](std::size_t i, std::uint32_t) { return s * (1.25 + double(i % 5)); });
     return errors_of(x, r).relative_squared_error->value;
   };
   EXPECT_NEAR(scaled(2000) / scaled(2), 1, 1e-5);
 }
 
-// x = r_true + 0.02 with halves r_true + 0.1 noise. The product (x-r1)(x-r2) has mean 0.0004 and standard deviation
-// sqrt(0.01^2 + 2 0.0004 0.01) = 0.0104 per sample; 3 x 65536 samples give 2.3e-5: 4 sigma = 9.4e-5 per image, over
-// 16 seeds 2.3e-5. The plain squared error against one half would be 0.0104, against the mean of both 0.0054.
+// x = r_true + 0.02 with halves r_true + 0.1 noise. The product (x-r1)(x-r2) has mean 0.0004 and standard
+// deviation sqrt(0.01^2 + 2 0.0004 0.01) = 0.0104 per sample; 3 x 65536 samples give 2.3e-5: 4 sigma = 9.4e-5
+// per image, over 16 seeds 2.3e-5. The plain squared error against one half would be 0.0104, against the mean
+// of both 0.0054.
 TEST(FrameErrorTest, HalvesGiveTheSquaredErrorWithoutTheReferencesNoise) {
   const Image x = constant_image(256, 256, 1.02);
   double sum = 0, chi = 0;
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
-    const Image r1 = noisy_image(256, 256, 1, 0.1, 2 * seed), r2 = noisy_image(256, 256, 1, 0.1, 2 * seed + 1);
+    const Image r1 = noisy_image(256, 256, 1, 0.1, 2 * seed),
+                r2 = noisy_image(256, 256, 1, 0.1, 2 * seed + 1);
     const FrameError error = errors_of(x, r1, &r2);
     const Estimate squared = error.squared_error.squared;
     EXPECT_NEAR(squared.value, 0.0004, 9.4e-5);
-    EXPECT_NEAR(*squared.standard_error, 0.0104 / std::sqrt(3.0 * 65536), 0.25 * 2.35e-5);  // from 256 blocks: 4 / sqrt(2 x 256)
+    EXPECT_NEAR(*squared.standard_error, 0.0104 / std::sqrt(3.0 * 65536),
+                0.25 * 2.35e-5);  // from 256 blocks: 4 / sqrt(2 x 256)
     EXPECT_TRUE(error.squared_error.resolved());
     EXPECT_NEAR(*error.reference_noise, 0.1 / std::sqrt(2.0), 0.001);
     sum += squared.value;
@@ -91,8 +95,8 @@ TEST(FrameErrorTest, OneReferenceKeepsItsNoise) {
   EXPECT_FALSE(error.reference_noise);
 }
 
-// A perfect frame against noisy halves: about half of all seeds come out negative, none is resolved, the root is 0
-// or within noise. P(fewer than 3 or more than 21 of 24 negative) < 4e-5.
+// A perfect frame against noisy halves: about half of all seeds come out negative, none is resolved, the root
+// is 0 or within noise. P(fewer than 3 or more than 21 of 24 negative) < 4e-5.
 TEST(FrameErrorTest, BelowTheReferencesNoiseTheRootIsZeroAndUnresolved) {
   int negative = 0, resolved = 0;
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
@@ -109,8 +113,8 @@ TEST(FrameErrorTest, BelowTheReferencesNoiseTheRootIsZeroAndUnresolved) {
   EXPECT_LE(resolved, 1);
 }
 
-// Noise equal within squares of 4x4 pixels: independent samples are 16 times fewer than pixels. The scatter of the
-// image mean over seeds is what the standard error must say; per pixel it would be 4 times too small.
+// Noise equal within squares of 4x4 pixels: independent samples are 16 times fewer than pixels. The scatter
+// of the image mean over seeds is what the standard error must say; per pixel it would be 4 times too small.
 TEST(FrameErrorTest, StandardErrorAllowsForNeighboursThatErrTogether) {
   double scatter = 0, claimed = 0;
   constexpr int kSeeds = 64;
@@ -127,7 +131,8 @@ TEST(FrameErrorTest, StandardErrorAllowsForNeighboursThatErrTogether) {
   EXPECT_NEAR(std::sqrt(claimed / kSeeds), 0.1 / 32, 0.1 * 0.1 / 32);
 }
 
-// Half of the image 3 % too bright, half 3 % too dark, equal radiance: the image has no bias, its two objects have.
+// Half of the image 3 % too bright, half 3 % too dark, equal radiance: the image has no bias, its two objects
+// have.
 TEST(FrameErrorTest, BiasOfAnObjectHidesInTheWholeImage) {
   Image x = rgb_image(64, 64, [](std::size_t i, std::uint32_t) { return i % 64 < 32 ? 1.03 : 0.97; });
   Channel& ids = x.add_ids("id.object");
@@ -196,8 +201,8 @@ TEST(FrameErrorTest, FramesOfASequenceAddUpToItsMeans) {
   EXPECT_EQ(error.largest.value, 3);
 }
 
-// The mean of two halves of variance s^2 has variance s^2/2. 4 sigma of 3 x 16384 squares: 4 sqrt(0.8 / 49152) / 2
-// of the figure (the difference of two uniforms has kurtosis 2.4; 1.4 rounds that up).
+// The mean of two halves of variance s^2 has variance s^2/2. 4 sigma of 3 x 16384 squares: 4 sqrt(0.8 /
+// 49152) / 2 of the figure (the difference of two uniforms has kurtosis 2.4; 1.4 rounds that up).
 TEST(FrameErrorTest, NoiseOfAnImageFollowsFromItsTwoHalves) {
   const Image a = noisy_image(128, 128, 1, 0.2, 1), b = noisy_image(128, 128, 1, 0.2, 2);
   const SquaredFigure noise_figure = noise_of_mean(errors_of(a, b));
@@ -205,7 +210,8 @@ TEST(FrameErrorTest, NoiseOfAnImageFollowsFromItsTwoHalves) {
 }
 
 TEST(FlickerTest, ConstantErrorDoesNotFlickerAndAlternatingErrorDoesBySteps) {
-  const Image bright = constant_image(32, 32, 1.5), dark = constant_image(32, 32, 0.75), r = constant_image(32, 32, 1);
+  const Image bright = constant_image(32, 32, 1.5), dark = constant_image(32, 32, 0.75),
+              r = constant_image(32, 32, 1);
   FlickerMeter steady, alternating;
   EXPECT_FALSE(steady.result());
   for (int t = 0; t < 4; ++t) {
@@ -218,13 +224,14 @@ TEST(FlickerTest, ConstantErrorDoesNotFlickerAndAlternatingErrorDoesBySteps) {
 
 TEST(FlickerTest, ChangeThatTheReferenceMakesTooIsNoFlicker) {
   FlickerMeter meter;
-  for (const double level : {1.0, 2.0, 0.5}) meter.add(compare(constant_image(8, 8, level + 0.25), constant_image(8, 8, level)));
+  for (const double level : {1.0, 2.0, 0.5})
+    meter.add(compare(constant_image(8, 8, level + 0.25), constant_image(8, 8, level)));
   EXPECT_EQ(meter.result()->squared.value, 0);
 }
 
-// Errors drawn afresh per frame with sigma 0.05 flicker by 0.05 sqrt(2), squared 0.005, whatever the noise 0.1 of the
-// references; without halves the squared flicker would be 0.005 + 0.02. A product has sigma below 0.025 x 1.2;
-// 3 x 16384 x 7 of them, neighbours in time correlated (factor 2): 4 sigma < 3e-4.
+// Errors drawn afresh per frame with sigma 0.05 flicker by 0.05 sqrt(2), squared 0.005, whatever the noise
+// 0.1 of the references; without halves the squared flicker would be 0.005 + 0.02. A product has sigma below
+// 0.025 x 1.2; 3 x 16384 x 7 of them, neighbours in time correlated (factor 2): 4 sigma < 3e-4.
 TEST(FlickerTest, HalvesTakeTheReferencesNoiseOut) {
   FlickerMeter meter, plain;
   for (std::uint64_t t = 0; t < 8; ++t) {

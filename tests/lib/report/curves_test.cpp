@@ -11,7 +11,8 @@ namespace tempolux {
 namespace {
 
 /// Points at t = first, first*step, ... with e^2 = a t^(2 slope) + b.
-std::vector<CurvePoint> power_curve(int count, double a, double slope, double b, double first = 0.1, double step = 4) {
+std::vector<CurvePoint> power_curve(int count, double a, double slope, double b, double first = 0.1,
+                                    double step = 4) {
   std::vector<CurvePoint> points;
   for (int i = 0; i < count; ++i) {
     const double t = first * std::pow(step, i);
@@ -20,7 +21,8 @@ std::vector<CurvePoint> power_curve(int count, double a, double slope, double b,
   return points;
 }
 
-MeasuredRun run_of(const std::string& curve, double x, double cpu_s, double mse, const std::string& seed = "1") {
+MeasuredRun run_of(const std::string& curve, double x, double cpu_s, double mse,
+                   const std::string& seed = "1") {
   MeasuredRun run;
   run.scene = "S";
   run.curve = run.label = curve;
@@ -43,7 +45,8 @@ TEST(CurveFitTest, MonteCarloCurveHasSlopeMinusOneHalfAndNoFloor) {
 }
 
 TEST(CurveFitTest, FloorIsFoundAndItsPointsLeftOutOfTheSlope) {
-  const auto points = power_curve(8, 1e-4, -0.5, 1e-6);  // a/t = 10 b at t = 10: points .1 .4 1.6 6.4 are before
+  const auto points =
+      power_curve(8, 1e-4, -0.5, 1e-6);  // a/t = 10 b at t = 10: points .1 .4 1.6 6.4 are before
   const CurveFit fit = fit_curve(points);
   ASSERT_TRUE(fit.floor);
   EXPECT_NEAR(*fit.floor, 1e-3, 1e-9);
@@ -53,8 +56,9 @@ TEST(CurveFitTest, FloorIsFoundAndItsPointsLeftOutOfTheSlope) {
   EXPECT_GT(*fit.slope, -0.5);
 }
 
-// Each e^2 off by 5 % at random, as from about 800 blocks. The slope over 8 points a factor 4 apart has standard
-// deviation 0.025 / (ln 4 sqrt(42)) = 0.0028; sqrt(b), held by about three points, 0.05 / sqrt(3) / 2 = 1.5 %.
+// Each e^2 off by 5 % at random, as from about 800 blocks. The slope over 8 points a factor 4 apart has
+// standard deviation 0.025 / (ln 4 sqrt(42)) = 0.0028; sqrt(b), held by about three points, 0.05 / sqrt(3) /
+// 2 = 1.5 %.
 TEST(CurveFitTest, NoisyCurvesGiveSlopeAndFloorWithinTheirNoise) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     auto straight = power_curve(8, 1e-4, -0.5, 0), bent = power_curve(8, 1e-4, -0.5, 2e-6);
@@ -102,7 +106,8 @@ TEST(TimeAtErrorTest, InterpolatesPowerLawsExactlyAndNeverExtrapolates) {
 }
 
 TEST(TimeAtErrorTest, ANoisyCurveCountsFromWhereItFirstGetsThere) {
-  const std::vector<CurvePoint> points{{1, 1, 1e-2, 1}, {2, 10, 1e-4, 1}, {3, 100, 1e-3, 1}, {4, 1000, 1e-5, 1}};
+  const std::vector<CurvePoint> points{
+      {1, 1, 1e-2, 1}, {2, 10, 1e-4, 1}, {3, 100, 1e-3, 1}, {4, 1000, 1e-5, 1}};
   EXPECT_NEAR(*time_at_error(points, std::sqrt(1e-3)), std::sqrt(10.0), 1e-9);
 }
 
@@ -120,7 +125,8 @@ TEST(SpeedUpTest, IsTheRatioOfTimesInsideBothCurvesOnly) {
 
 TEST(CurvesOfTest, RepetitionsBecomeOnePointOfMedianTimeAndMeanSquare) {
   const std::vector<MeasuredRun> runs{run_of("a", 10, 5, 1e-4, "1"), run_of("b", 10, 1, 1e-4),
-                              run_of("a", 10, 1, 3e-4, "2"), run_of("a", 10, 2, 2e-4, "3"), run_of("a", 5, 0.5, 1e-3)};
+                                      run_of("a", 10, 1, 3e-4, "2"), run_of("a", 10, 2, 2e-4, "3"),
+                                      run_of("a", 5, 0.5, 1e-3)};
   const auto curves = curves_of(runs, TimeKind::cpu);
   ASSERT_EQ(curves.size(), 2u);
   ASSERT_EQ(curves[0].points.size(), 2u);
