@@ -169,7 +169,9 @@ struct Output::State : std::streambuf {
     struct stat status = {};
     if (stat(path.c_str(), &status) != 0) return open_temporary({});
     if (S_ISDIR(status.st_mode)) throw InputError(path + ": is a folder; name a file");
-    const bool of_the_system = path.starts_with("/dev/") || path.starts_with("/proc/");
+    // /dev/stdout may lead to a file that others hold open; /dev/shm is a folder of files like any other.
+    const bool of_the_system =
+        (path.starts_with("/dev/") && !path.starts_with("/dev/shm/")) || path.starts_with("/proc/");
     if (!S_ISREG(status.st_mode) || of_the_system) return open_in_place();
     if (no_clobber) throw InputError(path + ": exists; leave out --no-clobber to replace it");
     if (access(path.c_str(), W_OK) != 0) fail(path, "cannot write", errno);
