@@ -3,7 +3,7 @@
 //     scene-plan room.glb --frames 0-47 -o plan
 //
 // Writes plan/plan.json, plan/plan.mk and plan/state/*. A file whose content would be the same is left
-// untouched, except plan.mk, which is what make asks to be newer than the scene. Format: formats/plan/plan.md.
+// untouched, except plan.mk, which make wants newer than the scene. Format: formats/plan/plan.md.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
@@ -38,7 +38,8 @@ bool write_if_changed(const std::string& path, const std::string& content) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("scene-plan", "Say what a range of frames needs, as make variables and state files.", argc, argv);
+  tools::Tool tool("scene-plan", "Say what a range of frames needs, as make variables and state files.", argc,
+                   argv);
   std::string scene_file, folder = "plan";
   tool.app().add_option("scene", scene_file, "glTF scene, .gltf or .glb")->required();
   tool.output_option(folder, "folder for plan.json, plan.mk and state/")->capture_default_str();
@@ -63,7 +64,8 @@ int main(int argc, char** argv) {
     const std::string rules = plan_makefile(plan, folder, scene.files);
     std::size_t changed = 0;
     const std::vector<PlanFile> states = state_files(plan);
-    for (const PlanFile& state : states) changed += write_if_changed(folder + "/" + state.name, state.content);
+    for (const PlanFile& state : states)
+      changed += write_if_changed(folder + "/" + state.name, state.content);
     const std::string scene_name = std::filesystem::path(scene_file).filename().string();
     write_if_changed(folder + "/plan.json", plan_json(plan, scene_name, tool.history_line()));
     makefile.write(rules.data(), rules.size());

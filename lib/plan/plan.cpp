@@ -15,7 +15,7 @@
 namespace tempolux {
 namespace {
 
-/// Hash of what a segment freezes beyond its static geometry: a photon's probability, weights, distance scales.
+/// Hash of what a segment freezes beyond its static geometry: probabilities of lights, distance scales.
 std::string frozen_hash(const Scene& scene, const Segment& segment, const TimeOptions& options) {
   const EmissionTable table = build_emission_table(scene, segment, options);
   Hasher hasher;
@@ -51,8 +51,9 @@ bool light_transport_moves(const std::vector<MovingNode>& moves) {
 }
 
 /// The frames of a segment, evaluated, in order; of the frames asked for some may lie beyond the animation.
-std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const Scene& scene, const std::set<int>& asked,
-                                         int camera_node, bool light_moves, const TimeOptions& options) {
+std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const Scene& scene,
+                                         const std::set<int>& asked, int camera_node, bool light_moves,
+                                         const TimeOptions& options) {
   std::set<int> numbers = asked;
   for (int f = stage.segment().first; f <= stage.segment().last; ++f) numbers.insert(f);
 
@@ -109,8 +110,8 @@ std::vector<std::pair<Segment, std::set<int>>> by_segment(const Scene& scene, co
   return groups;
 }
 
-PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const std::set<int>& asked, int camera_node,
-                            const TimeOptions& options) {
+PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const std::set<int>& asked,
+                            int camera_node, const TimeOptions& options) {
   const SegmentScene stage(scene, segment, options);
   const SceneFrame begin = stage.at(segment.first);
   PlannedSegment planned;
@@ -120,7 +121,8 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const st
   planned.materials = begin.hashes.materials;
   planned.frozen = frozen_hash(scene, segment, options);
   planned.moves = moving_nodes(scene, segment);
-  planned.frames = planned_frames(stage, scene, asked, camera_node, light_transport_moves(planned.moves), options);
+  const bool light_moves = light_transport_moves(planned.moves);
+  planned.frames = planned_frames(stage, scene, asked, camera_node, light_moves, options);
   planned.camera_moves = cameras_differ(planned.frames);
   return planned;
 }
@@ -142,7 +144,8 @@ std::string counted(std::size_t count, const std::string& what) {
 
 /// "12 of 14 materials reflect ...".
 std::string share(std::size_t count, std::size_t of, const std::string& how) {
-  return std::to_string(count) + " of " + counted(of, "material") + (count == 1 ? " reflects " : " reflect ") + how;
+  const std::string verb = count == 1 ? " reflects " : " reflect ";
+  return std::to_string(count) + " of " + counted(of, "material") + verb + how;
 }
 
 /// How many states of light transport the frames asked for have.

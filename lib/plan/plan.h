@@ -21,7 +21,7 @@ struct MovingNode {
 struct PlannedFrame {
   int frame = 0;                    ///< its number, as asked for
   bool asked = false;               ///< in the range of the plan; the others only complete their segment
-  int evaluated = 0;                ///< the frame whose state it shows: `frame`, or the animation's nearest end
+  int evaluated = 0;                ///< whose state it shows: `frame`, or the animation's nearest end
   int lit_frame = 0;                ///< first frame of the plan's segments with the same light transport
   std::string camera;               ///< hash of the chosen camera; empty if not asked
   std::string moving_geometry;      ///< hashes, as in SceneHashes
@@ -32,7 +32,7 @@ struct PlannedFrame {
 struct PlannedSegment {
   int first = 0, last = 0;
   std::string static_geometry, materials;  ///< hashes, as in SceneHashes
-  std::string frozen;               ///< hash of what is frozen over the segment: emission table, bounds, origin
+  std::string frozen;               ///< hash of what is frozen: emission table, bounds, origin
   bool camera_moves = false;        ///< the camera differs between two of the frames asked for
   std::vector<MovingNode> moves;
   std::vector<PlannedFrame> frames; ///< all of the segment, in order; those beyond the animation after them
@@ -56,8 +56,8 @@ struct Plan {
 };
 
 /// Evaluates the segments that hold `frames` and compares their states by content: hashes decide, neither
-/// file times nor what the file calls an animation. A frame beyond the animation shows the animation's nearest
-/// end and is warned about.
+/// file times nor what the file calls an animation. A frame beyond the animation shows its nearest end and is
+/// warned about.
 ///
 /// `camera_node` is an index into Scene::nodes (Scene::camera_node). Time is linear in what moves, times the
 /// frames of the segments, and in what stands, times the segments. Throws InputError for a scene without

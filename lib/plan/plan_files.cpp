@@ -73,14 +73,22 @@ std::string frame_digits(int frame) {
 
 std::string plan_json(const Plan& plan, const std::string& scene_name, const std::string& history) {
   const bool photons = !plan.photon_kinds.empty();
-  Json json = {{"format", "tempolux plan"}, {"version", "1.0"}, {"history", history}, {"scene", scene_name},
-               {"camera", plan.camera},     {"fps", plan.time.fps}, {"segment_length", plan.time.segment_length},
-               {"light_units", plan.time.light_units}, {"frames", plan.frames}, {"photon_kinds", plan.photon_kinds}};
+  Json json = {{"format", "tempolux plan"},
+               {"version", "1.0"},
+               {"history", history},
+               {"scene", scene_name},
+               {"camera", plan.camera},
+               {"fps", plan.time.fps},
+               {"segment_length", plan.time.segment_length},
+               {"light_units", plan.time.light_units},
+               {"frames", plan.frames},
+               {"photon_kinds", plan.photon_kinds}};
   json["stages"] = Json::array();
   for (const Stage& stage : plan.stages)
     json["stages"].push_back({{"stage", stage.name}, {"needed", stage.needed}, {"because", stage.because}});
   json["segments"] = Json::array();
-  for (const PlannedSegment& segment : plan.segments) json["segments"].push_back(segment_json(segment, photons));
+  for (const PlannedSegment& segment : plan.segments)
+    json["segments"].push_back(segment_json(segment, photons));
   json["warnings"] = plan.warnings;
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -90,7 +98,8 @@ void check_folder_name(const std::string& folder) {
     throw InputError(folder + ": make cannot use files in a folder of this name; choose another with -o");
 }
 
-std::string plan_makefile(const Plan& plan, const std::string& folder, const std::vector<std::string>& scene_files) {
+std::string plan_makefile(const Plan& plan, const std::string& folder,
+                          const std::vector<std::string>& scene_files) {
   check_folder_name(folder);
   const bool photons = !plan.photon_kinds.empty();
   std::string text = "# Written by scene-plan; formats/plan/plan.md says what each variable is.\n";
@@ -103,8 +112,8 @@ std::string plan_makefile(const Plan& plan, const std::string& folder, const std
     text += "\n# frames " + std::to_string(segment.first) + " to " + std::to_string(segment.last) + "\n";
     for (const PlannedFrame& frame : segment.frames) {
       const std::string digits = frame_digits(frame.frame);
-      text += "light_" + digits + " := $(addprefix " + folder + "/state/,static." + first + " materials." + first +
-              " frozen." + first + " moving." + digits + " lights." + digits + ")\n";
+      text += "light_" + digits + " := $(addprefix " + folder + "/state/,static." + first +
+              " materials." + first + " frozen." + first + " moving." + digits + " lights." + digits + ")\n";
       if (!frame.asked) continue;
       text += "camera_" + digits + " := " + folder + "/state/camera." + digits + "\n";
       if (photons) text += "photons_" + digits + " := " + frame_digits(frame.lit_frame) + "\n";

@@ -22,7 +22,8 @@ void check_folder_name(const std::string& folder);
 
 /// plan.mk: make variables, and plan.mk's own prerequisites, the `scene_files`. `folder` is the plan's folder
 /// as make shall name it; checked as above.
-std::string plan_makefile(const Plan& plan, const std::string& folder, const std::vector<std::string>& scene_files);
+std::string plan_makefile(const Plan& plan, const std::string& folder,
+                          const std::vector<std::string>& scene_files);
 
 /// state/CONCERN.FFFF: one hash per line. To be rewritten only when their content differs.
 std::vector<PlanFile> state_files(const Plan& plan);

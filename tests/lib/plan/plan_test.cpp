@@ -1,4 +1,4 @@
-// Plans of a small room with a box that moves, put together by hand; what is equal is known from how it was made.
+// Plans of a small room with a box that moves, made by hand; what is equal is known from how it was made.
 #include "lib/plan/plan.h"
 
 #include <gtest/gtest.h>
@@ -235,12 +235,16 @@ TEST(PlanMakefile, SaysWhichPhotonsHoldForAFrameAndWhatTheyDependOn) {
             "out/plan/plan.mk: data\\ folder/room.bin\n"
             "data\\ folder/room.bin:\n"
             "\n# frames 0 to 3\n"
-            "light_0000 := $(addprefix out/plan/state/,static.0000 materials.0000 frozen.0000 moving.0000 lights.0000)\n"
-            "light_0001 := $(addprefix out/plan/state/,static.0000 materials.0000 frozen.0000 moving.0001 lights.0001)\n"
-            "light_0002 := $(addprefix out/plan/state/,static.0000 materials.0000 frozen.0000 moving.0002 lights.0002)\n"
+            "light_0000 := $(addprefix out/plan/state/,"
+            "static.0000 materials.0000 frozen.0000 moving.0000 lights.0000)\n"
+            "light_0001 := $(addprefix out/plan/state/,"
+            "static.0000 materials.0000 frozen.0000 moving.0001 lights.0001)\n"
+            "light_0002 := $(addprefix out/plan/state/,"
+            "static.0000 materials.0000 frozen.0000 moving.0002 lights.0002)\n"
             "camera_0002 := out/plan/state/camera.0002\n"
             "photons_0002 := 0001\n"
-            "light_0003 := $(addprefix out/plan/state/,static.0000 materials.0000 frozen.0000 moving.0003 lights.0003)\n");
+            "light_0003 := $(addprefix out/plan/state/,"
+            "static.0000 materials.0000 frozen.0000 moving.0003 lights.0003)\n");
 }
 
 TEST(PlanMakefile, RefusesAFolderThatMakeCannotName) {
