@@ -42,31 +42,59 @@ void RecordStore::add(const IrradianceRecord& record) {
       }
 }
 
+void RecordStore::accumulate(std::uint32_t record, Vec3 position, Vec3 normal, float scale, Rgb& sum,
+                             Interpolated& result) const {
+  const IrradianceRecord& r = records_[record];
+  const float radius = r.radius * scale;
+  const Vec3 d = position - r.position;
+  const float d2 = length2(d);
+  if (d2 >= radius * radius) return;
+  const float cosine = dot(normal, r.normal);
+  if (cosine <= options_.max_angle_cos) return;
+  if (dot(d, normal + r.normal) < -2 * kBehind * r.radius) return;
+  const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - options_.max_angle_cos));
+  const float w = (1 - std::sqrt(d2) / radius) * (1 - angle);
+  if (!(w > 0)) return;
+  const Vec3 turn = cross(r.normal, normal);
+  for (int c = 0; c < 3; ++c)
+    sum[c] += w * std::max(0.0f, r.irradiance[c] + dot(turn, r.rotational[std::size_t(c)]) + dot(d, r.translational[std::size_t(c)]));
+  result.weight += w;
+  ++result.count;
+}
+
 RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) const {
   Interpolated result;
   Rgb sum{0.0f};
-  const float angle_scale = 1 / (1 - options_.max_angle_cos);
   for (const Level& level : levels_) {
     if (level.buckets.empty()) continue;
     const Vec3 local = (position - lower_) / level.cell;
     const auto cell = [](float x) { return std::int64_t(std::floor(x)); };
-    for (std::uint32_t i : level.buckets[bucket_of(cell(local.x), cell(local.y), cell(local.z), kBuckets - 1)]) {
-      const IrradianceRecord& r = records_[i];
-      const Vec3 d = position - r.position;
-      const float d2 = length2(d);
-      if (d2 >= r.radius * r.radius) continue;
-      const float cosine = dot(normal, r.normal);
-      if (cosine <= options_.max_angle_cos) continue;
-      if (dot(d, normal + r.normal) < -2 * kBehind * r.radius) continue;
-      const float w = (1 - std::sqrt(d2) / r.radius) * (1 - std::sqrt(std::max(0.0f, 1 - cosine) * angle_scale));
-      if (!(w > 0)) continue;
-      const Vec3 turn = cross(r.normal, normal);
-      for (int c = 0; c < 3; ++c)
-        sum[c] += w * std::max(0.0f, r.irradiance[c] + dot(turn, r.rotational[std::size_t(c)]) + dot(d, r.translational[std::size_t(c)]));
-      result.weight += w;
-      ++result.count;
-    }
+    for (std::uint32_t i : level.buckets[bucket_of(cell(local.x), cell(local.y), cell(local.z), kBuckets - 1)])
+      accumulate(i, position, normal, 1, sum, result);
   }
+  if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
+  return result;
+}
+
+RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {
+  Interpolated result;
+  Rgb sum{0.0f};
+  std::vector<std::uint32_t> near;
+  for (const Level& level : levels_) {
+    if (level.buckets.empty()) continue;
+    const Vec3 local = (position - lower_) / level.cell;
+    const auto cell = [](float x) { return std::int64_t(std::floor(x)); };
+    // Cells are two to four radii wide: three radii are within one cell and a half.
+    for (std::int64_t x = -1; x <= 1; ++x)
+      for (std::int64_t y = -1; y <= 1; ++y)
+        for (std::int64_t z = -1; z <= 1; ++z) {
+          const auto& bucket = level.buckets[bucket_of(cell(local.x) + x, cell(local.y) + y, cell(local.z) + z, kBuckets - 1)];
+          near.insert(near.end(), bucket.begin(), bucket.end());
+        }
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  for (std::uint32_t i : near) accumulate(i, position, normal, kRelaxed, sum, result);
   if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
   return result;
 }

@@ -50,8 +50,14 @@ class RecordStore {
   /// that no record is seen to begin. A record whose half space does not hold the point is left out
   /// [Ward 1988]: (x - x_i) . (n + n_i)/2 < -0.05 r_i.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
+  /// The same with every record's radius kRelaxed times as large: for the few points, fractions of a pixel beyond
+  /// an edge, that no record quite reaches. Slower.
+  Interpolated interpolate_relaxed(Vec3 position, Vec3 normal) const;
+
+  static constexpr float kRelaxed = 3;
 
  private:
+  void accumulate(std::uint32_t record, Vec3 position, Vec3 normal, float scale, Rgb& sum, Interpolated& result) const;
   struct Level {
     float cell = 0;
     std::vector<std::vector<std::uint32_t>> buckets;   // hashed cells

@@ -15,6 +15,8 @@ DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geomet
   const RecordStore::Interpolated found = records_.interpolate(surface.position, shading);
   if (found.weight > 0) {
     result.indirect = found.irradiance;
+  } else if (const auto near = records_.interpolate_relaxed(surface.position, shading); near.weight > 0) {
+    result.indirect = near.irradiance;
   } else if (gather_) {
     missing_.fetch_add(1, std::memory_order_relaxed);
     GatherCounts counts;

@@ -1,7 +1,6 @@
 #include "lib/render/frame_renderer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <mutex>
 
 #include "formats/error.h"
@@ -12,39 +11,119 @@ namespace {
 
 constexpr int kTile = 16;
 
-/// Samples [first, first + count) of every pixel of one half, joined to what `image` holds already.
-void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
-                 int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
-  const int first = image.samples, tiles_x = (view.width() + kTile - 1) / kTile;
-  const int tiles = tiles_x * ((view.height() + kTile - 1) / kTile);
+/// Sums over one pixel's samples.
+struct PixelSum {
+  LayersT<double> layers;
+  double square = 0;      ///< of the samples' mean channel
+  void add(const Layers& sample) {
+    double value = 0;
+    for (std::size_t l = 0; l < kLayerCount; ++l) {
+      const Rgbd radiance(sample.value[l]);
+      layers.value[l] += radiance;
+      value += (radiance.r + radiance.g + radiance.b) / 3;
+    }
+    layers.coverage += double(sample.coverage);
+    square += value * value;
+  }
+  double value() const {
+    double sum = 0;
+    for (const Rgbd& radiance : layers.value) sum += (radiance.r + radiance.g + radiance.b) / 3;
+    return sum;
+  }
+};
+
+/// Joins the sum over samples first .. first+count-1 to the mean over the first `first`.
+void join(const PixelSum& sum, int first, int count, Layers& mean) {
+  const double old_weight = double(first) / (first + count), new_weight = 1.0 / (first + count);
+  for (std::size_t l = 0; l < kLayerCount; ++l)
+    mean.value[l] = Rgb(Rgbd(mean.value[l]) * old_weight + sum.layers.value[l] * new_weight);
+  mean.coverage = float(double(mean.coverage) * old_weight + sum.layers.coverage * new_weight);
+}
+
+/// Runs body(pixel, x, y, counts) for every pixel, tile by tile in parallel.
+template <class Body>
+void for_each_pixel(const CameraView& view, RayCounts& rays, const std::function<void(double)>& progress, const Body& body) {
+  const int tiles_x = (view.width() + kTile - 1) / kTile, tiles = tiles_x * ((view.height() + kTile - 1) / kTile);
   std::mutex mutex;
-  std::atomic<int> done{0};
+  int done = 0;
   parallel_chunks(std::size_t(tiles), 1, [&](std::size_t tile, std::size_t) {
     RayCounts counts;
     const int x0 = int(tile) % tiles_x * kTile, y0 = int(tile) / tiles_x * kTile;
     for (int y = y0; y < std::min(y0 + kTile, view.height()); ++y)
-      for (int x = x0; x < std::min(x0 + kTile, view.width()); ++x) {
-        const std::size_t pixel = std::size_t(y) * std::size_t(view.width()) + std::size_t(x);
-        LayersT<double> sum;
-        for (int s = first; s < first + count; ++s) {
-          const PixelRandom random(seed, pixel, std::uint32_t(s));
-          const Vec2 jitter = random.get2(0, Purpose::pixel);
-          const Layers sample = trace_eye_path(scene, view.ray(float(x) + jitter.x, float(y) + jitter.y), random,
-                                               options.diffuse_light, counts);
-          for (std::size_t l = 0; l < kLayerCount; ++l) sum.value[l] += Rgbd(sample.value[l]);
-          sum.coverage += double(sample.coverage);
-        }
-        Layers& mean = image.pixels[pixel];
-        const double old_weight = double(first) / (first + count), new_weight = 1.0 / (first + count);
-        for (std::size_t l = 0; l < kLayerCount; ++l)
-          mean.value[l] = Rgb(Rgbd(mean.value[l]) * old_weight + sum.value[l] * new_weight);
-        mean.coverage = float(double(mean.coverage) * old_weight + sum.coverage * new_weight);
-      }
+      for (int x = x0; x < std::min(x0 + kTile, view.width()); ++x)
+        body(std::size_t(y) * std::size_t(view.width()) + std::size_t(x), x, y, counts);
     const std::lock_guard lock(mutex);
     rays += counts;
     if (progress) progress(double(++done) / tiles);
   });
+}
+
+PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
+                      std::size_t pixel, int x, int y, int first, int count, RayCounts& counts) {
+  PixelSum sum;
+  for (int s = first; s < first + count; ++s) {
+    const PixelRandom random(seed, pixel, std::uint32_t(s));
+    const Vec2 jitter = random.get2(0, Purpose::pixel);
+    sum.add(trace_eye_path(scene, view.ray(float(x) + jitter.x, float(y) + jitter.y), random, options.diffuse_light, counts));
+  }
+  return sum;
+}
+
+/// Samples [first, first + count) of every pixel of one half, joined to what `image` holds already.
+void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
+                 int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
+  const int first = image.samples;
+  for_each_pixel(view, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    join(sample_pixel(scene, view, seed, options, pixel, x, y, first, count, counts), first, count, image.pixels[pixel]);
+  });
   image.samples += count;
+}
+
+/// Samples each pixel still needs; sigma^2 is pooled over 3 x 3 pixels.
+std::vector<int> missing_samples(const CameraView& view, const FrameOptions& options, const std::vector<double>& mean,
+                                 const std::vector<double>& variance) {
+  const int width = view.width(), height = view.height();
+  double all = 0;
+  for (double m : mean) all += m;
+  const double picture = all / double(std::max<std::size_t>(1, mean.size()));
+  std::vector<int> missing(mean.size());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      double pooled = 0, level = 0;
+      int n = 0;
+      for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
+        for (int i = std::max(0, x - 1); i <= std::min(width - 1, x + 1); ++i, ++n) {
+          pooled += variance[std::size_t(j) * std::size_t(width) + std::size_t(i)];
+          level += mean[std::size_t(j) * std::size_t(width) + std::size_t(i)];
+        }
+      const double error = options.pixel_error * (std::min(level / n, picture) + 0.1 * picture);
+      const double wanted = error > 0 ? std::sqrt(pooled / n) / error : 0;
+      missing[std::size_t(y) * std::size_t(width) + std::size_t(x)] =
+          std::clamp(int(std::min(wanted, double(options.adaptive_limit))) - options.samples, 0, options.adaptive_limit);
+    }
+  return missing;
+}
+
+/// `samples` everywhere, then more where they are needed.
+void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
+  LayerImage& image = frame.mean;
+  std::vector<double> mean(image.pixels.size()), variance(image.pixels.size());
+  for_each_pixel(view, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    const PixelSum sum = sample_pixel(scene, view, options.seed, options, pixel, x, y, 0, options.samples, counts);
+    join(sum, 0, options.samples, image.pixels[pixel]);
+    mean[pixel] = sum.value() / options.samples;
+    variance[pixel] = std::max(0.0, sum.square - mean[pixel] * sum.value()) / std::max(1, options.samples - 1);
+  });
+  const std::vector<int> missing = missing_samples(view, options, mean, variance);
+  for_each_pixel(view, frame.rays, options.progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    if (const int count = missing[pixel])
+      join(sample_pixel(scene, view, options.seed, options, pixel, x, y, options.samples, count, counts),
+           options.samples, count, image.pixels[pixel]);
+  });
+  double sum = 0;
+  for (int count : missing) sum += count;
+  image.samples = options.samples;
+  frame.samples_per_pixel = options.samples + sum / double(std::max<std::size_t>(1, missing.size()));
 }
 
 LayerImage empty_layers(const CameraView& view) {
@@ -89,7 +168,10 @@ void join_halves(RenderedFrame& frame) {
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options) {
   RenderedFrame frame;
   const bool halves = options.halves || options.target_error > 0;
-  if (!halves) {
+  if (!halves && options.pixel_error > 0) {
+    frame.mean = empty_layers(view);
+    render_adaptive(scene, view, options, frame);
+  } else if (!halves) {
     frame.mean = empty_layers(view);
     render_pass(scene, view, options.seed, options, options.samples, frame.mean, frame.rays, options.progress);
   } else {
@@ -109,6 +191,7 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
     }
   }
   frame.mean_radiance = mean_radiance(frame.mean);
+  if (!(frame.samples_per_pixel > 0)) frame.samples_per_pixel = frame.mean.samples;
   return frame;
 }
 

@@ -17,6 +17,12 @@ struct FrameOptions {
   bool halves = false;                  ///< keep two independent halves apart
   double target_error = 0;              ///< > 0: double the samples until the estimated relative RMSE is below
   int max_samples = 1 << 20;            ///< never more than this for target_error
+  /// > 0: after `samples` everywhere, more where pixels are uncertain: n = sigma / (pixel_error (L + 0.1 mean)),
+  /// sigma the standard deviation of a sample, L the radiance, both around the pixel, L at most the picture's
+  /// mean. n in proportion to sigma gives the least error for the number of samples. Which pixels get more is
+  /// decided by the samples themselves: a bias of second order.
+  double pixel_error = 0;
+  int adaptive_limit = 1024;
   const DiffuseLight* diffuse_light = nullptr;
   std::function<void(double)> progress; ///< called with [0, 1]; may be empty
 };
@@ -31,6 +37,7 @@ struct RenderedFrame {
   LayerImage mean;                      ///< over all samples
   LayerImage half[2];                   ///< empty unless halves or target_error
   RayCounts rays;
+  double samples_per_pixel = 0;         ///< mean over pixels
   /// RMSE of the mean over pixels and channels [radiance], estimated from the halves' difference; < 0: unknown.
   double own_rmse = -1;
   double mean_radiance = 0;             ///< over pixels and channels
