@@ -14,7 +14,7 @@ void append_points(const std::vector<char>& body, unsigned kinds, const Containe
   const std::size_t first = points.size();
   points.resize(first + count);
   for (std::size_t i = 0; i < count; ++i) {
-    std::memcpy(&points[first + i], body.data() + i * kPointSize, kPointSize);
+    std::memcpy(static_cast<void*>(&points[first + i]), body.data() + i * kPointSize, kPointSize);
     points[first + i].reserved = 0;
   }
   for (std::size_t k = 0; k < kKinds.size(); ++k) {

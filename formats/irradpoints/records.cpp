@@ -15,7 +15,7 @@ std::string_view fault_of(const IrradiancePointRecord& point, unsigned kinds) {
     const std::array<float, 3>& irradiance = point.*kKinds[k].irradiance;
     if (!is_finite(irradiance)) return "irradiance is not finite";
     if (is_negative(irradiance)) return "irradiance is negative";
-    if (!((kinds >> k) & 1) && irradiance != std::array<float, 3>{})
+    if (!((kinds >> k) & 1) && !is_zero(irradiance))
       return "irradiance of a kind that the header does not name";
   }
   return "";

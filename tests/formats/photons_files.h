@@ -1,32 +1,13 @@
 // tests/formats/photons_files.h -- small .photons files for the tests of the format.
 #pragma once
 
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "formats/photons/photons.h"
+#include "tests/formats/files.h"
 
 namespace tempolux::formats::testing {
-
-/// A folder of its own, removed at the end.
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "photons_test.XXXXXX").string();
-    if (!::mkdtemp(name.data())) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
 
 /// All photons of a map, with the columns and the digest.
 struct Contents {
@@ -70,15 +51,6 @@ inline std::string bytes_of(const PhotonHeader& header, const std::vector<Photon
   for (const PhotonBlock& block : blocks) writer.write(block);
   writer.finish(totals, ledger);
   return bytes;
-}
-
-inline void save(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
-
-inline std::string load(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 /// A photon whose every field depends on i.

@@ -1,0 +1,89 @@
+// formats/irradcache/header.cpp -- the text of a header (irradcache.md, section 1).
+#include <algorithm>
+#include <cmath>
+
+#include "formats/irradcache/layout.h"
+
+namespace tempolux::formats::irradcache {
+namespace {
+
+constexpr std::array<std::string_view, 4> kColumnsNames{"none", "influence", "update", "influence,update"};
+
+/// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
+std::string_view fault_of(const IrradcacheHeader& h) {
+  if (h.columns >= kColumnsNames.size()) return "columns are not known";
+  if (!std::isfinite(h.error_bound) || h.error_bound < 0) return "error-bound is not finite or is negative";
+  if (!std::isfinite(h.max_radius) || !(h.min_radius >= 0 && h.min_radius <= h.max_radius))
+    return "radii are not two lengths, the smaller first";
+  for (std::size_t i = 0; i < h.placed_frames.size(); ++i) {
+    const auto [first, last] = h.placed_frames[i];
+    if (first > last || (i > 0 && std::int64_t(first) <= std::int64_t(h.placed_frames[i - 1][1]) + 1))
+      return "placed is not a list of ranges that ascend and lie apart";
+  }
+  return fault_of_common(h.origin, h.identity);
+}
+
+/// "first last first last ..."
+bool parse_ranges(std::string_view text, std::vector<std::array<std::int32_t, 2>>& ranges) {
+  const auto spaces = std::size_t(std::count(text.begin(), text.end(), ' '));
+  if (spaces % 2 == 0) return false;
+  std::vector<std::int32_t> numbers(spaces + 1);
+  if (!parse_numbers(text, numbers.data(), numbers.size())) return false;
+  for (std::size_t i = 0; i < numbers.size(); i += 2) ranges.push_back({numbers[i], numbers[i + 1]});
+  return true;
+}
+
+Line take_line(std::string_view key, std::string_view value, IrradcacheHeader& h) {
+  const auto result = [](bool good) { return good ? Line::good : Line::bad_value; };
+  if (key == "columns") {
+    h.columns =
+        std::uint32_t(std::find(kColumnsNames.begin(), kColumnsNames.end(), value) - kColumnsNames.begin());
+    return Line::good;
+  }
+  if (key == "rays") return result(parse_numbers(value, &h.rays, 1) && h.rays > 0);
+  if (key == "error-bound") return result(parse_numbers(value, &h.error_bound, 1) && h.error_bound > 0);
+  if (key == "radii") {
+    std::array<double, 2> radii{};
+    if (!parse_numbers(value, radii.data(), 2) || !(radii[1] > 0)) return Line::bad_value;
+    h.min_radius = radii[0];
+    h.max_radius = radii[1];
+    return Line::good;
+  }
+  if (key == "placed") return result(parse_ranges(value, h.placed_frames));
+  return take_common_line(key, value, common_keys(h));
+}
+
+std::string ranges_text(const std::vector<std::array<std::int32_t, 2>>& ranges) {
+  std::string text;
+  for (const auto& [first, last] : ranges)
+    text.append(text.empty() ? "" : " ").append(text_of(first)).append(" ").append(text_of(last));
+  return text;
+}
+
+}  // namespace
+
+std::string header_text(const IrradcacheHeader& h) {
+  HeaderText text("irradcache");
+  if (const std::string_view fault = fault_of(h); !fault.empty()) text.refuse(fault);
+  text.line("columns", kColumnsNames[h.columns]);
+  text.origin(h.origin);
+  if (h.rays > 0) text.line("rays", text_of(h.rays));
+  if (h.error_bound > 0) text.line("error-bound", text_of(h.error_bound));
+  if (h.max_radius > 0) text.line("radii", text_of(h.min_radius) + " " + text_of(h.max_radius));
+  if (!h.placed_frames.empty()) text.line("placed", ranges_text(h.placed_frames));
+  text.identity(h.identity);
+  text.history(h.history);
+  return text.finish();
+}
+
+std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown, IrradcacheHeader& h) {
+  h = IrradcacheHeader();
+  constexpr std::array<std::string_view, 2> required{"columns", "origin"};
+  const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, h); };
+  if (auto error = parse_lines(text, allow_unknown, required, take)) return error;
+  if (const std::string_view fault = fault_of(h); !fault.empty())
+    return HeaderError{0, "header: " + std::string(fault)};
+  return std::nullopt;
+}
+
+}  // namespace tempolux::formats::irradcache

@@ -1,0 +1,49 @@
+// formats/irradcache/layout.h -- numbers of irradcache.md that its writer and its reader share.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "formats/container.h"
+#include "formats/exact_sum.h"
+#include "formats/irradcache/irradcache.h"
+
+namespace tempolux::formats::irradcache {
+
+inline constexpr Format kFormat{{"\x89TIRRC\r\n", 8}, ".irradcache", "irradcache-build"};
+inline constexpr std::string_view kBlockMark = "IRRC";
+inline constexpr std::size_t kRecordSize = 120, kInfluenceSize = 4, kUpdateSize = 12, kEndBodySize = 32;
+
+/// Bytes of one record in a block with these columns.
+constexpr std::size_t record_size(std::uint32_t columns) {
+  return kRecordSize + (columns & column_influence ? kInfluenceSize : 0) +
+         (columns & column_update ? kUpdateSize : 0);
+}
+
+/// The text of a header. std::invalid_argument if a value is out of range.
+std::string header_text(const IrradcacheHeader& header);
+
+/// Parses a text; unknown keys pass if `allow_unknown`. Nothing if the header is good.
+std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown,
+                                             IrradcacheHeader& header);
+
+/// Why a record is refused (irradcache.md, sections 3 and 4); "" if it is good. The predicate of the format.
+std::string_view fault_of(const IrradianceCacheRecord& record, std::uint32_t columns);
+
+/// Counts records and adds their irradiance.
+class RecordSums {
+ public:
+  /// `record` must be good.
+  void add(const IrradianceCacheRecord& record);
+  IrradcacheTotals totals() const { return {count_, sum_.rounded()}; }
+
+ private:
+  std::uint64_t count_ = 0;
+  ExactRgbSum sum_;
+};
+
+}  // namespace tempolux::formats::irradcache
