@@ -19,6 +19,10 @@ endforeach()
 
 add_test(NAME formats.read_photons COMMAND sh formats/read_photons_test.sh $<TARGET_FILE:photons_test>
          WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+foreach(format irradpoints irradcache)
+  add_test(NAME formats.read_${format} COMMAND sh formats/read_irrad_test.sh ${format} $<TARGET_FILE:${format}_test>
+           WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+endforeach()
 
 # Stages together, run by make at the top of the tree.
 add_test(NAME pipelines.rerun COMMAND sh tests/pipelines/rerun.sh $<TARGET_FILE_DIR:scene-plan>
@@ -30,3 +34,10 @@ add_test(NAME pipelines.plan_refuses COMMAND sh tests/pipelines/plan_refuses.sh 
 set_tests_properties(pipelines.rerun pipelines.plan_example pipelines.plan_refuses PROPERTIES TIMEOUT 300)
 
 add_test(NAME cli.no_heavy_libraries COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cli/no_heavy_libraries.sh ${CMAKE_BINARY_DIR}/bin)
+
+# The benchmarks' scripts still run, at tiny sizes; what they measure then means nothing.
+if(TEMPOLUX_BENCH)
+  set(short ${CMAKE_BINARY_DIR}/tests/bench-short)
+  add_test(NAME bench.short COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/bench/short_check.sh ${CMAKE_BINARY_DIR} ${short})
+  set_tests_properties(bench.short PROPERTIES TIMEOUT 120)
+endif()

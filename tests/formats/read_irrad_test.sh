@@ -1,0 +1,71 @@
+#!/bin/sh
+# The second readers (read_irradpoints.py, read_irradcache.py, written from the pages) and the C++ agree: on files that the C++
+# wrote, on bytes when they write them again, on what a filter makes of them, and on the folders accept and refuse.
+#
+#     read_irrad_test.sh FORMAT PATH-OF-ITS-TEST       in the folder tests; FORMAT: irradpoints or irradcache
+format=$1 program=$2
+here=$(pwd)/formats
+folder=$(mktemp -d) || exit 3
+export PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$here
+trap 'rm -rf "$folder"' EXIT
+bad=0
+fail() { echo "read_irrad_test: $*"; bad=1; }
+cpp() {  # writes its files into the folder, and FILE.expected for each one there
+  TEMPOLUX_SECOND_READER=$folder "$program" --gtest_filter='*.FilesForTheSecondReader' >"$folder/log" 2>&1 ||
+    { cat "$folder/log"; fail "the C++ failed"; }
+}
+numbers() {  # what FILE.expected holds, from the JSON
+  python3 -c 'import json, sys
+j = json.load(sys.stdin)
+e = j["irradiance"]
+sums = sum(e.values(), []) if isinstance(e, dict) else e
+print(j.get("points", j.get("records")), *("%.17g" % x for x in sums))'
+}
+
+cpp
+for file in "$folder"/*."$format"; do
+  python3 "$here/read_$format.py" "$file" "$folder/copy" >"$folder/json" || fail "$file not read"
+  numbers <"$folder/json" | cmp - "$file.expected" || fail "$file: other numbers"
+  cmp "$file" "$folder/copy" || fail "$file: written again, other bytes"
+done
+
+# Half of the records dropped in Python; the C++ accepts what is left and counts the same.
+python3 - "$format" "$folder/rich.$format" "$folder/static.$format" >"$folder/count" <<'END' || fail "filter"
+import importlib
+import sys
+name, source, target = sys.argv[1:]
+module = importlib.import_module("read_" + name)
+file = getattr(module, "read_" + name)(source)
+field = "points" if name == "irradpoints" else "records"
+setattr(file, field, [r for r in getattr(file, field) if r.set == 0])
+file.history.append("filter: static only")
+getattr(module, "write_" + name)(target, file)
+print(len(getattr(file, field)))
+END
+cpp
+[ "$(cut -d' ' -f1 "$folder/static.$format.expected")" = "$(cat "$folder/count")" ] || fail "filter: other count"
+half=$(($(cut -d' ' -f1 "$folder/rich.$format.expected") / 2))
+[ "$(cat "$folder/count")" = "$half" ] || fail "filter: $(cat "$folder/count") instead of $half"
+
+python3 - "$format" "$here/$format"/*/* <<'END' || fail "folders accept and refuse"
+import importlib
+import sys
+name = sys.argv[1]
+read = getattr(importlib.import_module("read_" + name), "read_" + name)
+wrong = 0
+for path in sys.argv[2:]:
+    try:
+        read(path)
+        good = True
+    except (ValueError, OSError):
+        good = False
+    if good != ("/accept/" in path):
+        print(path, "was read" if good else "was refused")
+        wrong = 1
+sys.exit(wrong)
+END
+
+# The files in the repository are those that make_irrad_files.py makes.
+python3 "$here/make_irrad_files.py" "$folder/made" || fail "make_irrad_files.py"
+diff -r "$folder/made/$format" "$here/$format" || fail "make_irrad_files.py makes other files"
+exit $bad
