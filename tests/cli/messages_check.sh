@@ -14,7 +14,6 @@ TEMPOLUX_THREADS=many tool-probe scene.glb -o a.out; echo "exit $?"
 for work in input-error caller-error resource-error system-error other-error; do
   try scene.glb -o b.out --work $work
 done
-try scene.glb -o b.out --work memory --max-memory 300MiB
 try scene.glb -o no/such/folder/b.out
 try scene.glb -o /dev/full
 try scene.glb -o .
