@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+"""Measures what RESULTS.md says: error against time, and the required figures.
+
+    make -f Makefile.example bench                       everything, about a quarter of an hour on two idle cores
+    python3 tests/bench/bench.py --only threads,start    some parts again; the page keeps the others
+    python3 tests/bench/bench.py --page                  the page alone, from what was measured before
+"""
+import argparse
+import json
+import os
+import time
+from pathlib import Path
+
+import results_page
+import sweep
+from measure import Bench, Missing, machine
+from required import FIGURES
+
+
+def options():
+    project = Path(__file__).resolve().parents[2]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=project / "build" / "release", help="build folder [build/release]")
+    parser.add_argument("--out", type=Path, default=project / "out" / "bench", help="raw results, references [out/bench]")
+    parser.add_argument("--results", type=Path, default=project / "RESULTS.md", help="the page [RESULTS.md]")
+    parser.add_argument("--docs", type=Path, default=project / "docs", help="folder of its figures [docs]")
+    parser.add_argument("--only", default=",".join(["sweep", *FIGURES]), help="parts, by comma: [%(default)s]")
+    parser.add_argument("--reference-samples", type=int, default=4096, help="samples per pixel of the references [4096]")
+    parser.add_argument("--quick", action="store_true", help="tiny sizes: does every script still run?")
+    parser.add_argument("--page", action="store_true", help="measure nothing, write the page")
+    return project, parser.parse_args()
+
+
+def measure(bench, name, peers):
+    """One required figure; kept as JSON."""
+    load = os.getloadavg()[0]
+    begin = time.monotonic()
+    found = FIGURES[name](bench, peers)
+    found |= {"machine": machine(bench.project), "load": f"{load:.1f}", "seconds": round(time.monotonic() - begin, 1)}
+    (bench.out / f"{name}.json").write_text(json.dumps(found, indent=1))
+    print(results_page.table(found["header"], found["rows"]) + "".join(note + "\n" for note in found["notes"])
+          + f"asked: {found['asked']}: {results_page.verdict(found['met'])} ({found['seconds']} s)", flush=True)
+
+
+def main():
+    project, args = options()
+    bench = Bench(args.build.resolve(), args.out.resolve(), project, args.quick, args.reference_samples)
+    peers = json.loads((Path(__file__).parent / "peers.json").read_text())
+    for name in [] if args.page else args.only.split(","):
+        print(f"== {name}", flush=True)
+        try:
+            if name == "sweep":
+                print((sweep.measure(bench, peers["peers"]) / "report.md").read_text())
+            elif name in FIGURES:
+                measure(bench, name, peers["peers"])
+            else:
+                raise SystemExit(f"--only: no part is called '{name}'; there are sweep,{','.join(FIGURES)}")
+        except Missing as reason:
+            print(f"left out: {reason}", flush=True)
+    results_page.write(bench, args.results.resolve(), args.docs.resolve(), peers["source"], FIGURES, "python3 tests/bench/bench.py")
+    print(f"wrote {args.results}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,174 @@
+"""What all measurements share: running tools, their statistics, medians, the machine."""
+import hashlib
+import json
+import os
+import shlex
+import subprocess
+import time
+from pathlib import Path
+
+
+class Missing(Exception):
+    """A measurement lacks a program or file; it is left out and the page says so."""
+
+
+class Bench:
+    """Where things are, how much is to be measured, and what has been run."""
+
+    def __init__(self, build, out, project, quick, reference_samples):
+        self.bin, self.programs = build / "bin", build / "tests" / "bench"
+        self.out, self.project, self.quick = out, project, quick
+        self.reference_samples = 16 if quick else reference_samples
+        self.size = "48x28" if quick else "320x180"
+        self.rounds = 1 if quick else 5
+        shared = project / ".." / "shared" / "scenes"
+        self.shared = shared if shared.is_dir() else None
+        memory = Path("/dev/shm")
+        self.memory = memory if os.access(memory, os.W_OK) else out
+        for folder in (out, out / "frames", out / "reference", out / "tmp"):
+            folder.mkdir(parents=True, exist_ok=True)
+
+    # ---- scenes
+
+    def scene(self, name):
+        """(file, frame) of a scene by its short name."""
+        files = {"S1": ("S1_cornell.glb", 0), "S2": ("S2_cornell_moving.glb", 10), "S3": ("S3_indirect_room.glb", 1),
+                 "S4": ("S4_atrium.glb", 10)}
+        file, frame = files[name]
+        for folder in (self.project / "pipelines" / "scenes", self.shared and self.shared / "made"):
+            if folder and (folder / file).exists():
+                return folder / file, frame
+        raise Missing(f"{file} is not here (../shared/scenes is absent)")
+
+    def third_party_halves(self, name):
+        """Cycles' reference of a scene, two files."""
+        file, frame = self.scene(name)
+        halves = [self.shared / "ref" / f"{file.stem}_f{frame:04d}_{h}.exr" for h in "ab"] if self.shared else []
+        if self.quick or not halves or not all(h.exists() for h in halves):
+            raise Missing("the references of ../shared/scenes are absent" if not self.quick else "short form")
+        return halves
+
+    # ---- programs
+
+    def tool(self, name, *arguments):
+        """Runs a tool of ours; its statistics."""
+        stats = self.out / "tmp" / "stats.json"
+        self.run([self.bin / name, *arguments, "--stats", stats, "-q"])
+        return json.loads(stats.read_text())
+
+    def program(self, name, *arguments):
+        """Runs a benchmark program that prints JSON."""
+        if not (self.programs / name).exists():
+            raise Missing(f"{name} has not been built")
+        return json.loads(self.run([self.programs / name, *arguments]).stdout)
+
+    def run(self, command):
+        command = [str(part) for part in command]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise RuntimeError(f"exit {done.returncode}: {shlex.join(command)}\n{done.stderr}")
+        return done
+
+    # ---- frames that several measurements look at
+
+    def cached(self, folder, stem, inputs, suffixes, make):
+        """Files folder/stem-KEY+suffix, made once per content of `inputs` (files and option strings)."""
+        digest = hashlib.sha256()
+        for part in inputs:
+            digest.update(part.read_bytes() if isinstance(part, Path) else str(part).encode())
+        name = f"{stem}-{digest.hexdigest()[:10]}"
+        files = [self.out / folder / (name + suffix) for suffix in suffixes]
+        if not all(file.exists() for file in files):
+            make(name)
+        return files
+
+    def path_frame(self, name, samples, seed):
+        """(frame, statistics file) of a path-traced frame with layers and ids."""
+        scene, frame = self.scene(name)
+        options = ["--frame", frame, "--size", self.size, "--integrator", "path", "--spp", samples, "--seed", seed,
+                   "--channels", "RGBA,layers,id"]
+
+        def make(stem):
+            self.run([self.bin / "frame-render", scene, *options, "-q", "-o", self.out / "frames" / f"{stem}.exr",
+                      "--stats", self.out / "frames" / f"{stem}.json"])
+        return self.cached("frames", f"{name}-path-{samples}-{seed}", [scene, self.bin / "frame-render", *options],
+                           [".exr", ".json"], make)
+
+    def reference_halves(self, name):
+        """Our own reference, two files. Kept when tools change: unbiased is unbiased; remove the folder to renew it."""
+        scene, frame = self.scene(name)
+        options = ["--frame", frame, "--size", self.size, "--integrator", "path", "--halves", "--spp",
+                   self.reference_samples, "--seed", 1000003, "--channels", "RGBA,layers,id"]
+
+        def make(stem):
+            print(f"  reference of {name}, {self.reference_samples} samples per pixel ...", flush=True)
+            self.run([self.bin / "frame-render", scene, *options, "-q", "-o", self.out / "reference" / f"{stem}.exr"])
+        return self.cached("reference", name, [scene, *options], ["_a.exr", "_b.exr"], make)
+
+    def compare(self, frame, halves, output, layer=None):
+        """aqm-compare against reference halves; its JSON, kept in `output`."""
+        self.run([self.bin / "aqm-compare", frame, "--reference-halves", *halves, "--json", output, "-q",
+                  *(["--layer", layer] if layer else [])])
+        return json.loads(Path(output).read_text())
+
+
+def median(values):
+    ordered = sorted(values)
+    middle = len(ordered) // 2
+    return ordered[middle] if len(ordered) % 2 else (ordered[middle - 1] + ordered[middle]) / 2
+
+
+def timed(command):
+    """(wall seconds, CPU seconds) of one process."""
+    begin = time.monotonic()
+    process = subprocess.Popen([str(part) for part in command], stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        raise RuntimeError(f"exit {process.returncode}: {command}")
+    return time.monotonic() - begin, usage.ru_utime + usage.ru_stime
+
+
+def running_processes():
+    """Threads that want a processor at this moment, without this one."""
+    return int(Path("/proc/loadavg").read_text().split()[3].split("/")[0]) - 1
+
+
+def wait_for_quiet(seconds):
+    """Waits until nobody else wants a processor for a second, at most `seconds`; did it happen?"""
+    end, quiet = time.monotonic() + seconds, 0
+    while quiet < 5:
+        quiet = quiet + 1 if running_processes() <= 0 else 0
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.2)
+    return True
+
+
+def machine(project):
+    """One line: processor, number of processors, version of the project."""
+    model = next((line.split(":", 1)[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
+                  if line.startswith("model name")), "unknown processor")
+    commit = subprocess.run(["git", "-C", str(project), "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
+    return f"{len(os.sched_getaffinity(0))} x {model}, commit {commit.stdout.strip() or 'unknown'}"
+
+
+def quantity(value, digits=3):
+    """A number with `digits` significant digits, without exponents where people read."""
+    if value is None:
+        return "-"
+    if isinstance(value, str) or isinstance(value, int):
+        return str(value)
+    return f"{value:.{digits}g}" if 1e-3 <= abs(value) < 1e4 or value == 0 else f"{value:.{digits - 1}e}"
+
+
+def percent(value, digits=2):
+    return f"{100 * value:.{digits}f} %"
+
+
+def big(count):
+    """10000 -> 10k."""
+    for unit, size in (("M", 10**6), ("k", 10**3)):
+        if count >= size and count % size == 0:
+            return f"{count // size}{unit}"
+    return str(count)

@@ -1,0 +1,232 @@
+"""The required figures, one function each: what was measured, as a table, and whether it is enough.
+
+Ratios are of CPU seconds within one run, the sides alternating, medians of the rounds. Each function returns
+{"title", "asked", "header", "rows", "met", "notes"}; "met" is None where it cannot be judged.
+"""
+import math
+import os
+
+from measure import Missing, big, median, percent, quantity, timed, wait_for_quiet
+
+
+def figure(title, asked, header, rows, met, notes=()):
+    return {"title": title, "asked": asked, "header": header, "rows": rows, "met": met, "notes": list(notes)}
+
+
+def path_tracer(bench, peers):
+    """CPU seconds times squared error of our path tracer, over Cycles' of the same samples."""
+    rows, notes, judged = [], [], []
+    samples, rounds = (4, 1) if bench.quick else (64, 5)
+    for name in ["S2"] if bench.quick else ["S2", "S3", "S4"]:
+        try:
+            scene, frame = bench.scene(name)
+            halves = bench.reference_halves(name) if bench.quick else bench.third_party_halves(name)
+        except Missing as reason:
+            if name == "S4":
+                notes.append(f"{name} left out: {reason}")
+                continue
+            halves = bench.reference_halves(name)
+            notes.append(f"{name} against our own reference: {reason}")
+        image = bench.out / "tmp" / "path.exr"
+        cpu, mse, error = [], [], []
+        for seed in range(1, rounds + 1):
+            stats = bench.tool("frame-render", scene, "--frame", frame, "--size", bench.size, "--integrator", "path",
+                               "--spp", samples, "--seed", seed, "--channels", "RGBA", "-o", image)
+            total = bench.compare(image, halves, bench.out / "tmp" / "path.json")["total"]
+            cpu.append(stats["cpu_s"])
+            mse.append(total["mse"])
+            error.append(total["mse_standard_error"])
+        mean = sum(mse) / len(mse)
+        peer = next((p for p in peers["Cycles 3.4.1"] if p["scene"] == name and p["samples"] == samples), None)
+        ratio = median(cpu) * mean / (peer["cpu_s"] * peer["rmse"] ** 2) if peer else None
+        judged.append((name, ratio))
+        rows.append([name, samples, quantity(median(cpu)), quantity(math.sqrt(max(0, mean))),
+                     quantity(peer["cpu_s"]) if peer else "-", quantity(peer["rmse"]) if peer else "-", quantity(ratio)])
+    met = None if bench.quick else all(ratio <= 1.5 for name, ratio in judged if name in ("S2", "S4"))
+    return figure("Path tracer against Cycles", "CPU x MSE at most 1.5x of Cycles' on S2 (S4 too)",
+                  ["scene", "samples", "CPU s", "RMSE", "Cycles CPU s", "Cycles RMSE", "CPU x MSE, ours / Cycles"], rows, met,
+                  notes + ["MSE: mean over the seeds; CPU: median. Cycles' rows were measured on another day."])
+
+
+def photon_rate(bench, _):
+    """photon-trace against the bare walk; what recording and the file cost of it."""
+    scene, frame = bench.scene("S2")
+    photons = 20000 if bench.quick else 4 * 10**6
+    output = bench.memory / f"tempolux-bench-{os.getpid()}.photons"
+    common = [scene, "--frame", frame, "--photons", photons, "--threads", 2]
+    sides = {"photon-trace": [], "to /dev/null": [], "nothing recorded": [], "bare walk": []}
+    try:
+        for _ in range(bench.rounds):
+            sides["photon-trace"].append(bench.tool("photon-trace", *common, "-o", output))
+            output.unlink()
+            sides["to /dev/null"].append(bench.tool("photon-trace", *common, "-o", "/dev/null"))
+            sides["nothing recorded"].append(bench.tool("photon-trace", *common, "--kinds", "caustic", "-o", "/dev/null"))
+            sides["bare walk"].append(bench.program("bare_walk", scene, "--frame", frame, "--photons", photons,
+                                                    "--threads", 2))
+    finally:
+        output.unlink(missing_ok=True)
+    cpu = {side: median([run["cpu_s"] for run in runs]) for side, runs in sides.items()}
+    ratio = median([b["cpu_s"] / p["cpu_s"] for b, p in zip(sides["bare walk"], sides["photon-trace"])])
+    ours, bare = sides["photon-trace"][0]["counts"], sides["bare walk"][0]
+    rows = [[side, quantity(cpu[side]), quantity(photons / cpu[side] / 1e6), quantity(cpu["bare walk"] / cpu[side])]
+            for side in sides]
+    rays = (ours["rays"] / ours["paths"], bare["rays"] / bare["photons"])
+    notes = [f"{big(photons)} photons on S2, whole process, 2 threads, to {output.parent}. Rays per photon: ours "
+             f"{rays[0]:.4f}, bare walk {rays[1]:.4f}; stored photons per CPU s: "
+             f"{ours['photons'] / cpu['photon-trace'] / 1e6:.2f} M.",
+             f"Share of writing the bytes {percent(1 - cpu['to /dev/null'] / cpu['photon-trace'], 1)}, of recording, "
+             f"encoding, checksums and writing {percent(1 - cpu['nothing recorded'] / cpu['photon-trace'], 1)}."]
+    same = abs(rays[0] / rays[1] - 1) < 0.01
+    return figure("Photon tracing against a bare rtcIntersect1 walk", "at least 0.5 of its photon rate",
+                  ["", "CPU s", "M photons per CPU s", "rate / bare walk"], rows,
+                  None if bench.quick else ratio >= 0.5 and same, notes)
+
+
+def photon_growth(bench, _):
+    """Seconds and memory from 1M to 64M photons."""
+    scene, frame = bench.scene("S2")
+    counts = [10**5, 2 * 10**5] if bench.quick else [10**6, 4 * 10**6, 16 * 10**6, 64 * 10**6]
+    output = bench.memory / f"tempolux-bench-{os.getpid()}.photons"
+    notes, runs = [], {count: [] for count in counts}
+    try:
+        for _ in range(1 if bench.quick else 3):
+            for count in counts:
+                free = os.statvfs(output.parent)
+                fits = free.f_bavail * free.f_frsize > 128 * count
+                target = output if fits else "/dev/null"
+                note = f"{big(count)} went to /dev/null: {output.parent} has no room for it"
+                if not fits and note not in notes:
+                    notes.append(note)
+                runs[count].append(bench.tool("photon-trace", scene, "--frame", frame, "--photons", count, "-o", target))
+                output.unlink(missing_ok=True)
+    finally:
+        output.unlink(missing_ok=True)
+    seconds = [median([run["cpu_s"] for run in runs[count]]) / count * 1e6 for count in counts]
+    memory = [max(run["peak_memory_bytes"] for run in runs[count]) for count in counts]
+    rows = [[big(count), quantity(s * count / 1e6), quantity(s), quantity(s / seconds[0]), f"{m / 2**20:.1f}",
+             f"{m / memory[0]:.3f}"] for count, s, m in zip(counts, seconds, memory)]
+    met = all(abs(s / seconds[0] - 1) <= 0.1 and abs(m / memory[0] - 1) <= 0.1 for s, m in zip(seconds, memory))
+    return figure("Photon tracing, growth", "time linear within 10 %, peak memory constant within 10 %",
+                  ["photons", "CPU s", "CPU s per million", "over the first", "peak memory, MiB", "over the first"], rows,
+                  None if bench.quick else met, notes)
+
+
+def nearest(bench, _):
+    """Exact k-nearest against nanoflann, by tests/bench/nearest."""
+    found = bench.program("nearest", *(["20000", "2000", "1"] if bench.quick else ["1000000", "100000", "5"]))
+    rows = []
+    for key, title in (("k50", "k = 50"), ("k50_bounded", "k = 50, radius bounded"), ("k100", "k = 100"),
+                       ("k100_bounded", "k = 100, radius bounded"), ("k50_random_order", "k = 50, queries in random order")):
+        case = found[key]
+        best = max(case["nanoflann10_mq_per_s"], case["nanoflann32_mq_per_s"])
+        rows.append([title, quantity(best), quantity(case["sets_mq_per_s"]), quantity(case["sets_ratio"]),
+                     quantity(case.get("sorted_ratio"))])
+    met = found["k50"]["sorted_ratio"] >= 1.2 and found["k50_bounded"]["sorted_ratio"] >= 1.6
+    return figure("Exact k nearest photons against nanoflann", "1.2x; 1.6x with a radius bound",
+                  ["queries", "nanoflann, M per s", "ours, M per s", "ratio", "ratio, results sorted"], rows,
+                  None if bench.quick else met, [f"{found['photons']} photons, {found['queries']} queries in Morton order, one "
+                  "thread, CPU time; the better of two leaf sizes of nanoflann."])
+
+
+def threads(bench, _):
+    """Wall time of the parallel phases with one thread and with two."""
+    quiet = True if bench.quick else wait_for_quiet(120)
+    load = os.getloadavg()[0]
+    scene, frame = bench.scene("S2")
+    output = bench.memory / f"tempolux-bench-{os.getpid()}"
+    photon_map, image = f"{output}.photons", f"{output}.exr"
+    photons = 20000 if bench.quick else 2 * 10**6
+    render = ["frame-render", scene, "--frame", frame, "--size", bench.size, "-o", image]
+    tools = {"photon-trace": ["photon-trace", scene, "--frame", frame, "--photons", photons, "-o", photon_map],
+             "frame-render, photons": [*render, "--photons", photon_map, "--spp", 16],
+             "frame-render, path": [*render, "--integrator", "path", "--spp", 16]}
+    rows, met = [], True
+    try:
+        for title, command in tools.items():
+            speed, work, seconds = [], [], {1: [], 2: []}
+            for _ in range(bench.rounds):
+                wall, cpu = {}, {}
+                for count in (1, 2):
+                    stats = bench.tool(*command, "--threads", count)
+                    phases = [p for p in stats["phases"] if p["parallel"]]
+                    wall[count], cpu[count] = (sum(p[kind] for p in phases) for kind in ("wall_s", "cpu_s"))
+                    seconds[count].append(wall[count])
+                speed.append(wall[1] / wall[2])
+                work.append(cpu[2] / cpu[1])
+            met = met and median(speed) >= 1.8
+            rows.append([title, quantity(median(seconds[1])), quantity(median(seconds[2])), quantity(median(speed)),
+                         f"{median(work):.3f}"])
+    finally:
+        for file in (photon_map, image):
+            if os.path.exists(file):
+                os.remove(file)
+    notes = [f"Load average before: {load:.1f}."]
+    if not quiet:
+        notes.append("Others were using the processors: wall times say little here, run it again on a quiet machine.")
+    return figure("Two threads against one, parallel phases", "1.8x in wall time",
+                  ["", "1 thread, wall s", "2 threads, wall s", "ratio", "CPU s of 2 threads / 1"], rows,
+                  met if quiet and not bench.quick else None, notes)
+
+
+def start(bench, _):
+    """--help of every tool, and what it links."""
+    rows, met = [], True
+    tools = sorted(path for path in bench.bin.iterdir() if os.access(path, os.X_OK) and path.is_file())
+    for path in tools:
+        times = [timed([path, "--help"]) for _ in range(3 if bench.quick else 20)]
+        linked = bench.run(["ldd", path]).stdout
+        heavy = [name for name in ("OpenImageIO", "openvdb") if name in linked]
+        wall, cpu = median([t[0] for t in times]), median([t[1] for t in times])
+        met = met and cpu < 0.02 and not heavy
+        rows.append([path.name, f"{1e3 * wall:.1f}", f"{1e3 * cpu:.1f}", ", ".join(heavy) or "neither"])
+    return figure("Start of every tool", "`--help` below 20 ms; neither OpenImageIO nor OpenVDB linked",
+                  ["tool", "wall ms", "CPU ms", "OpenImageIO, OpenVDB"], rows, met, ["Medians of 20; judged by CPU time."])
+
+
+def reading(bench, _):
+    """Reading and writing a .photons file, by tests/bench/photons_io."""
+    found = bench.program("photons_io", "--photons", 20000 if bench.quick else 4000000, "--file",
+                          bench.memory / f"tempolux-bench-{os.getpid()}.photons")
+    rows = [[what, quantity(found[f"{kind}_gb_per_s"]), quantity(found[f"raw_{kind}_gb_per_s"]), quantity(found[f"{kind}_ratio"])]
+            for what, kind in (("reading", "read"), ("writing", "write"))]
+    return figure("A .photons file against its bytes", "reading at least 0.5 of read() into fresh memory",
+                  ["", "GB/s", "bare bytes, GB/s", "ratio"], rows, None if bench.quick else found["read_ratio"] >= 0.5,
+                  [f"{found['photons']} photons, one thread, CPU time, checksums verified; "
+                   f"checksum alone {found['crc_folded_gb_per_s']:.0f} GB/s."])
+
+
+def references(bench, _):
+    """Means and errors of the path tracer against Cycles' references."""
+    rows, notes, met = [], [], True
+    for name in ("S2", "S3", "S4"):
+        halves = bench.third_party_halves(name)
+        totals = {}
+        for samples in (16, 64, 256):
+            image, _stats = bench.path_frame(name, samples, 1)
+            totals[samples] = bench.compare(image, halves, image.with_name(image.stem + "-cycles.json"))
+        slope = math.log(totals[256]["total"]["rmse"] / totals[16]["total"]["rmse"]) / math.log(16)
+        last = totals[256]["total"]
+        good = abs(last["bias"]) <= 0.003 and abs(slope + 0.5) <= 0.05
+        met = met and good
+        rows.append([name, *(quantity(totals[s]["total"]["rmse"]) for s in totals), f"{slope:.3f}",
+                     quantity(last["reference_noise"]), percent(last["bias"], 3), percent(last["bias_standard_error"], 3)])
+        if name == "S4":
+            per_object = object_table(last["objects"])
+    result = figure("Path tracer against Cycles' references", "mean within 0.3 %; error falls as 1/sqrt(samples)",
+                    ["scene", "RMSE, 16 samples", "64", "256", "slope", "noise of the reference", "mean, ours - reference",
+                     "standard error"], rows, met, notes)
+    result["more"] = {"title": "S4 by object, 256 samples", "header": ["object", "pixels", "mean, ours - reference",
+                      "standard error", "share of squared error"], "rows": per_object}
+    return result
+
+
+def object_table(objects):
+    """Objects of 64 pixels or more, the most significant difference first; the rest is noise of few pixels."""
+    seen = [o for o in objects if not o["few_pixels"] and o["bias"] is not None]
+    seen.sort(key=lambda o: -abs(o["bias"]) / max(1e-9, o["bias_standard_error"] or 1e9))
+    return [[o["id"], o["pixels"], percent(o["bias"]), percent(o["bias_standard_error"] or 0),
+             percent(o["share_of_squared_error"], 1)] for o in seen]
+
+
+FIGURES = {"path-tracer": path_tracer, "photon-rate": photon_rate, "photon-growth": photon_growth, "nearest": nearest,
+           "threads": threads, "start": start, "reading": reading, "references": references}

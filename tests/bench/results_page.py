@@ -1,0 +1,73 @@
+"""RESULTS.md and its figures, from what the measurements left in the output folder. Nothing is typed by hand."""
+import json
+import re
+import shutil
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    return "\n".join(lines + ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]) + "\n"
+
+
+def verdict(met):
+    return "not judged here" if met is None else "met" if met else "**missed**"
+
+
+def section(name, found, command):
+    text = f"### {found['title']}\n\n`{command} --only {name}` · {found['machine']} · load {found['load']}\n\n"
+    text += f"Asked: {found['asked']}. {verdict(found['met']).capitalize()}.\n\n" + table(found["header"], found["rows"])
+    for note in found["notes"]:
+        text += f"\n{note}\n"
+    if "more" in found:
+        more = found["more"]
+        text += f"\n<details><summary>{more['title']}</summary>\n\n{table(more['header'], more['rows'])}\n</details>\n"
+    return text + "\n"
+
+
+def curves(bench, docs, page, command):
+    """error-report's tables, its plots copied to docs."""
+    report = bench.out / "report"
+    if not (report / "report.md").exists():
+        return ""
+    docs.mkdir(parents=True, exist_ok=True)
+    for old in docs.glob("error-*.svg"):
+        old.unlink()
+    for plot in report.glob("*.svg"):
+        shutil.copy(plot, docs / plot.name)
+    link = str(docs.relative_to(page.parent)) if docs.is_relative_to(page.parent) else str(docs)
+    text = (report / "report.md").read_text().split("\n", 1)[1]
+    text = re.sub(r"\]\(([^)]*\.svg)\)", rf"]({link}/\1)", text)
+    text = re.sub(r"^### (.*)\n\n((?:\|.*\n)+)", long_tables, text, flags=re.M)
+    return f"""## Error against run time
+
+`{command} --only sweep`; every run: `{bench.out.name}/report/report.csv`
+
+Each scene is swept twice: over photons (photon-trace, then frame-render with the map looked up directly, 16 samples per
+pixel) and over samples per pixel (path tracing). Error: RMSE of linear radiance at 320x180 against the two halves of a
+path-traced reference of {bench.reference_samples} samples per pixel, whose noise is taken out. Cost: CPU seconds of all
+processes, loading and writing included. A Monte Carlo curve falls with slope -0.5; one that flattens has reached its bias,
+or the noise of what is not swept (the 16 samples of direct light). With k fixed more photons shrink only the blur; with k
+growing as their cube root (100 at 10^5) both noise and blur fall.
+""" + text + "\n"
+
+
+def long_tables(match):
+    heading, rows = match.group(1), match.group(2)
+    if rows.count("\n") <= 14:
+        return f"### {heading}\n\n{rows}"
+    return f"<details><summary>{heading}</summary>\n\n{rows}\n</details>\n"
+
+
+def write(bench, page, docs, peers_source, figures, command):
+    text = f"""# Results
+
+Written by `{command}` (tests/bench/bench.py); every number below comes out of it, `--only NAME` measures one part again.
+CPU seconds are user and system time of all threads. Cycles' rows: {peers_source}.
+
+"""
+    found = {name: json.loads(file.read_text()) for name in figures if (file := bench.out / f"{name}.json").exists()}
+    text += "## Required figures\n\n" + table(
+        ["what", "asked", "verdict"], [[f["title"], f["asked"], verdict(f["met"])] for f in found.values()]) + "\n"
+    text += curves(bench, docs, page, command)
+    text += "## Figures in full\n\n" + "".join(section(name, f, command) for name, f in found.items())
+    page.write_text(text.rstrip("\n") + "\n")

@@ -1,0 +1,89 @@
+"""Error against time: curves over photons and samples, drawn by error-report.
+
+A curve is one entry of `curves`; later methods (final gathering, caches, filters) are further entries. Each
+point costs the CPU seconds of all processes that lead to the frame.
+"""
+import json
+import shutil
+
+from measure import big
+
+FRAMES = {"S1": "Cornell box", "S2": "Cornell box, frame 10", "S3": "room lit by indirect light alone"}
+
+
+def photon_counts(bench):
+    return [10**4, 10**5] if bench.quick else [10**4, 3 * 10**4, 10**5, 3 * 10**5, 10**6, 3 * 10**6, 10**7]
+
+
+def sample_counts(bench):
+    return [1, 4] if bench.quick else [1, 2, 4, 8, 16, 32, 64, 128, 256]
+
+
+def growing_neighbours(photons):
+    """100 at 10^5 photons, as the cube root: fewer photons blur less, many are used up to be less noisy."""
+    return min(512, round(100 * (photons / 1e5) ** (1 / 3)))
+
+
+def photon_run(bench, name, photons, neighbours, seed):
+    """photon-trace, then frame-render that looks the map up directly; frame and the statistics of both."""
+    scene, frame = bench.scene(name)
+    samples = 2 if bench.quick else 16
+    options = ["--photons", photons, "--neighbours", neighbours, "--spp", samples, "--seed", seed, "--size", bench.size]
+
+    def make(stem):
+        files = bench.out / "frames" / stem
+        photon_map = bench.memory / f"tempolux-bench-{stem}.photons"
+        try:
+            bench.run([bench.bin / "photon-trace", scene, "--frame", frame, "--photons", photons, "--seed", seed,
+                       "--kinds", "caustic,indirect", "-q", "-o", photon_map, "--stats", f"{files}-photons.json"])
+            bench.run([bench.bin / "frame-render", scene, "--frame", frame, "--photons", photon_map, "--neighbours",
+                       neighbours, "--spp", samples, "--seed", seed, "--size", bench.size, "--channels",
+                       "RGBA,layers,id", "-q", "-o", f"{files}.exr", "--stats", f"{files}.json"])
+        finally:
+            photon_map.unlink(missing_ok=True)
+    inputs = [scene, bench.bin / "photon-trace", bench.bin / "frame-render", frame, *options]
+    image, *stats = bench.cached("frames", f"{name}-photons-{photons}-{neighbours}-{seed}", inputs,
+                                 [".exr", "-photons.json", ".json"], make)
+    return image, stats
+
+
+def path_run(bench, name, samples, seed):
+    image, stats = bench.path_frame(name, samples, seed)
+    return image, [stats]
+
+
+def curves(bench):
+    """(curve, swept values, what one value and seed make: frame and statistics files)."""
+    return [
+        ("path tracing", sample_counts(bench), lambda name, x, seed: path_run(bench, name, x, seed)),
+        ("photon map, k = 50", photon_counts(bench), lambda name, x, seed: photon_run(bench, name, x, 50, seed)),
+        ("photon map, k grows", photon_counts(bench),
+         lambda name, x, seed: photon_run(bench, name, x, growing_neighbours(x), seed)),
+    ]
+
+
+def measure(bench, peers):
+    """Runs every point, has error-report draw the curves; the folder of the report."""
+    runs, points = [], []
+    for name in (["S1"] if bench.quick else FRAMES):
+        halves = bench.reference_halves(name)
+        for curve, values, make in curves(bench):
+            print(f"  {name}: {curve}", flush=True)
+            for x in values:
+                for seed in ([1] if bench.quick or x >= 3 * 10**6 or (curve == "path tracing" and x > 64) else [1, 2]):
+                    image, stats = make(name, x, seed)
+                    for layer, title in ((None, f"{name}, {FRAMES[name]}"), ("indirect", f"{name}, indirect light alone")):
+                        comparison = image.with_name(f"{image.stem}-{layer or 'all'}-error.json")
+                        bench.compare(image, halves, comparison, layer)
+                        runs.append({"scene": title, "curve": curve, "label": big(x), "x": x, "parameters": {"seed": seed},
+                                     "stats": [str(s) for s in stats], "comparison": str(comparison)})
+        for peer, rows in peers.items():
+            points += [{"scene": f"{name}, {FRAMES[name]}", "label": f"{peer}, {row['samples']} samples",
+                        "cpu_s": row["cpu_s"], "rmse": row["rmse"]} for row in rows if row["scene"] == name]
+    manifest = {"schema": "tempolux.report", "version": "1.0", "title": "Error against run time",
+                "baseline": "path tracing", "runs": runs, "points": points}
+    file = bench.out / "report.json"
+    file.write_text(json.dumps(manifest, indent=1))
+    shutil.rmtree(bench.out / "report", ignore_errors=True)
+    bench.run([bench.bin / "error-report", file, "-o", bench.out / "report"])
+    return bench.out / "report"
