@@ -298,7 +298,7 @@ bool LightTree::choose(Vec3 point, Vec3 normal, float u, Choice& choice) const {
       probability *= each[lane] / sum;
     }
     if (node->leaf[lane]) {
-      choice = {node->child[lane], probability};
+      choice = {node->child[lane], probability, left};
       return probability > 0;
     }
     node = &nodes_[node->child[lane]];

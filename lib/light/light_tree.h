@@ -35,6 +35,7 @@ class LightTree {
   struct Choice {
     std::uint32_t light = 0;
     double probability = 0;  ///< of the light, at this point and normal
+    double left = 0;         ///< what the choice left of u, in [0, 1): uniform again
   };
   /// Walks down by the importance of both children: an upper bound of weight cos cos / distance^2. `normal`:
   /// unit, or zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at

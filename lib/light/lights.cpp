@@ -1,10 +1,14 @@
 #include "lib/light/lights.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <sstream>
 
+#include "formats/error.h"
 #include "lib/core/check.h"
 #include "lib/core/frame.h"
+#include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/light/light_tree.h"
 #include "lib/light/punctual.h"
@@ -23,6 +27,13 @@ EmissionSlot::Kind slot_kind(PunctualLight::Kind kind) {
       return EmissionSlot::Kind::directional;
   }
   return EmissionSlot::Kind::point;
+}
+
+[[noreturn]] void refuse_flux(const Scene* scene, double flux) {
+  std::ostringstream text;
+  text << (scene ? scene->path + ": " : "") << "a light of " << flux
+       << " W is stronger than a photon's flux can be, 3.4e38 W; make the scene smaller or its lights weaker";
+  throw InputError(text.str());
 }
 
 LightBounds bounds_of(const TriangleLight& t) {
@@ -65,6 +76,7 @@ float to_float(double u) { return std::min(float(u), kOneMinusEpsilon); }
 }  // namespace
 
 struct Lights::Impl {
+  bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const;
   const SceneFrame* frame;
   Vec3 sphere_centre;
   double sphere_radius;
@@ -204,7 +216,15 @@ bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double p
 }
 
 bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
-  const Impl& m = *impl_;
+  return impl_->sample(point, normal, u_choice, u, false, sample);
+}
+
+bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const {
+  return impl_->sample(point, normal, u.x, u, true, sample);
+}
+
+bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const {
+  const Impl& m = *this;
   sample = {};
   double total = 0;
   const double share = m.sun_share(point, normal, total);
@@ -220,6 +240,11 @@ bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample
     return m.sample_placed(m.frame->lights[m.slots[slot].light], point, probability, sample) &&
            is_finite(sample.radiance);
   const TriangleLight& t = m.triangles[slot];
+  if (joint) {
+    // A float has 24 bits: where the choice has used them up, bits of the other coordinate take their place.
+    const double step = 0x1p-24 / probability, fill = unit_double(mix64(std::bit_cast<std::uint32_t>(u.y)));
+    u.x = to_float(std::min(choice.left + fill * step, 1.0));
+  }
   TrianglePoint on_triangle;
   if (!sample_triangle(t, point, u, on_triangle)) return false;
   const double pdf = probability * on_triangle.pdf_solid_angle;
@@ -303,7 +328,7 @@ PhotonEmission Lights::emit(const double u[4]) const {
     m.emit_punctual(placed, stretched, e);
   }
   e.flux = Rgb(flux / probability);
-  if (!is_finite(e.flux)) e.flux = Rgb(0.0f);
+  if (!is_finite(e.flux)) refuse_flux(m.frame->scene, max_component(flux));
   return e;
 }
 

@@ -74,6 +74,9 @@ class Lights {
   /// O(log n)) and a point on it (u). Returns false if no light can reach the point. `normal` is a hint to
   /// discard lights below the surface; zero vector: none.
   bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const;
+  /// The same from one stratified pair: u.x chooses the light and, stretched, is its first coordinate on it, so
+  /// that samples stratified over the square are stratified over every light.
+  bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const;
   /// Density per solid angle with which sample() at (point, normal) would have chosen the position
   /// `on_light` of this emissive triangle, seen from its front or (two-sided) back; 0 if it is no light. The
   /// triangle's own plane decides, as in sample(); light_normal is not looked at.
@@ -92,7 +95,7 @@ class Lights {
   /// flux = (what the slot emits at this frame) / probability: the mean over u is total_flux(). Triangle: pi
   /// L A (twice if two-sided), by the cosine; point: 4 pi I, uniform; spot: as its intensity; directional: E
   /// pi R^2, origin on the disc of radius R outside the scene. Zero flux for what emits nothing at this
-  /// frame.
+  /// frame. InputError if flux / probability is beyond float32.
   PhotonEmission emit(const double u[4]) const;
 
  private:

@@ -23,9 +23,7 @@ void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, const Rg
   const bool specular = x.bsdf.has_specular() && !x.bsdf.specular_is_delta();
   if (!x.bsdf.has_diffuse() && !specular) return;
   LightSample light;
-  if (!scene.lights.sample(x.surface.position, x.normal, random.get1(bounce, Purpose::light_choice),
-                           random.get2(bounce, Purpose::light_point), light))
-    return;
+  if (!scene.lights.sample(x.surface.position, x.normal, random.get2(bounce, Purpose::light_point), light)) return;
   if (!x.sees(light.wi)) return;
   const Vec3 wi = x.frame.to_local(light.wi);
   Rgb diffuse = x.bsdf.has_diffuse() ? x.bsdf.eval_diffuse(wi, x.wo_local) : Rgb(0.0f);

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "formats/error.h"
 #include "lib/core/halton.h"
 #include "tests/lib/light/light_scene.h"
 
@@ -223,6 +224,15 @@ TEST(Emission, TableKnowsTheLargestSizeOfAnAnimatedEmitter) {
   EXPECT_NEAR(moving, largest / (1 + largest), 1e-6);
   const SceneFrame frame = scene_at_frame(scene, segment, 0, options);
   EXPECT_NEAR(Lights(frame, table).total_flux().r, 2 * 4 * kPiD, 1e-5);
+}
+
+TEST(Emission, FluxBeyondFloatIsRefusedNotDropped) {
+  LightScene scene(1e6f);
+  scene.add(square_facing_down({0, 0, 1}, 1e6f), Rgb(1e30f));   // pi 1e30 4e12 = 1.3e43 W
+  const Lights lights = scene.lights();
+  EXPECT_NEAR(lights.total_flux().r, kPiD * 4e42, 1e37);
+  const double u[4] = {0.5, 0.5, 0.5, 0.5};
+  EXPECT_THROW(lights.emit(u), InputError);
 }
 
 TEST(Emission, NoLightIsEmptyAndDark) {
