@@ -23,6 +23,12 @@ std::vector<std::uint32_t> digit_permutation(std::uint32_t base, std::uint64_t s
   return permutation;
 }
 
+/// Upper 64 bits of a b.
+std::uint64_t high_product(std::uint64_t a, std::uint64_t b) {
+  __extension__ using Product = unsigned __int128;
+  return std::uint64_t(Product{a} * b >> 64);
+}
+
 }  // namespace
 
 RadicalInverse::RadicalInverse(std::uint32_t base, std::uint64_t seed, bool scramble)
@@ -34,6 +40,8 @@ RadicalInverse::RadicalInverse(std::uint32_t base, std::uint64_t seed, bool scra
   // As many whole blocks as a 64-bit numerator can hold: 2^64 / block_size never overflows.
   for (std::uint64_t power = 1; power <= ~0ull / block_size_; power *= block_size_) ++block_count_;
   scale_ = std::pow(double(block_size_), -block_count_);
+  // 2^64 / block_size; only where it divides 2^64 does rounding down need the one more.
+  reciprocal_ = ~0ull / block_size_ + (~0ull % block_size_ == block_size_ - 1 ? 1 : 0);
 
   table_.resize(std::size_t(block_count_) * block_size_);
   for (int block = 0; block < block_count_; ++block) {
@@ -50,17 +58,27 @@ RadicalInverse::RadicalInverse(std::uint32_t base, std::uint64_t seed, bool scra
       table_[std::size_t(block) * block_size_ + value] = reversed;
     }
   }
+
+  rest_weight_.assign(std::size_t(block_count_) + 1, 1);
+  rest_of_zeros_.assign(std::size_t(block_count_) + 1, 0);
+  for (std::size_t done = std::size_t(block_count_); done-- > 0;) {
+    rest_of_zeros_[done] = table_[done * block_size_] * rest_weight_[done + 1] + rest_of_zeros_[done + 1];
+    rest_weight_[done] = rest_weight_[done + 1] * block_size_;
+  }
 }
 
 double RadicalInverse::operator()(std::uint64_t index) const {
   std::uint64_t numerator = 0;
   const std::uint32_t* table = table_.data();
-  for (int block = 0; block < block_count_; ++block, table += block_size_) {
-    const std::uint64_t quotient = index / block_size_;
-    numerator = numerator * block_size_ + table[index - quotient * block_size_];
+  std::size_t done = 0;
+  for (; index != 0 && done < rest_weight_.size() - 1; ++done, table += block_size_) {
+    // index < 2^64, so that index * reciprocal / 2^64 is the quotient or one less.
+    std::uint64_t quotient = high_product(index, reciprocal_), digits = index - quotient * block_size_;
+    if (digits >= block_size_) digits -= block_size_, ++quotient;
+    numerator = numerator * block_size_ + table[digits];
     index = quotient;
   }
-  const double value = double(numerator) * scale_;
+  const double value = double(numerator * rest_weight_[done] + rest_of_zeros_[done]) * scale_;
   return value < 1 ? value : 0x1.fffffffffffffp-1;
 }
 

@@ -6,7 +6,6 @@
 #include "formats/error.h"
 #include "lib/core/frame.h"
 #include "lib/core/random.h"
-#include "lib/material/bsdf.h"
 
 namespace tempolux {
 namespace {
@@ -73,6 +72,8 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
   group_count_ = options.group_count ? options.group_count : automatic_group_count(options.photon_count);
   members_ = (options.photon_count + group_count_ - 1) / group_count_;
   batches_per_group_ = (members_ + kBatch - 1) / kBatch;
+  for (const Material& material : tracer.frame().materials)
+    bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
 }
 
 PhotonBatch PhotonTracer::trace(std::size_t number) const {
@@ -106,7 +107,7 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
     }
     const SurfacePoint point = tracer_.surface_point(hit);
     const Arrival at(point, ray.direction);
-    const Bsdf bsdf(tracer_.frame().materials[point.material], dot(point.normal_geometric, at.wi) > 0);
+    const Bsdf& bsdf = bsdfs_[point.material][dot(point.normal_geometric, at.wi) > 0];
 
     // Record.
     const PathKind kind = kind_after(diffuse_seen, specular_seen);
@@ -121,7 +122,8 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
     }
 
     // Scatter, or be absorbed.
-    const auto next = bsdf.sample(at.wi_local, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
+    const float u_lobe = bsdf.has_specular() ? random.get1(bounce, Purpose::lobe) : 0;   // else it chooses nothing
+    const auto next = bsdf.sample(at.wi_local, u_lobe, random.get2(bounce, Purpose::scatter));
     const Vec3 travel = at.frame.to_world(next.wi);
     const float side = next.transmitted ? -1.0f : 1.0f, cos_geometric = side * dot(travel, at.normal_geometric);
     const Rgb before = flux;

@@ -9,6 +9,7 @@
 #include "formats/photons/photons.h"
 #include "lib/core/halton.h"
 #include "lib/light/lights.h"
+#include "lib/material/bsdf.h"
 #include "lib/trace/trace.h"
 
 namespace tempolux {
@@ -63,6 +64,7 @@ class PhotonTracer {
   const Lights& lights_;
   PhotonOptions options_;
   PhotonHalton halton_;
+  std::vector<std::array<Bsdf, 2>> bsdfs_;   ///< by material: seen from the back, from the front
   std::uint64_t group_count_, members_, batches_per_group_;
 };
 
