@@ -79,7 +79,8 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
   image.samples += count;
 }
 
-/// Samples each pixel still needs; sigma^2 is pooled over 3 x 3 pixels.
+/// Samples each pixel still needs, by what its eight neighbours saw. Its own samples are left out: a pixel whose
+/// first samples happened to agree would keep them, and penumbrae would come out too bright.
 std::vector<int> missing_samples(const CameraView& view, const FrameOptions& options, const std::vector<double>& mean,
                                  const std::vector<double>& variance) {
   const int width = view.width(), height = view.height();
@@ -92,10 +93,13 @@ std::vector<int> missing_samples(const CameraView& view, const FrameOptions& opt
       double pooled = 0, level = 0;
       int n = 0;
       for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
-        for (int i = std::max(0, x - 1); i <= std::min(width - 1, x + 1); ++i, ++n) {
+        for (int i = std::max(0, x - 1); i <= std::min(width - 1, x + 1); ++i) {
+          if (i == x && j == y) continue;
+          ++n;
           pooled += variance[std::size_t(j) * std::size_t(width) + std::size_t(i)];
           level += mean[std::size_t(j) * std::size_t(width) + std::size_t(i)];
         }
+      if (n == 0) continue;   // a picture of one pixel
       const double error = options.pixel_error * (std::min(level / n, picture) + 0.1 * picture);
       const double wanted = error > 0 ? std::sqrt(pooled / n) / error : 0;
       missing[std::size_t(y) * std::size_t(width) + std::size_t(x)] =

@@ -19,8 +19,8 @@ struct FrameOptions {
   int max_samples = 1 << 20;            ///< never more than this for target_error
   /// > 0: after `samples` everywhere, more where pixels are uncertain: n = sigma / (pixel_error (L + 0.1 mean)),
   /// sigma the standard deviation of a sample, L the radiance, both around the pixel, L at most the picture's
-  /// mean. n in proportion to sigma gives the least error for the number of samples. Which pixels get more is
-  /// decided by the samples themselves: a bias of second order.
+  /// mean. n in proportion to sigma gives the least error for the number of samples. sigma and L are those of the
+  /// neighbouring pixels, whose samples are independent: no bias.
   double pixel_error = 0;
   int adaptive_limit = 1024;
   const DiffuseLight* diffuse_light = nullptr;

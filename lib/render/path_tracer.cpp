@@ -85,6 +85,8 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
       result[seen_directly ? Layer::indirect : Layer::specular] += reflected * e.indirect;
     }
 
+    if (ends_here && !x.bsdf.has_specular()) break;
+
     // Next direction: event D or S.
     const Bsdf::Sample next = x.bsdf.sample(x.wo_local, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
     if (is_black(next.weight) || (ends_here && next.diffuse)) break;
