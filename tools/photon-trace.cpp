@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/photons/layout.h"
 #include "lib/photon/photon_map.h"
 #include "tools/scene_input.h"
 #include "tools/tool_main.h"
@@ -19,6 +20,15 @@ namespace {
 struct Options {
   std::string scene, frames = "0", output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto";
 };
+
+/// 0 stands for automatic.
+std::uint32_t group_count(const std::string& text) {
+  if (text == "auto") return 0;
+  const std::uint64_t count = tools::parse_count(text);
+  if (count < 1 || count > formats::photons::kMaxGroupCount)
+    throw InputError("--groups: " + text + " is not in 1 .. " + std::to_string(formats::photons::kMaxGroupCount));
+  return std::uint32_t(count);
+}
 
 void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int frame_number) {
   tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
@@ -32,7 +42,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   PhotonOptions photon_options;
   photon_options.seed = tool.common().seed_for_frame(frame_number);
   photon_options.photon_count = tools::parse_count(options.photons);
-  photon_options.group_count = options.groups == "auto" ? 0 : std::uint32_t(tools::parse_count(options.groups));
+  photon_options.group_count = group_count(options.groups);
   photon_options.set_kinds(options.kinds);
   formats::PhotonHeader header;
   header.history = tool.history_line(frame_number);
