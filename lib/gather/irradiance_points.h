@@ -19,7 +19,7 @@ struct PointOptions {
   int neighbours = 50;              ///< k of the density estimates
   float max_radius = 0;             ///< m; 0: a twentieth of the scene's diagonal
   int light_samples = 4;            ///< shadow rays per point for direct light
-  int area_probes = 16;             ///< per disc; where one fails, four times as many
+  int area_probes = 32;             ///< that must arrive in a disc cut by walls or edges
 };
 
 /// Mean distance of neighbouring points, m: square root of the area each stands for.
@@ -32,12 +32,8 @@ std::vector<IrradiancePoint> place_points(const SceneFrame& frame, const PointOp
 
 /// Fills in the irradiance of all points:
 /// - direct by light sampling, stratified shadow rays;
-/// - caustic and indirect by the k nearest photons, E = sum of flux over the k-1 nearest that can be seen from
-///   the point / area of the surface that can be reached inside their disc.
-/// The area is probed: from the point across the tangent plane (nothing may stand in between), then down along
-/// the normal (a surface that stores photons must be there, within the search's ellipsoid). Where every probe
-/// arrives the disc is whole and no photon is tested; else each photon's own line of sight is. Clipping the
-/// area alone gains light at thin walls, dropping photons alone loses it in corners (prototype.md 7).
+/// - caustic and indirect by the density of the photons of that kind (PointDensity).
+/// photon_shift is added to the photons' positions: scene space minus theirs. Same results for any number of threads.
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,
                      Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points);
 

@@ -1,0 +1,130 @@
+#include "lib/gather/point_density.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/frame.h"
+#include "lib/core/sampling.h"
+#include "lib/core/sobol.h"
+#include "lib/density/irradiance_estimate.h"
+#include "lib/material/bsdf.h"
+
+namespace tempolux {
+namespace {
+
+constexpr float kFlattening = 10;      ///< of the search's ellipsoid along the normal
+constexpr float kMinCos = 0.1f;        ///< of a photon's and the point's normal
+constexpr int kRim = 16;               ///< places on the rim that are looked at first
+constexpr float kFlat = 0.005f;        ///< of the radius: how far off the plane the rim of a flat disc may lie
+constexpr int kMostProbes = 32;        ///< times area_probes
+constexpr int kMostInColumn = 8;       ///< surfaces on top of each other
+
+}  // namespace
+
+Reach::Reach(const Tracer& tracer) : tracer_(tracer) {
+  const Box3& bounds = tracer.frame().bounds;
+  offset_ = 0x1p-20f * max_component(max(abs(bounds.lower), abs(bounds.upper)));
+}
+
+bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to) const {
+  const Vec3 lift = normal * (2 * offset_), start = from + lift, end = to + lift;
+  if (free(start, end)) return true;
+  const float below = dot(from - to, normal);
+  if (!(below > 0)) return false;
+  const Vec3 corner = end + normal * below;
+  return free(start, corner) && free(corner, end);
+}
+
+PointDensity::PointDensity(const Tracer& tracer, std::vector<formats::Photon> photons, const DensityOptions& options)
+    : tracer_(tracer), options_(options), reach_(tracer), index_(photons), facing_(index_, options.max_radius) {
+  for (const Material& material : tracer.frame().materials) stores_.push_back(Bsdf(material).has_lambert());
+}
+
+Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& random, float& radius) const {
+  radius = 0;
+  if (!facing_.any_near(point.position, point.normal, kMinCos)) return Rgb(0.0f);
+  const PhotonQuery query{point.position, point.normal, options_.max_radius, kMinCos, kFlattening, kAllKinds};
+  thread_local NeighbourList found;
+  index_.find_nearest(query, options_.neighbours, found);
+  if (found.count() == 0) return Rgb(0.0f);
+  const bool full = int(found.count()) == options_.neighbours;
+  const std::size_t farthest = full ? found.farthest() : found.count();
+  radius = full ? std::sqrt(found.distance2()[farthest]) : options_.max_radius;
+  if (!(radius > 4 * reach_.offset())) {  // closer than coordinates can tell: the plain rule copes
+    const IrradianceOptions plain{.neighbours = options_.neighbours, .max_radius = options_.max_radius,
+                                  .min_cos = kMinCos, .flattening = kFlattening};
+    const IrradianceEstimate estimate = estimate_irradiance(index_, point.position, point.normal, plain, found);
+    radius = estimate.radius;
+    return Rgb(estimate.irradiance);
+  }
+  const bool whole = open_and_flat(point, radius, random.get1(2, Purpose::points));
+  Rgbd flux{0.0};
+  bool any = false;
+  for (std::size_t i = 0; i < found.count(); ++i) {
+    const std::uint32_t photon = found.photons()[i];
+    if (i == farthest || (!whole && !reach_(point.position, point.normal, index_.position(photon)))) continue;
+    flux += Rgbd(index_.flux(photon));
+    any = true;
+  }
+  if (!any) return Rgb(0.0f);
+  const double inverse = whole ? 1 / (double(kPi) * double(radius) * double(radius)) : inverse_area(point, radius, random);
+  return Rgb(Rgbd{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)} * inverse);
+}
+
+/// Is the disc whole: can every place on its rim be reached across the plane, and is surface there? Sixteen
+/// places miss walls that cut off less than 0.4 % of the disc.
+bool PointDensity::open_and_flat(const IrradiancePoint& point, float radius, float turn) const {
+  const Frame frame(point.normal);
+  const Vec3 start = point.position + point.normal * (2 * reach_.offset());
+  const float down = 2 * reach_.offset() + std::max(4 * reach_.offset(), kFlat * radius);
+  for (int i = 0; i < kRim; ++i) {
+    const float phi = 2 * kPi * (float(i) + turn) / float(kRim);
+    const Vec3 rim = start + (frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi)) * radius;
+    Hit hit;
+    if (!reach_.free(start, rim) || !tracer_.intersect({rim, -point.normal, 0, down}, hit) ||
+        !stores_[tracer_.frame().surfaces[hit.surface].material])
+      return false;
+  }
+  return true;
+}
+
+/// 1 / area that can be reached, 1/m^2; 0 if there is none. Columns along the normal are drawn over the disc until
+/// a fixed number m of them arrives: the mean of (number drawn) / m is exactly 1 / (share that arrives)
+/// [inverse binomial sampling, Haldane 1945], where m / (a fixed number drawn) would be too small in the mean.
+double PointDensity::inverse_area(const IrradiancePoint& point, float radius, const PathRandom& random) const {
+  const Frame frame(point.normal);
+  const std::uint64_t key = random.bits(1, Purpose::points);
+  int arrived = 0, drawn = 0;
+  double surface = 0;   // m^2 per m^2 of the disc, summed
+  while (arrived < options_.area_probes && drawn < kMostProbes * options_.area_probes) {
+    const Vec2 d = sample_disc_concentric(sobol_owen_2d(std::uint32_t(drawn++), key));
+    const float height = radius / kFlattening * std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y));
+    const float here = column(point, (frame.tangent * d.x + frame.bitangent * d.y) * radius, height);
+    arrived += here > 0;
+    surface += double(here);
+  }
+  if (arrived == 0) return 0;
+  return double(drawn) / (double(kPi) * double(radius) * double(radius) * surface);
+}
+
+/// Surface that can be reached in a column from `height` above the plane to as much below it, `across` from
+/// the point, over the column's section: sum of 1 / cos of the surfaces' tilts.
+float PointDensity::column(const IrradiancePoint& point, Vec3 across, float height) const {
+  const float half = std::max(4 * reach_.offset(), height);
+  Vec3 top = point.position + across + point.normal * half;
+  float left = 2 * half, sum = 0;
+  for (int i = 0; i < kMostInColumn && left > 0; ++i) {
+    Hit hit;
+    if (!tracer_.intersect({top, -point.normal, 0, left}, hit)) break;
+    const SurfacePoint there = tracer_.surface_point(hit);
+    const float cosine = std::abs(dot(there.normal_geometric, point.normal));
+    if (cosine > kMinCos && stores_[there.material] && reach_(point.position, point.normal, there.position))
+      sum += 1 / cosine;
+    const float step = hit.t + 4 * reach_.offset();
+    top = top - point.normal * step;
+    left -= step;
+  }
+  return sum;
+}
+
+}  // namespace tempolux

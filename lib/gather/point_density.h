@@ -1,0 +1,68 @@
+// lib/gather/point_density.h -- irradiance from photons where walls, edges and steps cut the disc.
+#pragma once
+
+#include <vector>
+
+#include "lib/core/random.h"
+#include "lib/density/photon_index.h"
+#include "lib/gather/facing_grid.h"
+#include "lib/irradcache/points.h"
+#include "lib/trace/trace.h"
+
+namespace tempolux {
+
+/// Can light that falls on one place of a surface be taken for light at another near it?
+class Reach {
+ public:
+  explicit Reach(const Tracer& tracer);
+
+  /// Either nothing is between the two, or nothing is on the way across the tangent plane of `from` and down
+  /// from there: the straight line cuts through a surface that bends away, the other way through one that
+  /// bends up. Both ways run a little (2 offset()) above the surface.
+  bool operator()(Vec3 from, Vec3 normal, Vec3 to) const;
+  bool free(Vec3 from, Vec3 to) const { return !tracer_.occluded({from, to - from, 0, 1 - 0x1p-10f}); }
+  /// m: 2^-20 of the largest coordinate of the scene.
+  float offset() const { return offset_; }
+
+ private:
+  const Tracer& tracer_;
+  float offset_;
+};
+
+struct DensityOptions {
+  int neighbours = 50;       ///< k
+  float max_radius = 1;      ///< m
+  int area_probes = 32;      ///< that must arrive where the disc is not whole
+};
+
+/// Density estimates over one set of photons. Thread-safe.
+///
+///     E = sum of flux over those of the k-1 nearest that can be reached / area that can be reached
+///
+/// nearest and area: in the ellipsoid 1 : 1/10 about the point that touches the k-th photon (or of max_radius,
+/// with all its photons, if it holds fewer), on surfaces within 84 degrees of the point's plane. Where light is
+/// uniform on what can be reached, whatever it is beyond, E has no bias: given the ellipsoid, each of the
+/// k-1 photons is one with probability (light that can be reached / all light in it), and (k-1) / (all light in it) has
+/// the mean 1 (irradiance_estimate.h). For that the same test (Reach) must decide on photons and on area: clipping
+/// the area alone gains light at thin walls, dropping photons alone loses it in corners (prototype.md 7).
+class PointDensity {
+ public:
+  PointDensity(const Tracer& tracer, std::vector<formats::Photon> photons, const DensityOptions& options);
+
+  /// Irradiance [W/m^2], >= 0; `radius` receives the half-axis of the ellipsoid, m, 0 if no photon is near.
+  Rgb estimate(const IrradiancePoint& point, const PathRandom& random, float& radius) const;
+
+ private:
+  bool open_and_flat(const IrradiancePoint& point, float radius, float turn) const;
+  double inverse_area(const IrradiancePoint& point, float radius, const PathRandom& random) const;
+  float column(const IrradiancePoint& point, Vec3 across, float height) const;
+
+  const Tracer& tracer_;
+  DensityOptions options_;
+  Reach reach_;
+  PhotonIndex index_;
+  FacingGrid facing_;
+  std::vector<char> stores_;   ///< by material: has a Lambert lobe
+};
+
+}  // namespace tempolux
