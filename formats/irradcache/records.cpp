@@ -27,7 +27,8 @@ std::string_view fault_of(const IrradianceCacheRecord& record, std::uint32_t col
   for (std::size_t c = 0; c < 3; ++c)
     if (!is_finite(record.rotational[c]) || !is_finite(record.translational[c]))
       return "a gradient is not finite";
-  if (!is_finite(record.radius) || is_negative(record.radius) || is_zero(record.radius)) return "radius is not a length above 0";
+  if (!is_finite(record.radius) || is_negative(record.radius) || is_zero(record.radius))
+    return "radius is not a length above 0";
   const bool unlimited = record.radius_unclamped == std::numeric_limits<float>::infinity();
   if (!unlimited && (!is_finite(record.radius_unclamped) || is_negative(record.radius_unclamped)))
     return "unclamped radius is not a number or is negative";

@@ -236,6 +236,9 @@ TEST(Irradcache, DigestIsOfTheDataAlone) {
   EXPECT_NE(changed([](auto& r) { r.influence += 1; }), whole);
   EXPECT_NE(changed([](auto& r) { r.update[2] += 1; }), whole);
   EXPECT_EQ(changed([](auto& r) { r.reserved = 1; }), whole);
+  IrradcacheFile file = load_irradcache(folder / "a");
+  file.records[1].reserved = 1;  // never so in a file that was read, but in one made in memory
+  EXPECT_EQ(digest_of(file), whole);
 }
 
 TEST(Irradcache, TheWriterWritesNothingThatAReaderWouldRefuse) {

@@ -220,6 +220,9 @@ TEST(Irradpoints, DigestIsOfTheDataAlone) {
   changed = points(5);
   changed[2].reserved = 7;
   EXPECT_EQ(digest(header, {changed}), whole);
+  IrradpointsFile file = load_irradpoints(folder / "a");
+  file.records[1].reserved = 1;  // never so in a file that was read, but in one made in memory
+  EXPECT_EQ(digest_of(file), whole);
 }
 
 TEST(Irradpoints, TheWriterWritesNothingThatAReaderWouldRefuse) {
