@@ -14,9 +14,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <ostream>
+#include <set>
 #include <streambuf>
 
 #include "formats/error.h"
@@ -45,14 +47,26 @@ std::filesystem::path temporary_stem(const std::filesystem::path& target, const 
   return target.parent_path() / ("." + name + ".tmp." + host + ".");
 }
 
+/// Temporaries in a folder as this process first found it. Listed once: a run of many outputs would spend time
+/// that grows with their square.
+const std::vector<std::string>& temporaries_found(const std::string& folder) {
+  static std::mutex mutex;
+  static std::map<std::string, std::vector<std::string>> found;
+  const std::lock_guard lock(mutex);
+  const auto [entry, is_new] = found.try_emplace(folder);
+  DIR* listing = is_new ? opendir(folder.c_str()) : nullptr;
+  if (!listing) return entry->second;
+  while (const dirent* item = readdir(listing))
+    if (item->d_name[0] == '.' && std::strstr(item->d_name, ".tmp.")) entry->second.emplace_back(item->d_name);
+  closedir(listing);
+  return entry->second;
+}
+
 /// Removes what runs that were killed left for the same target: same host, no such process, lock free.
 void remove_stale(const std::filesystem::path& stem) {
   const std::string folder = stem.has_parent_path() ? stem.parent_path().string() : ".";
   const std::string prefix = stem.filename().string();
-  DIR* listing = opendir(folder.c_str());
-  if (!listing) return;
-  while (const dirent* item = readdir(listing)) {
-    const std::string name = item->d_name;
+  for (const std::string& name : temporaries_found(folder)) {
     if (!name.starts_with(prefix) || name.size() == prefix.size()) continue;
     const std::string digits = name.substr(prefix.size());
     if (digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) continue;
@@ -64,7 +78,6 @@ void remove_stale(const std::filesystem::path& stem) {
     if (flock(file, LOCK_EX | LOCK_NB) == 0) unlink(path.c_str());
     close(file);
   }
-  closedir(listing);
 }
 
 std::string reason_and_remedy(int error) {
@@ -119,6 +132,7 @@ struct Ledger {
   };
   std::mutex mutex;
   std::vector<Line> lines;
+  std::set<std::string> open_keys;   ///< of the lines that are open
 };
 
 Ledger& ledger() {
@@ -147,17 +161,19 @@ struct Output::State : std::streambuf {
 
   void note(Ledger::Line::Stage stage) {
     const std::lock_guard lock(ledger().mutex);
-    if (ledger_line < ledger().lines.size() && ledger().lines[ledger_line].stage == Ledger::Line::Stage::open)
-      ledger().lines[ledger_line].stage = stage;
+    if (ledger_line >= ledger().lines.size()) return;
+    Ledger::Line& line = ledger().lines[ledger_line];
+    if (line.stage != Ledger::Line::Stage::open) return;
+    line.stage = stage;
+    ledger().open_keys.erase(line.key);
   }
   void enter_in_ledger() {
     std::error_code unknown;
     const std::filesystem::path whole = std::filesystem::absolute(target, unknown);
     const std::string key = target == "-" ? "-" : std::filesystem::weakly_canonical(whole, unknown).string();
     const std::lock_guard lock(ledger().mutex);
-    for (const Ledger::Line& line : ledger().lines)
-      if (line.stage == Ledger::Line::Stage::open && line.key == key)
-        throw InputError(path + ": named for two outputs; give them different names");
+    if (!ledger().open_keys.insert(key).second)
+      throw InputError(path + ": named for two outputs; give them different names");
     ledger_line = ledger().lines.size();
     ledger().lines.push_back({path, target, temporary_path, key});
   }
