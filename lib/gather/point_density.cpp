@@ -17,6 +17,7 @@ constexpr float kMinCos = 0.1f;        ///< of a photon's and the point's normal
 constexpr int kRim = 16;               ///< places on the rim that are looked at first
 constexpr float kFlat = 0.005f;        ///< of the radius: how far off the plane the rim of a flat disc may lie
 constexpr int kMostProbes = 32;        ///< times area_probes
+constexpr float kNormalError = 2e-3f; ///< rad: photons' normals are kept to 1e-3 per component
 constexpr int kMostInColumn = 8;       ///< surfaces on top of each other
 
 }  // namespace
@@ -26,9 +27,15 @@ Reach::Reach(const Tracer& tracer) : tracer_(tracer) {
   offset_ = 0x1p-20f * max_component(max(abs(bounds.lower), abs(bounds.upper)));
 }
 
-bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to) const {
-  const Vec3 lift = normal * (2 * offset_), start = from + lift, end = to + lift;
-  if (free(start, end)) return true;
+bool Reach::free(Vec3 from, Vec3 to) const {
+  return !tracer_.occluded({from, to - from, 0, 1});
+}
+
+bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
+  const Vec3 start = from + normal * (2 * offset_), end = to + to_normal * (2 * offset_);
+  // From behind `to` a ray would end before it meets the surface that `to` is on.
+  const float before = dot(start - to, to_normal);
+  if (before > -kNormalError * length(start - to) && free(start, end)) return true;
   const float below = dot(from - to, normal);
   if (!(below > 0)) return false;
   const Vec3 corner = end + normal * below;
@@ -62,7 +69,7 @@ Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& rando
   bool any = false;
   for (std::size_t i = 0; i < found.count(); ++i) {
     const std::uint32_t photon = found.photons()[i];
-    if (i == farthest || (!whole && !reach_(point.position, point.normal, index_.position(photon)))) continue;
+    if (i == farthest || (!whole && !reach_(point.position, point.normal, index_.position(photon), index_.normal(photon)))) continue;
     flux += Rgbd(index_.flux(photon));
     any = true;
   }
@@ -117,8 +124,9 @@ float PointDensity::column(const IrradiancePoint& point, Vec3 across, float heig
     Hit hit;
     if (!tracer_.intersect({top, -point.normal, 0, left}, hit)) break;
     const SurfacePoint there = tracer_.surface_point(hit);
-    const float cosine = std::abs(dot(there.normal_geometric, point.normal));
-    if (cosine > kMinCos && stores_[there.material] && reach_(point.position, point.normal, there.position))
+    const float side = dot(there.normal_geometric, point.normal), cosine = std::abs(side);
+    const Vec3 up = side < 0 ? -there.normal_geometric : there.normal_geometric;
+    if (cosine > kMinCos && stores_[there.material] && reach_(point.position, point.normal, there.position, up))
       sum += 1 / cosine;
     const float step = hit.t + 4 * reach_.offset();
     top = top - point.normal * step;

@@ -18,9 +18,11 @@ class Reach {
 
   /// Either nothing is between the two, or nothing is on the way across the tangent plane of `from` and down
   /// from there: the straight line cuts through a surface that bends away, the other way through one that
-  /// bends up. Both ways run a little (2 offset()) above the surface.
-  bool operator()(Vec3 from, Vec3 normal, Vec3 to) const;
-  bool free(Vec3 from, Vec3 to) const { return !tracer_.occluded({from, to - from, 0, 1 - 0x1p-10f}); }
+  /// bends up. Both ways run a little (2 offset()) above the surfaces and arrive on the lit side of `to`; normals
+  /// are unit and on the lit sides, `to_normal` within 2e-3.
+  bool operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const;
+  /// Is nothing between the two, which lie above surfaces?
+  bool free(Vec3 from, Vec3 to) const;
   /// m: 2^-20 of the largest coordinate of the scene.
   float offset() const { return offset_; }
 
