@@ -41,3 +41,9 @@ if(TEMPOLUX_BENCH)
   add_test(NAME bench.short COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/bench/short_check.sh ${CMAKE_BINARY_DIR} ${short})
   set_tests_properties(bench.short PROPERTIES TIMEOUT 120)
 endif()
+
+# Stiff and extreme cases, short form; with sanitizers what a case costs is not judged.
+add_test(NAME stress.short COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/stress/stress.py --short
+                                   --bin ${CMAKE_BINARY_DIR}/bin $<$<BOOL:${TEMPOLUX_SANITIZE}>:--sanitized>
+         COMMAND_EXPAND_LISTS)
+set_tests_properties(stress.short PROPERTIES TIMEOUT 300)

@@ -1,0 +1,23 @@
+"""Bad input: every broken glTF of ../shared/scenes/bad through every tool that opens scenes. With -q: what a reader
+ignores is said on lines of its own, the error is one line."""
+import pathlib
+
+from session import case
+
+FOLDER = pathlib.Path(__file__).resolve().parents[3] / "shared/scenes/bad"
+
+
+@case("bad input", "files of ../shared/scenes/bad")
+def files(s):
+    found = sorted(p for p in FOLDER.rglob("*") if p.suffix in (".gltf", ".glb"))
+    if not found:
+        s.skipped("../shared/scenes/bad is not there")
+        return
+    for file in found:
+        for tool, options, ending in [("photon-trace", ["--photons", "1k"], ".photons"),
+                                      ("frame-render", ["--size", "16x16", "--spp", "1"], ".exr"),
+                                      ("scene-plan", [], "")]:
+            out = s.path(ending)
+            run = s.run(tool, "-q", file, *options, "-o", out, timeout=20, address_space=2 << 30)
+            written = out if ending else out + "/plan.json"
+            s.refused(f"{tool} {file.relative_to(FOLDER)}", run, written, seconds=2, memory=300e6)

@@ -1,0 +1,162 @@
+"""Images: one pixel, one column, 16k wide; black; NaN and infinity on input; beyond half floats; depth and motion far out."""
+import math
+import os
+
+import exr
+from scenes import Scene
+from session import FULL, case
+
+NAN, INF = float("nan"), float("inf")
+
+
+def furnace(s, emission=1.0, rho=0.5):
+    scene = Scene()
+    scene.room((-1, -1, -1), (1, 1, 1), scene.material(rho, emission))
+    scene.camera((0.3, 0.2, 0.8), (-0.4, -0.2, -1), fov=1.2)
+    return scene.save(s.path(".gltf"))
+
+
+def sizes(s, shapes):
+    """In a furnace every picture has the same mean, whatever its shape: 4 standard errors of one path, about L/4 each."""
+    scene = furnace(s)
+    map_ = s.photons(scene, "10k")
+    for width, height, spp in shapes:
+        image = s.render(scene, (width, height), spp, "--channels", "RGBA,layers,Z,N,P,id,albedo,motion")
+        s.near(f"{width}x{height}: radiance", 2, image.mean(), 4 * 0.25 / math.sqrt(width * height * spp))
+        s.render(scene, (width, height), 1, "--photons", map_["path"])
+        png, out = s.path(".png"), s.path(".json")
+        s.done(s.run("tempolux-info", "--png", png, image.path))
+        s.done(s.run("aqm-compare", image.path, image.path, "--json", out))
+        s.near(f"{width}x{height}: difference to itself", 0, s.read_json(out)["total"]["rmse"], 0)
+
+
+@case("images", "1x1, 1x10^4, 10^4x1")
+def odd_sizes(s):
+    sizes(s, [(1, 1, 10000), (1, 10000, 2), (10000, 1, 2)])
+
+
+@case("images", "16k wide")
+def wide(s):
+    sizes(s, [(16384, 4, 1)])
+
+
+@case("images", "16k x 1k", FULL)
+def wide_and_high(s):
+    """Read by tempolux-info, which counts; our reader in Python is for small pictures."""
+    out = s.path(".exr")
+    s.done(s.run("frame-render", furnace(s), "--size", "16384x1024", "--spp", 1, "-o", out, timeout=600))
+    green = next(c for c in s.info(out)["channels"] if c["channel"] == "G")
+    s.near("16384x1024: radiance", 2, green["mean"], 4 * 0.25 / math.sqrt(16384 * 1024))
+    s.true("no NaN, no infinity", not green.get("nans") and not green.get("infinities"))
+
+
+@case("images", "black and constant")
+def black(s):
+    scene = Scene()
+    scene.room((-1, -1, -1), (1, 1, 1), scene.material(0.5))
+    scene.point_light((0, 0, 5), 1)                     # outside the closed room
+    scene.camera((0, 0, 0.9), (0, 0, -1))
+    path = scene.save(s.path(".gltf"))
+    map_ = s.photons(path, "10k")
+    for name, options in [("path tracing", []), ("photons", ["--photons", map_["path"]])]:
+        image = s.render(path, (16, 16), 4, *options, "--channels", "RGBA,layers,Z", "--halves")
+        s.near(f"{name}: the dark side of a wall", 0, max(image.rgb()), 0)
+        a, b = (image.path.replace(".exr", f"_{half}.exr") for half in "ab")
+        out = s.path(".json")
+        s.done(s.run("aqm-compare", image.path, "--reference-halves", a, b, "--json", out))
+        s.near(f"{name}: error of black against black", 0, s.read_json(out)["total"]["rmse"], 0)
+        s.done(s.run("tempolux-info", "--png", s.path(".png"), image.path))
+    for value in (0.0, 1.0, 2e-38, 3e38):
+        path = s.path(".exr")
+        exr.write(path, 16, 8, {c: [value] * 128 for c in "RGB"})
+        out = s.path(".json")
+        s.done(s.run("aqm-compare", path, path, "--json", out))
+        s.near(f"constant {value:g}: error against itself", 0, s.read_json(out)["total"]["rmse"], 0)
+        green = next(c for c in s.info(path)["channels"] if c["channel"] == "G")
+        s.near(f"constant {value:g}: mean", value, green["mean"], 1e-6)
+        s.done(s.run("tempolux-info", "--png", s.path(".png"), path))
+    bright, dark, out = s.path(".exr"), s.path(".exr"), s.path(".json")
+    exr.write(bright, 4, 4, {c: [3e38] * 16 for c in "RGB"})
+    exr.write(dark, 4, 4, {c: [0.0] * 16 for c in "RGB"})
+    s.done(s.run("aqm-compare", bright, dark, "--json", out))
+    s.near("3e38 against black: rmse", 3e38, s.read_json(out)["total"]["rmse"], 1e-6)
+
+
+@case("images", "NaN and infinity on input")
+def not_numbers(s):
+    """aqm-compare refuses them and says where; tempolux-info counts them or refuses; neither writes them on."""
+    good = s.path(".exr")
+    exr.write(good, 8, 4, {c: [0.5] * 32 for c in "RGB"})
+    other = s.path(".exr")
+    exr.write(other, 8, 4, {c: [0.25] * 32 for c in "RGB"})
+    for name, value in [("NaN", NAN), ("+inf", INF), ("-inf", -INF)]:
+        values = [0.5] * 32
+        values[13] = value
+        bad = s.path(".exr")
+        exr.write(bad, 8, 4, {"R": [0.5] * 32, "G": values, "B": [0.5] * 32})
+        for title, arguments in [("test", [bad, good]), ("reference", [good, bad]),
+                                 ("half", [good, "--reference-halves", other, bad])]:
+            out = s.path(".json")
+            s.refused(f"aqm-compare, {name} in the {title}", s.run("aqm-compare", "-q", *arguments, "--json", out),
+                      out)
+        run = s.run("tempolux-info", "--json", bad)
+        if run.code == 0:
+            facts = s.info(bad)
+            green = next(c for c in facts["channels"] if c["channel"] == "G")
+            counted = green.get("nans", 0) + green.get("infinities", 0)
+            s.near(f"tempolux-info, {name}: pixels counted", 1, counted, 0)
+            s.near(f"tempolux-info, {name}: mean of the others", 0.5, green["mean"], 1e-6)
+        else:
+            s.refused(f"tempolux-info, {name}", run)
+        png = s.path(".png")
+        run = s.run("tempolux-info", "--png", png, bad)
+        if run.code == 0:
+            s.true(f"tempolux-info --png, {name}: a picture", os.path.getsize(png) > 0)
+        else:
+            s.refused(f"tempolux-info --png, {name}", run, png)
+        run = s.run("tempolux-info", "--check", bad)
+        s.true(f"tempolux-info --check, {name}: not valid", run.code in (1, 2), f"exit {run.code}", "exit 1")
+
+
+@case("images", "beyond half floats")
+def halves(s):
+    for value, good in [(65504.0, True), (65600.0, False), (1e20, False)]:
+        scene, out = furnace(s, value, 0.0), s.path(".exr")
+        run = s.run("frame-render", scene, "--size", "8x8", "--spp", 1, "--half", "--compression", "none", "-o", out)
+        if good:
+            s.done(run)
+            s.near(f"{value:g} as half", value, max(exr.read(out).channels["G"]), 0)
+        else:
+            s.refused(f"{value:g} as half", run, out, codes=(2, 3))
+    scene, out = furnace(s, 1e-10, 0.0), s.path(".exr")
+    s.done(s.run("frame-render", scene, "--size", "8x8", "--spp", 1, "--half", "--compression", "none", "-o", out))
+    s.near("1e-10 as half: 0, the nearest", 0, max(exr.read(out).channels["G"]), 0)
+
+
+@case("images", "infinite depth, motion of 10^4 pixels")
+def far(s):
+    """A plate of 0.2 m, 100 rows of 0.02 m: in frame 1 it stands 200 m to the right, which is 10^4 pixels."""
+    scene = Scene()
+    plate = scene.quad((-0.1, -0.1, 0), (0.1, -0.1, 0), (0.1, 0.1, 0), (-0.1, 0.1, 0), scene.material(0.5, 1.0))
+    scene.animate(plate, "translation", [0, 1 / 24, 2 / 24], [(0, 0, 0), (200, 0, 0), (200, -400, 0)])
+    scene.camera((0, 0, 1), (0, 0, 0), half_height=1)
+    path = scene.save(s.path(".gltf"))
+    channels = ["--channels", "RGBA,Z,N,P,id,motion"]
+    image = s.render(path, (100, 100), 4, *channels)
+    depth, forward = image.channels["Z"], image.channels["forward.u"]
+    seen = [i for i, z in enumerate(depth) if math.isfinite(z)]
+    s.near("pixels that see the plate", 100, len(seen), 0)
+    s.true("depth elsewhere +inf", sum(z == INF for z in depth) == 9900)
+    s.near("forward.u of the plate, pixels", 10000, math.fsum(forward[i] for i in seen) / len(seen), 1e-5)
+    s.near("forward.v of the plate, pixels", 0, max(abs(v) for v in image.channels["forward.v"]), 1e-3)
+    s.near("motion elsewhere", 0, max(abs(v) for i, v in enumerate(forward) if depth[i] == INF), 0)
+    image = s.render(path, (100, 100), 4, *channels, "--frame", 1)
+    s.true("frame 1: nothing in the picture", all(z == INF for z in image.channels["Z"]))
+    depth = next(c for c in s.info(image.path)["channels"] if c["channel"] == "Z")
+    s.near("tempolux-info: infinite depths counted", 10000, depth.get("infinities", 0), 0)
+    out = s.path(".json")
+    run = s.run("aqm-compare", "-q", image.path, image.path, "--layer", "Z", "--json", out)
+    if run.code == 0:
+        s.true("aqm-compare of infinite depths: JSON without NaN", s.read_json(out)["total"] is not None)
+    else:
+        s.refused("aqm-compare of infinite depths", run, out)

@@ -1,0 +1,23 @@
+"""Numbers whose extremes no scene reaches in minutes: unit tests hold them. The rows name the tests, and fail if one is
+no longer there."""
+import pathlib
+
+from session import case
+
+TESTS = pathlib.Path(__file__).resolve().parents[1]
+ROWS = [
+    ("Halton index beyond 2^40", "lib/core/halton_test.cpp", "RadicalInverse", "IsExactToOneRoundingForEveryIndexSize"),
+    ("Halton value below 1", "lib/core/halton_test.cpp", "RadicalInverse", "NeverReachesOneAtTheWorstIndices"),
+    ("sums of tiny and huge terms", "formats/exact_sum_test.cpp", "ExactSum", "LosesNothingBetweenLargeAndSmall"),
+    ("sums of many huge terms", "formats/exact_sum_test.cpp", "ExactSum", "OfManyHugeValuesIsFinite"),
+    ("sums have no order", "formats/exact_sum_test.cpp", "ExactSum", "HasNoOrderAndJoins"),
+    ("half floats at the upper end", "lib/image/exr_io_test.cpp", "Exr", "ValuesAboveHalfAreRefusedWithTheirPlace"),
+]
+
+
+@case("numbers", "by unit tests")
+def unit_tests(s):
+    for quantity, file, group, name in ROWS:
+        path = TESTS / file
+        there = path.exists() and f"TEST({group}, {name})" in path.read_text(encoding="utf-8")
+        s.row(quantity, f"{file}", f"{group}.{name}", "", "ok" if there else "FAIL")
