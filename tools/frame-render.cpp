@@ -1,7 +1,8 @@
-// frame-render -- trace the pixels of a frame: by path tracing, or by looking up a photon map.
+// frame-render -- trace the pixels of a frame: by path tracing, from a photon map, or from an irradiance cache.
 //
 //     frame-render room.glb --frame 12 --size 640x360 --spp 256 --halves -o ref.0012.exr
-//     frame-render room.glb --frame 12 --size 640x360 --spp 4 --photons p.0012.photons -o f.0012.exr
+//     frame-render room.glb --frame 12 --size 640x360 --photons p.0012.photons -o f.0012.exr
+//     frame-render room.glb --frame 12 --size 640x360 --irradcache c.0012.irradcache --photons p.0012.photons -o f.0012.exr
 //
 // Channels and attributes: formats/frames/frames.md.
 #include <CLI/CLI.hpp>
@@ -10,9 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "formats/error.h"
+#include "lib/image/exr_io.h"
 #include "lib/render/frame_renderer.h"
-#include "lib/render/photon_light.h"
 #include "tools/frame_output.h"
+#include "tools/indirect_light.h"
 #include "tools/scene_input.h"
 #include "tools/tool_main.h"
 
@@ -21,12 +24,15 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, frames = "0", output, size = "640x360", integrator = "auto", photons, compression = "zip";
+  std::string scene, output, integrator = "auto", compression = "zip", mask, base;
   std::vector<std::string> channels{"RGBA", "Z", "N", "id"};
   FrameOptions frame;
-  PhotonLightOptions photon_light;
+  tools::IndirectLightOptions light;
+  double pixel_error = -1;
   bool half_float = false;
-  int width = 0, height = 0;
+  int width = 640, height = 360;
+
+  bool traces_paths() const { return light.photons.empty() && light.irradcache.empty(); }
 };
 
 /// The neighbours in time that motion needs; empty unless it is asked for.
@@ -41,38 +47,55 @@ struct MotionFrame {
   NeighbourFrame get() const { return {frame ? &*frame : nullptr, view ? &*view : nullptr}; }
 };
 
-std::optional<PhotonLight> open_photons(tools::Tool& tool, const Options& options, const SceneFrame& frame, std::string& history) {
-  if (options.photons.empty()) return std::nullopt;
-  const std::string name = tools::frame_name(options.photons, frame.frame);
-  tool.stats().phase("read photons");
-  tool.depends_on(name);
-  const formats::PhotonMap map = formats::load_photons(name);
-  tools::check_identity(tool, name, map.header.identity, frame);
-  history = map.header.history;
-  tool.stats().phase("index photons", true);
-  const Vec3d origin{map.header.origin[0], map.header.origin[1], map.header.origin[2]};
-  return PhotonLight(map.photons, origin - frame.origin, frame.bounds, options.photon_light);
+/// By pixel: is it to be traced? From any channel of the mask that is not 0.
+std::vector<std::uint8_t> read_mask(const Options& options, const std::string& name) {
+  const Image image = load_exr(name);
+  if (image.width != options.width || image.height != options.height)
+    throw InputError(name + ": " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+                     " pixels; a mask has the size of the picture");
+  std::vector<std::uint8_t> mask(image.pixel_count());
+  for (const Channel& channel : image.channels)
+    for (std::size_t p = 0; p < mask.size(); ++p)
+      mask[p] |= channel.ids.empty() ? channel.values[p] != 0 : channel.ids[p] != 0;
+  return mask;
 }
 
-void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int frame_number) {
-  tools::FrameOutputs outputs(tools::frame_name(options.output, frame_number), options.frame.halves, tool.common().no_clobber);
+void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& tracer, const tools::IndirectLight& light) {
+  tools::Stats& stats = tool.stats();
+  stats.count("camera_rays", double(rendered.rays.camera));
+  stats.count("bounce_rays", double(rendered.rays.bounce));
+  stats.count("shadow_rays", double(rendered.rays.shadow));
+  stats.count("lookups", double(rendered.rays.lookups));
+  stats.count("refused_rays", double(tracer.refused_ray_count()));
+  stats.count("gathered_on_the_spot", double(light.gathered_on_the_spot()));
+  stats.set("samples_per_pixel", rendered.samples_per_pixel);
+  stats.set("mean_radiance", rendered.mean_radiance);
+  if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
+}
+
+void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number) {
+  tools::FrameOutputs outputs(tools::frame_name(options.output, number), options.frame.halves, tool.common().no_clobber);
   tool.stats().phase("evaluate");
-  const SceneFrame frame = input.at(frame_number);
+  const SceneFrame frame = input.at(number);
   const int camera = input.scene().camera_node(tool.common().camera);
   const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
-  const MotionFrame next(input, options, camera, frame_number + 1), previous(input, options, camera, frame_number - 1);
+  const MotionFrame next(input, options, camera, number + 1), previous(input, options, camera, number - 1);
+  FrameOptions frame_options = options.frame;
+  Image base;
+  if (!options.mask.empty()) {
+    frame_options.mask = read_mask(options, tools::frame_name(options.mask, number));
+    base = load_exr(tools::frame_name(options.base, number));
+    for (const std::string& file : {options.mask, options.base}) tool.depends_on(tools::frame_name(file, number));
+  }
   tool.stats().phase("build");
   const Tracer tracer(frame);
   const Lights lights(frame, input.emission(frame.frame));
   const RenderScene scene{tracer, lights};
-  tools::FrameDescription description{tools::identity_of(frame), "", frame.frame, input.time().fps, view.world_to_camera(), view.world_to_ndc()};
-  const std::optional<PhotonLight> photon_light = open_photons(tool, options, frame, description.history);
-  description.history += tool.history_line(frame_number);
+  const tools::IndirectLight light(tool, options.light, tracer, lights, number);
 
   tool.stats().phase("render", true);
-  FrameOptions frame_options = options.frame;
-  frame_options.seed = tool.common().seed_for_frame(frame_number);
-  frame_options.diffuse_light = photon_light ? &*photon_light : nullptr;
+  frame_options.seed = tool.common().seed_for_frame(number);
+  frame_options.diffuse_light = light.get();
   frame_options.progress = [&](double fraction) { tool.progress(fraction); };
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
@@ -82,47 +105,66 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("write");
   const ExrWriteOptions exr{options.half_float, options.compression == "none" ? ExrWriteOptions::Compression::none
                                                                               : ExrWriteOptions::Compression::zip};
-  outputs.write(rendered, image, options.channels, description, exr);
+  const tools::FrameDescription description{tools::identity_of(frame), light.history() + tool.history_line(number),
+                                            frame.frame, input.time().fps, view.world_to_camera(), view.world_to_ndc()};
+  outputs.write(rendered, image, options.channels, description, exr, frame_options.mask, base);
   tool.stats().end_phase();
-
-  tool.stats().count("camera_rays", double(rendered.rays.camera));
-  tool.stats().count("bounce_rays", double(rendered.rays.bounce));
-  tool.stats().count("shadow_rays", double(rendered.rays.shadow));
-  tool.stats().count("lookups", double(rendered.rays.lookups));
-  tool.stats().count("refused_rays", double(tracer.refused_ray_count()));
-  tool.stats().set("samples_per_pixel", rendered.mean.samples);
-  tool.stats().set("mean_radiance", rendered.mean_radiance);
-  if (rendered.own_rmse >= 0) tool.stats().set("own_rmse", rendered.own_rmse);
+  count_work(tool, rendered, tracer, light);
 }
 
-void check(const Options& options, const std::vector<int>& frames) {
+void check(Options& options, const std::vector<int>& frames) {
   if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
     throw InputError("--output: several frames need a pattern, for example f.####.exr");
-  if (options.output == "-") throw InputError("--output: frames are files, OpenEXR cannot be written to a pipe");
-  if (options.integrator == "photons" && options.photons.empty())
+  if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
+  if (options.integrator == "photons" && options.light.photons.empty())
     throw InputError("--integrator photons: name the photon map with --photons FILE");
-  if (options.integrator == "path" && !options.photons.empty())
-    throw InputError("--integrator path reads no photons; leave out --photons or the integrator");
-  if ((options.frame.halves || options.frame.target_error > 0) && options.frame.samples % 2 != 0)
-    throw InputError("--spp: halves need an even number of samples");
+  if (options.integrator == "cache" && options.light.irradcache.empty())
+    throw InputError("--integrator cache: name the cache with --irradcache FILE");
+  if (options.integrator == "path" && !options.traces_paths())
+    throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
+  if (options.light.irradcache.empty() && !options.light.points.empty())
+    throw InputError("--points: only a cache needs them, --irradcache FILE");
+  if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
+  if (options.pixel_error < 0) options.frame.pixel_error = options.traces_paths() ? 0 : 0.02;
+  else options.frame.pixel_error = options.pixel_error;
+  const bool halves = options.frame.halves || options.frame.target_error > 0;
+  if (halves && options.frame.samples % 2 != 0) throw InputError("--spp: halves need an even number of samples");
+  if (halves && options.pixel_error > 0) throw InputError("--pixel-error: halves take the same samples everywhere; leave out one");
+  if (halves) options.frame.pixel_error = 0;
   check_channels(options.channels);
 }
 
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
-  app.add_option("--frame,--frames", options.frames, "frame, or range as 0-47, 0-47x2, 1,5,9")->capture_default_str();
-  app.add_option("--size", options.size, "picture size in pixels, WxH")->capture_default_str();
-  app.add_option("--spp", options.frame.samples, "samples per pixel; with --target-error the first number tried")
-      ->capture_default_str()->check(CLI::Range(1, 1 << 24));
+void add_light_options(tools::Tool& tool, Options& options) {
+  CLI::App& app = tool.app();
   app.add_option("--integrator", options.integrator,
-                 "path: unbiased path tracing; photons: first bounce, then --photons; auto: by what is given")
-      ->capture_default_str()->check(CLI::IsMember({"auto", "path", "photons"}));
-  app.add_option("--photons", options.photons, ".photons file with indirect and caustic light, or a pattern");
-  app.add_option("--neighbours", options.photon_light.neighbours, "photons per density estimate")
+                 "path: unbiased path tracing; photons, cache: indirect light from --photons or --irradcache; auto: by what is given")
+      ->capture_default_str()->check(CLI::IsMember({"auto", "path", "photons", "cache"}));
+  app.add_option("--photons", options.light.photons,
+                 ".photons file, or a pattern: indirect and caustic light; with --irradcache caustic light");
+  app.add_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light");
+  app.add_option("--points", options.light.points,
+                 ".irradpoints file, or a pattern: what missing records are gathered from (else points made from --photons)");
+  app.add_option("--neighbours", options.light.photon_light.neighbours, "photons per density estimate")
       ->capture_default_str()->check(CLI::Range(2, kMaxNeighbours));
-  app.add_option("--max-radius", options.photon_light.max_radius,
+  app.add_option("--max-radius", options.light.photon_light.max_radius,
                  "farthest photon used, m; 0: a twentieth of the scene's diagonal")
       ->capture_default_str()->check(CLI::NonNegativeNumber);
+  app.add_option("--rays", options.light.gather.rays, "gather rays for a missing record")
+      ->capture_default_str()->check(CLI::Range(1, 1 << 20));
+}
+
+void add_options(tools::Tool& tool, Options& options) {
+  CLI::App& app = tool.app();
+  app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
+  tool.size_option("--size", options.width, options.height, "picture size in pixels");
+  app.add_option("--spp", options.frame.samples, "samples per pixel: all, or with --pixel-error or --target-error the first")
+      ->capture_default_str()->check(CLI::Range(1, 1 << 24));
+  app.add_option("--pixel-error", options.pixel_error,
+                 "more samples where pixels are uncertain: n = sigma / (this x radiance); 0: none; -1: 0.02 with photons or a cache, else none")
+      ->capture_default_str()->check(CLI::Range(-1.0, 1.0));
+  app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
+      ->capture_default_str()->check(CLI::Range(1, 1 << 20));
+  add_light_options(tool, options);
   app.add_flag("--halves", options.frame.halves,
                "also write NAME_a.exr and NAME_b.exr: independent halves of spp/2 samples each");
   app.add_option("--target-error", options.frame.target_error,
@@ -132,22 +174,25 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--channels", options.channels,
                  "RGBA, layers (or emission, specular, direct, caustic, indirect), Z, N, P, id, albedo, motion")
       ->delimiter(',')->capture_default_str();
+  app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0");
+  app.add_option("--base", options.base, "EXR file, or a pattern: where the other pixels come from, bit for bit");
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
   app.add_option("--compression", options.compression, "EXR compression")->capture_default_str()->check(CLI::IsMember({"zip", "none"}));
-  app.add_option("-o,--output", options.output, "EXR file, or a pattern as f.####.exr")->required();
+  tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("frame-render", "Trace the pixels of a frame: by path tracing, or by looking up a photon map.", argc, argv);
+  tools::Tool tool("frame-render", "Trace the pixels of a frame: by path tracing, from a photon map, or from an irradiance cache.",
+                   argc, argv);
   Options options;
-  add_options(tool.app(), options);
-  tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera);
+  options.frame.samples = 8;
+  add_options(tool, options);
+  tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera | tools::uses_frames);
 
   return tool.run([&] {
-    const std::vector<int> frames = tools::parse_frames(options.frames);
-    tools::parse_size(options.size, options.width, options.height);
+    const std::vector<int>& frames = tool.common().frames;
     check(options, frames);
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene);

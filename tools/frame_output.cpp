@@ -34,11 +34,13 @@ FrameOutputs::FrameOutputs(const std::string& path, bool halves, bool no_clobber
 }
 
 void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,
-                         const FrameDescription& description, const ExrWriteOptions& options) {
+                         const FrameDescription& description, const ExrWriteOptions& options,
+                         const std::vector<std::uint8_t>& mask, const Image& base) {
   const LayerImage* parts[3] = {&rendered.mean, &rendered.half[0], &rendered.half[1]};
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     Image image = data;
     add_colour_channels(*parts[i], channels, image);
+    if (!mask.empty()) keep_base_pixels(mask, base, image);
     describe(description, parts[i]->samples, image);
     save_exr(outputs_[i].temporary_path(), image, options);
   }

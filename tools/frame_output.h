@@ -25,9 +25,11 @@ class FrameOutputs {
  public:
   /// Creates the files at once: an unwritable place is noticed before the work.
   FrameOutputs(const std::string& path, bool halves, bool no_clobber);
-  /// Writes and commits all of them. `data` holds the data channels already.
+  /// Writes and commits all of them. `data` holds the data channels already; where there is a mask, pixels it
+  /// leaves out are those of `base`.
   void write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,
-             const FrameDescription& description, const ExrWriteOptions& options);
+             const FrameDescription& description, const ExrWriteOptions& options,
+             const std::vector<std::uint8_t>& mask, const Image& base);
 
  private:
   std::vector<Output> outputs_;   ///< the mean, then half a and half b

@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "formats/identity.h"
 #include "lib/light/lights.h"
@@ -35,6 +37,9 @@ class SceneInput {
   std::optional<EmissionTable> emission_;
   bool warned_range_ = false;
 };
+
+/// All concerns of an identity: what light in a file depends on.
+const std::vector<std::string_view>& all_concerns();
 
 /// Which state of the scene a file made at this frame belongs to.
 formats::Identity identity_of(const SceneFrame& frame);

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <utility>
@@ -18,6 +19,8 @@ struct ThreadLimit::State {
 
 ThreadLimit::ThreadLimit(int threads) : state_(std::make_unique<State>(threads)) {}
 ThreadLimit::~ThreadLimit() = default;
+
+void run_isolated(const std::function<void()>& body) { tbb::this_task_arena::isolate(body); }
 
 int usable_processor_count() {
   cpu_set_t set;

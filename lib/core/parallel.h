@@ -39,4 +39,8 @@ void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
                       const std::function<std::shared_ptr<void>(std::size_t)>& make,
                       const std::function<void(std::size_t, void*)>& take);
 
+/// Runs body so that a parallel loop inside it may be waited for from within another loop's body: this thread
+/// takes up no other work meanwhile, which might need a lock it holds.
+void run_isolated(const std::function<void()>& body);
+
 }  // namespace tempolux

@@ -9,7 +9,6 @@
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "lib/density/morton.h"
-#include "lib/gather/point_density.h"
 #include "lib/material/bsdf.h"
 
 namespace tempolux {
@@ -135,6 +134,12 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
       point.indirect = indirect.estimate(point, random, point.radius);
     }
   });
+}
+
+ReachTest point_reach(const Tracer& tracer) {
+  return [reach = Reach(tracer)](Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) {
+    return reach(from, normal, to, to_normal);
+  };
 }
 
 }  // namespace tempolux

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/photons/photons.h"
+#include "lib/gather/point_density.h"
 #include "lib/irradcache/points.h"
 #include "lib/light/lights.h"
 #include "lib/trace/trace.h"
@@ -36,5 +37,8 @@ std::vector<IrradiancePoint> place_points(const SceneFrame& frame, const PointOp
 /// photon_shift is added to the photons' positions: scene space minus theirs. Same results for any number of threads.
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,
                      Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points);
+
+/// The reach test that PointLookup takes, on this scene; the tracer must outlive it.
+ReachTest point_reach(const Tracer& tracer);
 
 }  // namespace tempolux

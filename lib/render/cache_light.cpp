@@ -1,5 +1,6 @@
 #include "lib/render/cache_light.h"
 
+#include "lib/core/parallel.h"
 #include "lib/render/shading.h"
 
 namespace tempolux {
@@ -17,10 +18,11 @@ DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geomet
     result.indirect = found.irradiance;
   } else if (const auto near = records_.interpolate_relaxed(surface.position, shading); near.weight > 0) {
     result.indirect = near.irradiance;
-  } else if (gather_) {
+  } else {
     missing_.fetch_add(1, std::memory_order_relaxed);
+    std::call_once(gather_made_, [&] { run_isolated([&] { gather_ = make_gather_(); }); });
     GatherCounts counts;
-    result.indirect = gather_->gather(surface, shading, counts).irradiance;
+    if (gather_) result.indirect = gather_->gather(surface, shading, counts).irradiance;
   }
   return result;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
+#include <mutex>
 #include <optional>
 
 #include "lib/gather/place_records.h"
@@ -10,19 +12,23 @@
 
 namespace tempolux {
 
-/// Indirect irradiance interpolated between records; where none is valid it is gathered on the spot, which is
+/// Indirect irradiance interpolated between records; where none is near it is gathered on the spot, which is
 /// slow, exact and counted. Caustic irradiance is that of `photons`, if given.
 class CacheLight : public DiffuseLight {
  public:
-  CacheLight(const RecordStore& records, const FinalGather* gather, const PhotonLight* photons)
-      : records_(records), gather_(gather), photons_(photons) {}
+  /// `gather` is asked for once, when it is first needed; it may take its time and run parallel loops. It may
+  /// return nullptr: then there is no light where no record is near.
+  CacheLight(const RecordStore& records, std::function<const FinalGather*()> gather, const PhotonLight* photons)
+      : records_(records), make_gather_(std::move(gather)), photons_(photons) {}
 
   Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const override;
   std::uint64_t gathered_on_the_spot() const { return missing_.load(); }
 
  private:
   const RecordStore& records_;
-  const FinalGather* gather_;
+  std::function<const FinalGather*()> make_gather_;
+  mutable std::once_flag gather_made_;
+  mutable const FinalGather* gather_ = nullptr;
   const PhotonLight* photons_;
   mutable std::atomic<std::uint64_t> missing_{0};
 };

@@ -42,7 +42,7 @@ void join(const PixelSum& sum, int first, int count, Layers& mean) {
 
 /// Runs body(pixel, x, y, counts) for every pixel, tile by tile in parallel.
 template <class Body>
-void for_each_pixel(const CameraView& view, RayCounts& rays, const std::function<void(double)>& progress, const Body& body) {
+void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCounts& rays, const std::function<void(double)>& progress, const Body& body) {
   const int tiles_x = (view.width() + kTile - 1) / kTile, tiles = tiles_x * ((view.height() + kTile - 1) / kTile);
   std::mutex mutex;
   int done = 0;
@@ -50,8 +50,10 @@ void for_each_pixel(const CameraView& view, RayCounts& rays, const std::function
     RayCounts counts;
     const int x0 = int(tile) % tiles_x * kTile, y0 = int(tile) / tiles_x * kTile;
     for (int y = y0; y < std::min(y0 + kTile, view.height()); ++y)
-      for (int x = x0; x < std::min(x0 + kTile, view.width()); ++x)
-        body(std::size_t(y) * std::size_t(view.width()) + std::size_t(x), x, y, counts);
+      for (int x = x0; x < std::min(x0 + kTile, view.width()); ++x) {
+        const std::size_t pixel = std::size_t(y) * std::size_t(view.width()) + std::size_t(x);
+        if (options.mask.empty() || options.mask[pixel]) body(pixel, x, y, counts);
+      }
     const std::lock_guard lock(mutex);
     rays += counts;
     if (progress) progress(double(++done) / tiles);
@@ -73,7 +75,7 @@ PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uin
 void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
                  int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
   const int first = image.samples;
-  for_each_pixel(view, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+  for_each_pixel(view, options, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     join(sample_pixel(scene, view, seed, options, pixel, x, y, first, count, counts), first, count, image.pixels[pixel]);
   });
   image.samples += count;
@@ -94,10 +96,11 @@ std::vector<int> missing_samples(const CameraView& view, const FrameOptions& opt
       int n = 0;
       for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
         for (int i = std::max(0, x - 1); i <= std::min(width - 1, x + 1); ++i) {
-          if (i == x && j == y) continue;
+          const std::size_t at = std::size_t(j) * std::size_t(width) + std::size_t(i);
+          if ((i == x && j == y) || (!options.mask.empty() && !options.mask[at])) continue;
           ++n;
-          pooled += variance[std::size_t(j) * std::size_t(width) + std::size_t(i)];
-          level += mean[std::size_t(j) * std::size_t(width) + std::size_t(i)];
+          pooled += variance[at];
+          level += mean[at];
         }
       if (n == 0) continue;   // a picture of one pixel
       const double error = options.pixel_error * (std::min(level / n, picture) + 0.1 * picture);
@@ -112,14 +115,14 @@ std::vector<int> missing_samples(const CameraView& view, const FrameOptions& opt
 void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
   LayerImage& image = frame.mean;
   std::vector<double> mean(image.pixels.size()), variance(image.pixels.size());
-  for_each_pixel(view, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+  for_each_pixel(view, options, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     const PixelSum sum = sample_pixel(scene, view, options.seed, options, pixel, x, y, 0, options.samples, counts);
     join(sum, 0, options.samples, image.pixels[pixel]);
     mean[pixel] = sum.value() / options.samples;
     variance[pixel] = std::max(0.0, sum.square - mean[pixel] * sum.value()) / std::max(1, options.samples - 1);
   });
   const std::vector<int> missing = missing_samples(view, options, mean, variance);
-  for_each_pixel(view, frame.rays, options.progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+  for_each_pixel(view, options, frame.rays, options.progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     if (const int count = missing[pixel])
       join(sample_pixel(scene, view, options.seed, options, pixel, x, y, options.samples, count, counts),
            options.samples, count, image.pixels[pixel]);
@@ -197,6 +200,22 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
   frame.mean_radiance = mean_radiance(frame.mean);
   if (!(frame.samples_per_pixel > 0)) frame.samples_per_pixel = frame.mean.samples;
   return frame;
+}
+
+void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, Image& image) {
+  if (base.width != image.width || base.height != image.height)
+    throw InputError("--base: " + std::to_string(base.width) + "x" + std::to_string(base.height) + " pixels, but --size is " +
+                     std::to_string(image.width) + "x" + std::to_string(image.height) + "; render both at one size");
+  for (Channel& channel : image.channels) {
+    const Channel* from = base.find(channel.name);
+    if (!from || from->values.size() != channel.values.size())
+      throw InputError("--base: has no channel " + channel.name + "; ask for fewer with --channels, or render the base with it");
+    for (std::size_t p = 0; p < mask.size(); ++p) {
+      if (mask[p]) continue;
+      if (channel.ids.empty()) channel.values[p] = from->values[p];
+      else channel.ids[p] = from->ids[p];
+    }
+  }
 }
 
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {

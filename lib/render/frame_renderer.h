@@ -24,6 +24,7 @@ struct FrameOptions {
   double pixel_error = 0;
   int adaptive_limit = 1024;
   const DiffuseLight* diffuse_light = nullptr;
+  std::vector<std::uint8_t> mask;       ///< by pixel, 0: leave it out; empty: all pixels
   std::function<void(double)> progress; ///< called with [0, 1]; may be empty
 };
 
@@ -46,6 +47,10 @@ struct RenderedFrame {
 /// Box filter of one pixel; every sample of a pixel is a stratified position in it. Deterministic for any
 /// number of threads.
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options);
+
+/// Puts pixels that the mask leaves out (0) back to those of `base`, bit for bit, in every channel of `image`.
+/// Throws InputError naming what differs if sizes or channels do not fit.
+void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, Image& image);
 
 /// Adds to `image` the colour channels asked for: "RGBA", "layers" or a layer's name. The sum of the layers
 /// in the order of kLayerNames, in float32, is R G B exactly.

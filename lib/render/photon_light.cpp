@@ -22,7 +22,8 @@ PhotonIndex index_of_kind(std::span<const formats::Photon> photons, formats::Pat
 PhotonLight::PhotonLight(std::span<const formats::Photon> photons, Vec3d photon_shift, const Box3& bounds,
                          const PhotonLightOptions& options)
     : caustic_(index_of_kind(photons, formats::PathKind::caustic, photon_shift)),
-      indirect_(index_of_kind(photons, formats::PathKind::indirect, photon_shift)) {
+      indirect_(options.caustic_only ? PhotonIndex()
+                                     : index_of_kind(photons, formats::PathKind::indirect, photon_shift)) {
   options_.neighbours = options.neighbours;
   options_.max_radius = options.max_radius > 0 ? options.max_radius : 0.05f * bounds.diagonal();
 }

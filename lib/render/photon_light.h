@@ -9,6 +9,7 @@ namespace tempolux {
 struct PhotonLightOptions {
   int neighbours = 50;            ///< k of the density estimate
   float max_radius = 0;           ///< m; 0: a twentieth of the scene's diagonal
+  bool caustic_only = false;      ///< indirect light comes from elsewhere: index the caustic photons alone
 };
 
 /// Caustic and indirect irradiance from the photons of a map, each kind by its own k nearest. Biased: light is

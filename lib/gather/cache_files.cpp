@@ -1,0 +1,114 @@
+#include "lib/gather/cache_files.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/octahedral.h"
+
+namespace tempolux {
+namespace {
+
+std::array<float, 3> array_of(Vec3 v) { return {v.x, v.y, v.z}; }
+std::array<float, 3> array_of(const Rgb& c) { return {c.r, c.g, c.b}; }
+Vec3 vec_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+Rgb rgb_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+Vec3 moved(const std::array<float, 3>& p, Vec3d shift) {
+  return Vec3(Vec3d{double(p[0]) + shift.x, double(p[1]) + shift.y, double(p[2]) + shift.z});
+}
+
+/// By object: does one of its surfaces move in the segment?
+std::vector<bool> moving_objects(const SceneFrame& frame) {
+  std::vector<bool> moves;
+  for (std::size_t s = 0; s < frame.surfaces.size(); ++s) {
+    const std::size_t object = frame.surfaces[s].object;
+    if (object >= moves.size()) moves.resize(object + 1);
+    if (s >= frame.static_count) moves[object] = true;
+  }
+  return moves;
+}
+
+formats::SurfaceSet set_of(const std::vector<bool>& moves, std::uint32_t object) {
+  return object < moves.size() && moves[object] ? formats::SurfaceSet::dynamic_set : formats::SurfaceSet::static_set;
+}
+
+}  // namespace
+
+std::vector<formats::IrradiancePointRecord> to_file(std::span<const IrradiancePoint> points, const SceneFrame& frame) {
+  const std::vector<bool> moves = moving_objects(frame);
+  std::vector<formats::IrradiancePointRecord> records;
+  records.reserve(points.size());
+  for (const IrradiancePoint& p : points) {
+    formats::IrradiancePointRecord r;
+    r.position = array_of(p.position);
+    r.normal = formats::encode_normal(array_of(p.normal));
+    r.object = std::uint16_t(p.object);
+    r.set = set_of(moves, p.object);
+    r.radius = p.radius;
+    r.direct = array_of(p.direct);
+    r.caustic = array_of(p.caustic);
+    r.indirect = array_of(p.indirect);
+    records.push_back(r);
+  }
+  return records;
+}
+
+std::vector<IrradiancePoint> from_file(std::span<const formats::IrradiancePointRecord> records, Vec3d shift) {
+  std::vector<IrradiancePoint> points;
+  points.reserve(records.size());
+  for (const auto& r : records) {
+    IrradiancePoint p;
+    p.position = moved(r.position, shift);
+    p.normal = vec_of(formats::decode_normal(r.normal));
+    p.object = r.object;
+    p.radius = r.radius;
+    p.direct = rgb_of(r.direct);
+    p.caustic = rgb_of(r.caustic);
+    p.indirect = rgb_of(r.indirect);
+    points.push_back(p);
+  }
+  return points;
+}
+
+std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRecord> records, const SceneFrame& frame) {
+  const std::vector<bool> moves = moving_objects(frame);
+  std::vector<formats::IrradianceCacheRecord> out;
+  out.reserve(records.size());
+  for (const IrradianceRecord& record : records) {
+    formats::IrradianceCacheRecord r;
+    r.position = array_of(record.position);
+    r.normal = array_of(record.normal);
+    r.object = std::uint16_t(record.object);
+    r.set = set_of(moves, record.object);
+    r.irradiance = array_of(record.irradiance);
+    for (std::size_t c = 0; c < 3; ++c) {
+      r.rotational[c] = array_of(record.rotational[c]);
+      r.translational[c] = array_of(record.translational[c]);
+    }
+    r.radius = record.radius;
+    r.radius_unclamped = record.radius_unclamped;
+    out.push_back(r);
+  }
+  return out;
+}
+
+std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCacheRecord> records, Vec3d shift) {
+  std::vector<IrradianceRecord> out;
+  out.reserve(records.size());
+  for (const auto& r : records) {
+    IrradianceRecord record;
+    record.position = moved(r.position, shift);
+    record.normal = vec_of(r.normal);
+    record.object = r.object;
+    record.irradiance = rgb_of(r.irradiance);
+    for (std::size_t c = 0; c < 3; ++c) {
+      record.rotational[c] = vec_of(r.rotational[c]);
+      record.translational[c] = vec_of(r.translational[c]);
+    }
+    record.radius = r.radius;
+    record.radius_unclamped = r.radius_unclamped;
+    out.push_back(record);
+  }
+  return out;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,32 @@
+// tools/gather_input.h -- irradiance points and records for the tools that gather: read, made, written.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lib/gather/irradiance_points.h"
+#include "lib/irradcache/records.h"
+#include "tools/scene_input.h"
+
+namespace tempolux::tools {
+
+/// Points and what they came from.
+struct GatherPoints {
+  std::vector<IrradiancePoint> points;
+  float spacing = 0;                   ///< m
+  std::string history;                 ///< of the file they came from, or of the photons
+  std::uint64_t emitted_count = 0;
+};
+
+/// Reads a .irradpoints file made for this state of the scene (InputError otherwise, see check_identity).
+GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame);
+/// Makes points from the photons of a file made for this state of the scene.
+GatherPoints make_points(Tool& tool, const std::string& photons_file, const Tracer& tracer, const Lights& lights,
+                         const PointOptions& options);
+/// Writes them; counts go to the statistics.
+void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output);
+
+/// Adds the records of a .irradcache file to a store; returns the file's history.
+std::string read_records(Tool& tool, const std::string& file, const SceneFrame& frame, RecordStore& store);
+
+}  // namespace tempolux::tools

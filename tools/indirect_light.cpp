@@ -1,0 +1,41 @@
+#include "tools/indirect_light.h"
+
+#include "formats/photons/photons.h"
+
+namespace tempolux::tools {
+
+IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, int number)
+    : tool_(tool), options_(options), tracer_(tracer), lights_(lights) {
+  const SceneFrame& frame = tracer.frame();
+  if (!options.photons.empty()) {
+    const std::string name = frame_name(options.photons, number);
+    tool.stats().phase("read photons");
+    tool.depends_on(name);
+    const formats::PhotonMap map = formats::load_photons(name);
+    check_identity(tool, name, map.header.identity, frame);
+    history_ = map.header.history;
+    tool.stats().phase("index photons", true);
+    const Vec3d origin{map.header.origin[0], map.header.origin[1], map.header.origin[2]};
+    PhotonLightOptions photon_light = options.photon_light;
+    photon_light.caustic_only = !options.irradcache.empty();
+    photons_ = std::make_unique<PhotonLight>(map.photons, origin - frame.origin, frame.bounds, photon_light);
+  }
+  if (options.irradcache.empty()) return;
+  tool.stats().phase("read cache");
+  records_ = std::make_unique<RecordStore>(frame.bounds);
+  history_ = read_records(tool, frame_name(options.irradcache, number), frame, *records_);
+  cache_ = std::make_unique<CacheLight>(*records_, [this, number] { return make_gather(number); }, photons_.get());
+}
+
+/// Points are read, or made from the photons, when the first record is missing.
+const FinalGather* IndirectLight::make_gather(int number) {
+  if (!options_.points.empty()) points_ = read_points(tool_, frame_name(options_.points, number), tracer_.frame());
+  else if (!options_.photons.empty())
+    points_ = make_points(tool_, frame_name(options_.photons, number), tracer_, lights_, options_.points_made);
+  else return nullptr;
+  lookup_ = std::make_unique<PointLookup>(points_.points, tracer_.frame().bounds, points_.spacing);
+  gather_ = std::make_unique<FinalGather>(tracer_, lights_, *lookup_, options_.gather);
+  return gather_.get();
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,183 @@
+// irradcache-build -- irradiance points over the surfaces, and irradiance records where a camera needs them.
+//
+//     irradcache-build points  room.glb --frame 12 --photons p.0012.photons -o p.0012.irradpoints
+//     irradcache-build records room.glb --frame 12 --points p.0012.irradpoints --size 960x540 -o c.0012.irradcache
+//     irradcache-build         room.glb --frame 12 --photons p.0012.photons --size 960x540 -o c.0012.irradcache
+//     irradcache-build         hall.glb --frames 0-47 --photons p.photons --size 960x540 -o c.irradcache
+//
+// Formats: formats/irradpoints/irradpoints.md, formats/irradcache/irradcache.md.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "formats/error.h"
+#include "lib/gather/cache_files.h"
+#include "lib/render/cache_light.h"
+#include "tools/gather_input.h"
+#include "tools/tool_main.h"
+
+using namespace tempolux;
+
+namespace {
+
+struct Options {
+  std::vector<std::string> inputs;  // [points|records] SCENE
+  std::string photons, points, records, output, keep_points;
+  std::uint64_t point_count = PointOptions{}.count;
+  int width = 640, height = 360;
+  PointOptions point;
+  GatherOptions gather;
+  PlacementOptions placement;
+
+  std::string mode() const { return inputs.size() == 2 ? inputs[0] : "both"; }
+  const std::string& scene() const { return inputs.back(); }
+};
+
+void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number) {
+  tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
+  tool.stats().phase("evaluate");
+  const SceneFrame frame = input.at(number);
+  const Tracer tracer(frame);
+  const Lights lights(frame, input.emission(frame.frame));
+  tool.stats().phase("points", true);
+  const tools::GatherPoints points =
+      tools::make_points(tool, tools::frame_name(options.photons, number), tracer, lights, options.point);
+  tool.stats().phase("write");
+  tools::write_points(tool, points, frame, output);
+}
+
+/// Header of a cache placed for these frames.
+formats::IrradcacheHeader cache_header(const Options& options, const SceneFrame& frame, const std::vector<int>& frames,
+                                       const RecordStore& store) {
+  formats::IrradcacheHeader header;
+  header.identity = tools::identity_of(frame);
+  header.identity.first_frame = *std::min_element(frames.begin(), frames.end());
+  header.identity.last_frame = *std::max_element(frames.begin(), frames.end());
+  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  header.rays = std::uint32_t(options.gather.rays);
+  header.error_bound = double(options.placement.error_bound);
+  for (const IrradianceRecord& record : store.records()) {
+    header.min_radius = header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
+    header.max_radius = std::max(header.max_radius, double(record.radius));
+  }
+  std::vector<int> sorted = frames;
+  std::sort(sorted.begin(), sorted.end());
+  for (int f : sorted) {
+    if (!header.placed_frames.empty() && header.placed_frames.back()[1] >= f - 1) header.placed_frames.back()[1] = f;
+    else header.placed_frames.push_back({f, f});
+  }
+  return header;
+}
+
+/// Records for the cameras of all frames: one cache, valid while nothing but the camera changes.
+void build_records(tools::Tool& tool, tools::SceneInput& input, Options options, const std::vector<int>& frames) {
+  tools::Output output(options.output, tool.common().no_clobber);
+  tool.stats().phase("evaluate");
+  const SceneFrame first = input.at(frames.front());
+  const Tracer tracer(first);
+  const Lights lights(first, input.emission(first.frame));
+  tool.stats().phase("points", true);
+  const tools::GatherPoints points =
+      options.points.empty() ? tools::make_points(tool, options.photons, tracer, lights, options.point)
+                             : tools::read_points(tool, options.points, first);
+  if (!options.keep_points.empty()) {
+    tools::Output keep(options.keep_points, tool.common().no_clobber);
+    tools::write_points(tool, points, first, keep);
+  }
+  const PointLookup lookup(points.points, first.bounds, points.spacing);
+  const FinalGather gather(tracer, lights, lookup, options.gather);
+  RecordStore store(first.bounds);
+  std::string history = points.history;
+  if (!options.records.empty()) history = tools::read_records(tool, options.records, first, store);
+
+  tool.stats().phase("records", true);
+  GatherCounts counts;
+  const int camera = input.scene().camera_node(tool.common().camera);
+  for (int number : frames) {
+    const SceneFrame frame = input.at(number);
+    if (!formats::stale_concerns(tools::identity_of(frame), tools::identity_of(first), tools::all_concerns()).empty())
+      throw InputError(options.scene() + ": frame " + std::to_string(number) + " is lit or built differently from frame " +
+                       std::to_string(first.frame) + ": one cache cannot hold for both; make one for each");
+    const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
+    const std::size_t added = place_records(
+        gather, [&](std::size_t pixel) { return seen_through(tracer, view, pixel); }, options.width, options.height,
+        first.bounds, options.placement, store, counts, [&](double done) { tool.progress(done); });
+    tool.stats().set("records_added." + std::to_string(number), double(added));
+  }
+  tool.stats().phase("write");
+  formats::IrradcacheHeader header = cache_header(options, first, frames, store);
+  header.history = history + tool.history_line();
+  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  writer.write(to_file(store.records(), first));
+  writer.finish();
+  output.commit();
+  tool.stats().end_phase();
+  tool.stats().count("records", double(store.records().size()));
+  tool.stats().count("gather_rays", double(counts.rays));
+  tool.stats().count("near_hits", double(counts.near_hits));
+  tool.stats().count("points_read", double(counts.points_read));
+  tool.stats().count("unanswered", double(counts.unanswered));
+}
+
+void check(const Options& options, const std::vector<int>& frames) {
+  const std::string mode = options.mode();
+  if (mode != "both" && mode != "points" && mode != "records")
+    throw InputError("'" + options.inputs[0] + "' is not a step: it is points, records, or nothing for both");
+  if (mode == "points" && options.photons.empty()) throw InputError("points: name the photon map with --photons FILE");
+  if (mode == "records" && options.points.empty()) throw InputError("records: name the points with --points FILE");
+  if (mode == "both" && options.photons.empty() == options.points.empty())
+    throw InputError("name either the photon map, --photons FILE, or the points made from it, --points FILE");
+  if (mode == "points" && frames.size() > 1 && !tools::has_frame_pattern(options.output))
+    throw InputError("--output: several frames need a pattern, for example f.####.irradpoints");
+}
+
+void add_options(tools::Tool& tool, Options& options) {
+  CLI::App& app = tool.app();
+  app.add_option("scene", options.inputs, "glTF 2.0 scene, after the word points or records if only that is wanted")
+      ->required()->expected(1, 2)->type_name("[points|records] SCENE");
+  app.add_option("--photons", options.photons, ".photons file of this frame with caustic and indirect light");
+  app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons");
+  app.add_option("--records", options.records, ".irradcache file to extend: its records are kept");
+  tool.count_option("--point-count", options.point_count, "irradiance points per side of all surfaces together");
+  app.add_option("--neighbours", options.point.neighbours, "photons per density estimate")
+      ->capture_default_str()->check(CLI::Range(2, kMaxNeighbours));
+  app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
+      ->capture_default_str()->check(CLI::Range(1, 4096));
+  app.add_option("--rays", options.gather.rays, "gather rays per record")->capture_default_str()->check(CLI::Range(1, 1 << 20));
+  app.add_option("--error-bound", options.placement.error_bound,
+                 "radius of a record / harmonic mean distance to what it sees: smaller is finer")
+      ->capture_default_str()->check(CLI::Range(1e-3, 2.0));
+  app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
+      ->capture_default_str()->check(CLI::PositiveNumber);
+  app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
+      ->capture_default_str()->check(CLI::Range(1e-6, 10.0));
+  tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
+  tool.output_option(options.keep_points, "also write the points made from --photons, .irradpoints", "--keep-points");
+  tool.output_option(options.output, ".irradcache file (points: .irradpoints); - for standard output")->required();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tools::Tool tool("irradcache-build", "Spread irradiance points over the surfaces; gather irradiance records where a camera needs them.",
+                   argc, argv);
+  Options options;
+  add_options(tool, options);
+  tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera | tools::uses_frames);
+
+  return tool.run([&] {
+    const std::vector<int>& frames = tool.common().frames;
+    check(options, frames);
+    options.point.count = std::uint32_t(std::min<std::uint64_t>(options.point_count, 1u << 28));
+    options.point.seed = options.gather.seed = tool.common().seed_for_frame(frames.front());
+    tool.stats().phase("load");
+    tools::SceneInput input(tool, options.scene());
+    require_lights(input.scene());
+    if (options.mode() == "points")
+      for (int frame : frames) build_points(tool, input, options, frame);
+    else
+      build_records(tool, input, options, frames);
+    return tools::exit_ok;
+  });
+}
