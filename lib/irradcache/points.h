@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -24,29 +25,44 @@ struct IrradiancePoint {
   Rgb total() const { return direct + caustic + indirect; }
 };
 
+/// Can light at one place (with its normal on the lit side) be taken for light at the other? lib/gather's Reach.
+using ReachTest = std::function<bool(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal)>;
+
 /// Finds the point to read at a hit: the one nearest to the middle of the hit's cell (of the spacing of the
 /// points) among those of the same object that face the same way, else the nearest that faces the same way.
 /// A cell's answer depends on the cell alone and is remembered, so most look-ups are one table access; results
 /// are the same for any number of threads.
+///
+/// With a reach test, hits near a point that something separates from one of its neighbours (a wall between two
+/// rooms, a box on a floor: the floor under it is dark) are answered one by one: the nearest point that can be
+/// reached from the hit.
 class PointLookup {
  public:
   /// spacing: mean distance of neighbouring points, m, > 0. Keeps the span; it must outlive this.
-  PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing);
+  PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing, ReachTest reach = {});
 
-  /// nullptr if no point faces this way. Thread-safe.
+  /// nullptr if no point faces this way. normal: unit, on the lit side. Thread-safe.
   const IrradiancePoint* find(Vec3 position, Vec3 normal, std::uint32_t object) const;
   std::size_t size() const { return points_.size(); }
 
  private:
+  struct alignas(16) Entry {
+    std::atomic<std::uint64_t> key;      ///< 0: empty
+    std::atomic<std::uint32_t> value;    ///< index + 2; 0: not there yet, 1: none; kSeparated may be set
+  };
   std::uint32_t search(Vec3 position, Vec3 normal, std::uint32_t object) const;
+  std::uint32_t search_cell(const std::uint32_t cell[3], std::uint32_t bin, std::uint32_t object) const;
+  std::uint32_t search_reachable(Vec3 position, Vec3 normal, std::uint32_t object) const;
+  bool separated(std::uint32_t point) const;
 
   std::span<const IrradiancePoint> points_;
+  ReachTest reach_;
   PhotonIndex index_;
   Vec3 lower_;
-  float inverse_cell_ = 0, cell_ = 0;
+  float inverse_cell_ = 0, cell_ = 0, spacing_ = 0;
   std::size_t mask_ = 0;
-  mutable std::unique_ptr<std::atomic<std::uint64_t>[]> keys_;     // 0: empty
-  mutable std::unique_ptr<std::atomic<std::uint32_t>[]> values_;   // index + 2; 0: not there yet, 1: none
+  mutable std::unique_ptr<Entry[]> entries_;
+  mutable std::unique_ptr<std::atomic<std::uint8_t>[]> separated_;   ///< by point: 0 not known, 1 no, 2 yes
 };
 
 }  // namespace tempolux
