@@ -8,56 +8,107 @@
 namespace tempolux {
 namespace {
 
-constexpr int kLevels = 24;
-constexpr std::size_t kBuckets = 1 << 14;
-constexpr float kBehind = 0.05f;   ///< of the radius: how far behind a record's plane a point may be
+constexpr int kFinest = 40;               ///< smallest cells: largest / 2^kFinest, below float spacing
+constexpr std::size_t kFirstBuckets = 256;
+constexpr float kBehind = 0.05f;          ///< of the radius: how far behind a record's plane a point may be
+constexpr double kRounding = 1e-6;        ///< distances are of float: a sphere may reach this much farther
+
+struct Cell {
+  std::int64_t x, y, z;
+};
+
+Cell cell_at(Vec3d local, double inverse) {
+  // Beyond 2^60 cells (records far outside the scene) all is one cell.
+  const auto index = [&](double x) { return std::int64_t(std::floor(std::clamp(x * inverse, -0x1p60, 0x1p60))); };
+  return {index(local.x), index(local.y), index(local.z)};
+}
+
+std::size_t bucket_of(Cell c, std::size_t count) {
+  const std::uint64_t h = std::uint64_t(c.x) * 0x9e3779b97f4a7c15ull + std::uint64_t(c.y) * 0xc2b2ae3d27d4eb4full +
+                          std::uint64_t(c.z) * 0x165667b19e3779f9ull;
+  return std::size_t(mix64(h)) & (count - 1);
+}
+
+bool is_usable(const IrradianceRecord& r) {
+  bool finite = is_finite(r.position) && is_finite(r.normal) && std::isfinite(r.irradiance.r + r.irradiance.g + r.irradiance.b);
+  for (std::size_t c = 0; c < 3; ++c) finite = finite && is_finite(r.rotational[c]) && is_finite(r.translational[c]);
+  return finite && std::isfinite(r.radius) && r.radius > 0;
+}
 
 }  // namespace
 
 RecordStore::RecordStore(const Box3& bounds, const InterpolationOptions& options)
-    : lower_(bounds.lower), largest_cell_(std::max(bounds.diagonal(), 1e-30f)), options_(options), levels_(kLevels) {
-  for (int l = 0; l < kLevels; ++l) levels_[std::size_t(l)].cell = std::ldexp(largest_cell_, -l);
+    : lower_(bounds.empty() ? Vec3{} : bounds.lower), largest_cell_(std::max(double(bounds.diagonal()), 1e-30)), options_(options) {}
+
+/// The level whose cells are between one and two radii wide.
+RecordStore::Level& RecordStore::level_of(float radius) {
+  const int exponent = std::clamp(int(std::floor(std::log2(largest_cell_ / double(radius)))), 0, kFinest);
+  for (Level& level : levels_)
+    if (level.exponent == exponent) return level;
+  Level& level = levels_.emplace_back();
+  level.exponent = exponent;
+  level.inverse_cell = std::ldexp(1 / largest_cell_, exponent);
+  level.buckets.resize(kFirstBuckets);
+  return level;
 }
 
-std::size_t RecordStore::bucket_of(std::int64_t x, std::int64_t y, std::int64_t z, std::size_t mask) {
-  const auto u = [](std::int64_t i) { return std::uint64_t(i) & 0x1fffff; };
-  return std::size_t(mix64(u(x) << 42 | u(y) << 21 | u(z))) & mask;
-}
-
-void RecordStore::add(const IrradianceRecord& record) {
-  const auto index = std::uint32_t(records_.size());
-  records_.push_back(record);
-  // Cells of at least the sphere's diameter: it meets two per axis at most.
-  const int wanted = int(std::floor(std::log2(largest_cell_ / std::max(2 * record.radius, 1e-30f))));
-  Level& level = levels_[std::size_t(std::clamp(wanted, 0, kLevels - 1))];
-  if (level.buckets.empty()) level.buckets.resize(kBuckets);
-  const Vec3 low = (record.position - lower_ - Vec3{1, 1, 1} * record.radius) / level.cell;
-  const Vec3 high = (record.position - lower_ + Vec3{1, 1, 1} * record.radius) / level.cell;
-  const auto cell = [](float x) { return std::int64_t(std::floor(x)); };
-  for (std::int64_t x = cell(low.x); x <= cell(high.x); ++x)
-    for (std::int64_t y = cell(low.y); y <= cell(high.y); ++y)
-      for (std::int64_t z = cell(low.z); z <= cell(high.z); ++z) {
-        auto& bucket = level.buckets[bucket_of(x, y, z, kBuckets - 1)];
-        if (bucket.empty() || bucket.back() != index) bucket.push_back(index);   // two cells of one hash: once
+void RecordStore::list(Level& level, std::uint32_t record) const {
+  const IrradianceRecord& r = records_[record];
+  const Vec3d local = Vec3d(r.position) - lower_;
+  const double reach = double(r.radius) * (1 + kRounding);
+  const Cell low = cell_at(local - Vec3d{1, 1, 1} * reach, level.inverse_cell);
+  const Cell high = cell_at(local + Vec3d{1, 1, 1} * reach, level.inverse_cell);
+  for (std::int64_t x = low.x; x <= high.x; ++x)
+    for (std::int64_t y = low.y; y <= high.y; ++y)
+      for (std::int64_t z = low.z; z <= high.z; ++z) {
+        std::vector<Entry>& bucket = level.buckets[bucket_of({x, y, z}, level.buckets.size())];
+        if (!bucket.empty() && bucket.back().record == record) continue;   // two cells of one hash: once
+        bucket.push_back({r.position, r.radius, r.normal, record});
+        ++level.listed;
       }
 }
 
-void RecordStore::accumulate(std::uint32_t record, Vec3 position, Vec3 normal, float scale, Rgb& sum,
+bool RecordStore::add(const IrradianceRecord& record) {
+  if (!is_usable(record)) {
+    ++refused_;
+    return false;
+  }
+  const auto index = std::uint32_t(records_.size());
+  records_.push_back(record);
+  if (double(record.radius) > largest_cell_) {
+    everywhere_.push_back({record.position, record.radius, record.normal, index});
+    return true;
+  }
+  Level& level = level_of(record.radius);
+  level.members.push_back(index);
+  if (level.listed < 4 * level.buckets.size()) {
+    list(level, index);
+    return true;
+  }
+  level.buckets.assign(4 * level.buckets.size(), {});
+  level.listed = 0;
+  for (std::uint32_t member : level.members) list(level, member);
+  return true;
+}
+
+void RecordStore::accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum,
                              Interpolated& result) const {
-  const IrradianceRecord& r = records_[record];
-  const float radius = r.radius * scale;
-  const Vec3 d = position - r.position;
+  const float radius = entry.radius * scale;
+  const Vec3 d = position - entry.position;
   const float d2 = length2(d);
   if (d2 >= radius * radius) return;
-  const float cosine = dot(normal, r.normal);
+  const float cosine = dot(normal, entry.normal);
   if (cosine <= options_.max_angle_cos) return;
-  if (dot(d, normal + r.normal) < -2 * kBehind * r.radius) return;
+  if (dot(d, normal + entry.normal) < -2 * kBehind * entry.radius) return;
   const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - options_.max_angle_cos));
   const float w = (1 - std::sqrt(d2) / radius) * (1 - angle);
   if (!(w > 0)) return;
-  const Vec3 turn = cross(r.normal, normal);
-  for (int c = 0; c < 3; ++c)
-    sum[c] += w * std::max(0.0f, r.irradiance[c] + dot(turn, r.rotational[std::size_t(c)]) + dot(d, r.translational[std::size_t(c)]));
+  const IrradianceRecord& r = records_[entry.record];
+  const Vec3 turn = cross(entry.normal, normal);
+  for (int c = 0; c < 3; ++c) {
+    const float there = r.irradiance[c] + dot(turn, r.rotational[std::size_t(c)]) + dot(d, r.translational[std::size_t(c)]);
+    sum[c] += w * std::max(0.0f, there);
+  }
   result.weight += w;
   ++result.count;
 }
@@ -65,13 +116,11 @@ void RecordStore::accumulate(std::uint32_t record, Vec3 position, Vec3 normal, f
 RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) const {
   Interpolated result;
   Rgb sum{0.0f};
-  for (const Level& level : levels_) {
-    if (level.buckets.empty()) continue;
-    const Vec3 local = (position - lower_) / level.cell;
-    const auto cell = [](float x) { return std::int64_t(std::floor(x)); };
-    for (std::uint32_t i : level.buckets[bucket_of(cell(local.x), cell(local.y), cell(local.z), kBuckets - 1)])
-      accumulate(i, position, normal, 1, sum, result);
-  }
+  const Vec3d local = Vec3d(position) - lower_;
+  for (const Level& level : levels_)
+    for (const Entry& entry : level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())])
+      accumulate(entry, 1, position, normal, sum, result);
+  for (const Entry& entry : everywhere_) accumulate(entry, 1, position, normal, sum, result);
   if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
   return result;
 }
@@ -79,22 +128,8 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) c
 RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {
   Interpolated result;
   Rgb sum{0.0f};
-  std::vector<std::uint32_t> near;
-  for (const Level& level : levels_) {
-    if (level.buckets.empty()) continue;
-    const Vec3 local = (position - lower_) / level.cell;
-    const auto cell = [](float x) { return std::int64_t(std::floor(x)); };
-    // Cells are two to four radii wide: three radii are within one cell and a half.
-    for (std::int64_t x = -1; x <= 1; ++x)
-      for (std::int64_t y = -1; y <= 1; ++y)
-        for (std::int64_t z = -1; z <= 1; ++z) {
-          const auto& bucket = level.buckets[bucket_of(cell(local.x) + x, cell(local.y) + y, cell(local.z) + z, kBuckets - 1)];
-          near.insert(near.end(), bucket.begin(), bucket.end());
-        }
-  }
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
-  for (std::uint32_t i : near) accumulate(i, position, normal, kRelaxed, sum, result);
+  for (std::uint32_t i = 0; i < records_.size(); ++i)
+    accumulate({records_[i].position, records_[i].radius, records_[i].normal, i}, kRelaxed, position, normal, sum, result);
   if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
   return result;
 }

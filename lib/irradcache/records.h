@@ -27,14 +27,16 @@ struct InterpolationOptions {
 };
 
 /// Records found by place: each is listed in the cells its validity sphere meets, on the level of a hierarchy of
-/// grids whose cells are about as large as it. Adding keeps earlier answers' cost; look-ups are thread-safe while
-/// nothing is added.
+/// hashed grids whose cells are between one and two radii wide. What a look-up costs does not grow with the number
+/// of records, only with how many overlap there. Look-ups are thread-safe while nothing is added.
 class RecordStore {
  public:
   explicit RecordStore(const Box3& bounds, const InterpolationOptions& options = {});
 
-  void add(const IrradianceRecord& record);
+  /// False, and the record is left out and counted, if one of its numbers is not finite or its radius not above 0.
+  bool add(const IrradianceRecord& record);
   std::span<const IrradianceRecord> records() const { return records_; }
+  std::uint64_t refused() const { return refused_; }
 
   struct Interpolated {
     Rgb irradiance{0.0f};               ///< >= 0
@@ -47,28 +49,41 @@ class RecordStore {
   ///     w_i = (1 - |x - x_i| / r_i) (1 - sqrt((1 - n n_i) / (1 - cos_max)))      where both are positive
   ///
   /// the hat weights of Tabellion & Lamorlette 2004 and Krivanek, which go to zero at the border of validity, so
-  /// that no record is seen to begin. A record whose half space does not hold the point is left out
-  /// [Ward 1988]: (x - x_i) . (n + n_i)/2 < -0.05 r_i.
+  /// that no record is seen to begin. Every extrapolation is clamped at 0. A record whose half space does not hold
+  /// the point is left out [Ward 1988]: (x - x_i) . (n + n_i)/2 < -0.05 r_i.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// The same with every record's radius kRelaxed times as large: for the few points, fractions of a pixel beyond
-  /// an edge, that no record quite reaches. Slower.
+  /// an edge, that no record quite reaches. Looks at all records: slow.
   Interpolated interpolate_relaxed(Vec3 position, Vec3 normal) const;
 
-  static constexpr float kRelaxed = 3;
+  static constexpr float kRelaxed = 4;
 
  private:
-  void accumulate(std::uint32_t record, Vec3 position, Vec3 normal, float scale, Rgb& sum, Interpolated& result) const;
-  struct Level {
-    float cell = 0;
-    std::vector<std::vector<std::uint32_t>> buckets;   // hashed cells
+  /// What decides whether a record counts at a point.
+  struct Entry {
+    Vec3 position;
+    float radius;
+    Vec3 normal;
+    std::uint32_t record;
   };
-  static std::size_t bucket_of(std::int64_t x, std::int64_t y, std::int64_t z, std::size_t mask);
+  struct Level {
+    int exponent = 0;                   ///< cells are largest_cell / 2^exponent wide
+    double inverse_cell = 0;
+    std::size_t listed = 0;             ///< entries in all buckets
+    std::vector<std::uint32_t> members;
+    std::vector<std::vector<Entry>> buckets;   ///< by the hash of the cell; a power of two of them
+  };
+  Level& level_of(float radius);
+  void list(Level& level, std::uint32_t record) const;
+  void accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
 
-  Vec3 lower_;
-  float largest_cell_;
+  Vec3d lower_;
+  double largest_cell_;
   InterpolationOptions options_;
   std::vector<IrradianceRecord> records_;
-  std::vector<Level> levels_;                          // level l has cells of largest_cell / 2^l
+  std::vector<Level> levels_;           ///< those that have members, in the order they came
+  std::vector<Entry> everywhere_;       ///< records larger than the largest cell
+  std::uint64_t refused_ = 0;
 };
 
 }  // namespace tempolux

@@ -1,0 +1,225 @@
+// Interpolation between irradiance records: against brute force, against fields known on paper, at the extremes.
+#include "lib/irradcache/records.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "lib/core/random.h"
+#include "lib/core/sampling.h"
+
+namespace tempolux {
+namespace {
+
+Box3 box(Vec3 lower, Vec3 upper) {
+  Box3 b;
+  b.add(lower);
+  b.add(upper);
+  return b;
+}
+
+IrradianceRecord record_at(Vec3 position, Vec3 normal, float radius, Rgb irradiance) {
+  IrradianceRecord r;
+  r.position = position;
+  r.normal = normal;
+  r.radius = r.radius_unclamped = radius;
+  r.irradiance = irradiance;
+  return r;
+}
+
+/// The sum of records.h over all records, one by one, in double.
+RecordStore::Interpolated by_brute_force(const RecordStore& store, Vec3 position, Vec3 normal) {
+  RecordStore::Interpolated result;
+  Rgbd sum{0.0};
+  double weight = 0;
+  for (const IrradianceRecord& r : store.records()) {
+    const Vec3d d = Vec3d(position) - Vec3d(r.position), n(normal), n_i(r.normal);
+    const double cosine = dot(n, n_i);
+    if (length(d) >= double(r.radius) || cosine <= 0.8 || dot(d, n + n_i) < -0.1 * double(r.radius)) continue;
+    const double w = (1 - length(d) / double(r.radius)) * (1 - std::sqrt(std::max(0.0, 1 - cosine) / 0.2));
+    if (w <= 0) continue;
+    for (int c = 0; c < 3; ++c)
+      sum[c] += w * std::max(0.0, double(r.irradiance[c]) + dot(cross(n_i, n), Vec3d(r.rotational[std::size_t(c)])) +
+                                      dot(d, Vec3d(r.translational[std::size_t(c)])));
+    weight += w;
+    ++result.count;
+  }
+  result.weight = float(weight);
+  if (weight > 0) result.irradiance = Rgb(sum * (1 / weight));
+  return result;
+}
+
+/// Records of radii from 1e-4 to 1e2 of the scene's size, scattered, looked up near them. float cancels the
+/// difference of positions: with `far` of the scene's sizes from the origin 6e-8 far is lost. Where a point lies
+/// that close to a border, one side may count it and the other not, with a weight as small.
+void expect_brute_force(Vec3 centre, float far) {
+  const PathRandom random(7, 0);
+  std::uint32_t drawn = 0;
+  const auto uniform = [&] { return random.get1(drawn++, Purpose::gather); };
+  RecordStore store(box(centre, centre + Vec3{1, 1, 1}));
+  for (int i = 0; i < 600; ++i) {
+    const Vec3 position = centre + Vec3{uniform(), uniform(), uniform()};
+    const Vec2 u{uniform(), uniform()};
+    const float radius = i % 50 == 0 ? 2 + 100 * uniform() : std::exp(std::log(1e-4f) + uniform() * std::log(1e4f));
+    IrradianceRecord r = record_at(position, sample_sphere(u), radius, Rgb(uniform(), uniform(), uniform()));
+    for (std::size_t c = 0; c < 3; ++c) {
+      r.rotational[c] = Vec3{uniform(), uniform(), uniform()} - Vec3{0.5f, 0.5f, 0.5f};
+      r.translational[c] = (Vec3{uniform(), uniform(), uniform()} - Vec3{0.5f, 0.5f, 0.5f}) / radius;
+    }
+    ASSERT_TRUE(store.add(r));
+  }
+  const float lost = 2e-5f + 1e-6f * far;
+  int covered = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const IrradianceRecord& r = store.records()[std::size_t(i) % 600];
+    const Vec3 offset = sample_sphere({uniform(), uniform()}) * (r.radius * 1.1f * uniform());
+    const Vec3 position = r.position + offset;
+    const Vec3 normal = normalize(r.normal + sample_sphere({uniform(), uniform()}) * (0.6f * uniform()));
+    const auto found = store.interpolate(position, normal), wanted = by_brute_force(store, position, normal);
+    covered += wanted.weight > 0;
+    const float tolerance = lost / std::max(1e-4f, r.radius);
+    if (tolerance > 0.1f || std::min(found.weight, wanted.weight) < 10 * tolerance) continue;
+    // 1 - cosine is exact to 6e-8 only: sqrt(6e-8 / 0.2) = 6e-4 of each weight where normals nearly agree.
+    const float angle = 6e-4f * float(wanted.count);
+    ASSERT_NEAR(found.weight, wanted.weight, 4 * tolerance + angle) << i;
+    for (int c = 0; c < 3; ++c)
+      ASSERT_NEAR(found.irradiance[c], wanted.irradiance[c], (10 * tolerance + 2 * angle) / wanted.weight + 1e-4f) << i;
+  }
+  EXPECT_GT(covered, 5000);
+}
+
+TEST(RecordStore, FindsWhatBruteForceFinds) { expect_brute_force({0, 0, 0}, 1); }
+TEST(RecordStore, FindsWhatBruteForceFindsFarFromTheOrigin) { expect_brute_force({1000, -2000, 500}, 2000); }
+
+/// Every record counts wherever its weight in float is positive: nothing is lost at the cells' borders.
+TEST(RecordStore, NoCellIsForgotten) {
+  const PathRandom random(11, 0);
+  for (int i = 0; i < 2000; ++i) {
+    const auto at = std::uint32_t(4 * i);
+    const float radius = std::exp(std::log(1e-6f) + random.get1(at, Purpose::gather) * std::log(1e7f));
+    const Vec2 u = random.get2(at + 1, Purpose::gather);
+    RecordStore store(box({-3, 1, 5}, {5, 3, 6}));
+    store.add(record_at({-3 + 8 * u.x, 1 + 2 * u.y, 5.5f}, {0, 0, 1}, radius, Rgb(1.0f)));
+    const Vec3 p = store.records()[0].position;
+    for (Vec3 axis : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
+      // The farthest point whose distance in float is below the radius.
+      Vec3 q = p + axis * (radius * 0.9999f);
+      if (!(length(q - p) < radius)) continue;   // float spacing is wider than the sphere
+      EXPECT_EQ(store.interpolate(q, {0, 0, 1}).count, 1) << radius;
+    }
+  }
+}
+
+/// E(x) = a + b . x on a plane: with exact gradients every mix of records gives it back.
+TEST(RecordStore, LinearFieldIsExact) {
+  const Vec3 slope{0.3f, 0, -0.2f};
+  RecordStore store(box({0, 0, 0}, {1, 0.1f, 1}));
+  const PathRandom random(3, 0);
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    const Vec2 u = random.get2(i, Purpose::gather);
+    const Vec3 position{u.x, 0, u.y};
+    IrradianceRecord r = record_at(position, {0, 1, 0}, 0.1f + 0.2f * random.get1(i, Purpose::roulette), Rgb(1 + dot(slope, position)));
+    r.translational = {slope, slope, slope};
+    store.add(r);
+  }
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const Vec2 u = random.get2(1000 + i, Purpose::gather);
+    const Vec3 position{u.x, 0, u.y};
+    const auto found = store.interpolate(position, {0, 1, 0});
+    ASSERT_GT(found.weight, 0);
+    EXPECT_NEAR(found.irradiance.g, 1 + dot(slope, position), 2e-6f);
+  }
+}
+
+/// E(n) = 1 + 0.5 n_x, rotational gradient (n_i x n) . g with n_i = z: n_i x n = (-n_y, n_x, 0), so g = (0, 0.5, 0).
+TEST(RecordStore, TurnsWithTheNormal) {
+  RecordStore store(box({-1, -1, -1}, {1, 1, 1}));
+  IrradianceRecord r = record_at({}, {0, 0, 1}, 1, Rgb(1.0f));
+  r.rotational = {Vec3{0, 0.5f, 0}, Vec3{0, 0.5f, 0}, Vec3{0, 0.5f, 0}};
+  store.add(r);
+  const Vec3 n = normalize(Vec3{0.3f, 0.1f, 1});
+  EXPECT_NEAR(store.interpolate({}, n).irradiance.r, 1 + 0.5f * n.x, 1e-6f);
+}
+
+TEST(RecordStore, NeverNegative) {
+  RecordStore store(box({-1, -1, -1}, {1, 1, 1}));
+  IrradianceRecord r = record_at({}, {0, 1, 0}, 1, Rgb(0.1f, 1, 1));
+  r.translational = {Vec3{1, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 0, 0}};
+  store.add(r);
+  const auto found = store.interpolate({-0.5f, 0, 0}, {0, 1, 0});
+  EXPECT_EQ(found.irradiance.r, 0);
+  EXPECT_NEAR(found.irradiance.g, 0.5f, 1e-6f);
+}
+
+/// A hat: 1 in the middle, half at half the radius, nothing at the border; the same over the angle's root.
+TEST(RecordStore, WeightIsAHat) {
+  RecordStore store(box({-1, -1, -1}, {1, 1, 1}));
+  store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
+  EXPECT_EQ(store.interpolate({}, {0, 1, 0}).weight, 1);
+  EXPECT_NEAR(store.interpolate({0.25f, 0, 0}, {0, 1, 0}).weight, 0.5f, 1e-6f);
+  EXPECT_EQ(store.interpolate({0.5f, 0, 0}, {0, 1, 0}).count, 0);
+  const float cosine = 0.95f;   // sqrt(0.05 / 0.2) = 0.5
+  EXPECT_NEAR(store.interpolate({}, {std::sqrt(1 - cosine * cosine), cosine, 0}).weight, 0.5f, 1e-5f);
+  EXPECT_EQ(store.interpolate({}, {0.7f, 0.7f, 0}).count, 0);
+}
+
+TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {
+  RecordStore store(box({-1, -1, -1}, {1, 1, 1}));
+  store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
+  EXPECT_EQ(store.interpolate({0, -0.02f, 0}, {0, 1, 0}).count, 1);    // within 0.05 x 0.5
+  EXPECT_EQ(store.interpolate({0, -0.03f, 0}, {0, 1, 0}).count, 0);
+  EXPECT_EQ(store.interpolate({0, 0.1f, 0}, {0, -1, 0}).count, 0);
+}
+
+TEST(RecordStore, OneRecordAndNone) {
+  RecordStore store(box({0, 0, 0}, {1, 1, 1}));
+  EXPECT_EQ(store.interpolate({0.5f, 0.5f, 0.5f}, {0, 1, 0}).weight, 0);
+  EXPECT_EQ(store.interpolate_relaxed({0.5f, 0.5f, 0.5f}, {0, 1, 0}).weight, 0);
+  store.add(record_at({0.5f, 0.5f, 0.5f}, {0, 1, 0}, 0.1f, Rgb(2.0f)));
+  EXPECT_EQ(store.interpolate({0.55f, 0.5f, 0.5f}, {0, 1, 0}).irradiance, Rgb(2.0f));
+  EXPECT_EQ(store.interpolate({0.7f, 0.5f, 0.5f}, {0, 1, 0}).count, 0);
+  EXPECT_EQ(store.interpolate_relaxed({0.7f, 0.5f, 0.5f}, {0, 1, 0}).irradiance, Rgb(2.0f));
+  EXPECT_EQ(store.interpolate_relaxed({0.95f, 0.5f, 0.5f}, {0, 1, 0}).count, 0);
+}
+
+/// Five records in one place, and two one float apart: all count, the mean is theirs.
+TEST(RecordStore, RecordsCloserThanFloatSpacing) {
+  RecordStore store(box({0, 0, 0}, {1000, 1000, 1000}));
+  const float x = 777.7f;
+  for (int i = 0; i < 5; ++i) store.add(record_at({x, 5, 5}, {0, 1, 0}, 1e-7f, Rgb(float(i))));
+  const auto found = store.interpolate({x, 5, 5}, {0, 1, 0});
+  EXPECT_EQ(found.count, 5);
+  EXPECT_NEAR(found.irradiance.r, 2, 1e-6f);
+  store.add(record_at({std::nextafter(x, 1e9f), 5, 5}, {0, 1, 0}, 1e-3f, Rgb(2.0f)));
+  EXPECT_EQ(store.interpolate({x, 5, 5}, {0, 1, 0}).count, 6);
+}
+
+/// Radii beyond the scene and below what a float can tell apart there; a scene of no size.
+TEST(RecordStore, RadiiAtBothEnds) {
+  RecordStore store(box({0, 0, 0}, {1, 1, 1}));
+  store.add(record_at({0.5f, 0, 0.5f}, {0, 1, 0}, 1e30f, Rgb(1.0f)));
+  store.add(record_at({0.5f, 0, 0.5f}, {0, 1, 0}, 1e-18f, Rgb(3.0f)));
+  EXPECT_EQ(store.interpolate({1e6f, 0, 0}, {0, 1, 0}).irradiance, Rgb(1.0f));
+  EXPECT_NEAR(store.interpolate({0.5f, 0, 0.5f}, {0, 1, 0}).irradiance.r, 2, 1e-6f);
+  RecordStore flat(box({2, 2, 2}, {2, 2, 2}));
+  flat.add(record_at({2, 2, 2}, {0, 1, 0}, 0.1f, Rgb(1.0f)));
+  EXPECT_EQ(flat.interpolate({2, 2, 2}, {0, 1, 0}).count, 1);
+}
+
+TEST(RecordStore, WhatIsNotFiniteIsLeftOutAndCounted) {
+  RecordStore store(box({0, 0, 0}, {1, 1, 1}));
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  IrradianceRecord bad_gradient = record_at({}, {0, 1, 0}, 1, Rgb(1.0f));
+  bad_gradient.translational[2].y = nan;
+  EXPECT_FALSE(store.add(bad_gradient));
+  EXPECT_FALSE(store.add(record_at({nan, 0, 0}, {0, 1, 0}, 1, Rgb(1.0f))));
+  EXPECT_FALSE(store.add(record_at({}, {0, 1, 0}, inf, Rgb(1.0f))));
+  EXPECT_FALSE(store.add(record_at({}, {0, 1, 0}, 0, Rgb(1.0f))));
+  EXPECT_FALSE(store.add(record_at({}, {0, 1, 0}, 1, Rgb(1, inf, 1))));
+  EXPECT_EQ(store.refused(), 5u);
+  EXPECT_TRUE(store.records().empty());
+}
+
+}  // namespace
+}  // namespace tempolux
