@@ -78,6 +78,20 @@ Facts lines_of(const std::string& text) {
   return lines;
 }
 
+Facts identity_facts(const formats::Identity& identity) {
+  if (!identity.known()) return nullptr;
+  Facts facts = {{"frames", {identity.first_frame, identity.last_frame}}};
+  const auto add = [&](const char* name, const std::string& hash) {
+    if (!hash.empty()) facts[name] = hash;
+  };
+  add("static_geometry", identity.static_geometry);
+  add("moving_geometry", identity.moving_geometry);
+  add("materials", identity.materials);
+  add("lights", identity.lights);
+  add("media", identity.media);
+  return facts;
+}
+
 FileType file_type(const std::string& path) {
   if (path == "-") return FileType::photons;
   std::FILE* file = std::fopen(path.c_str(), "rb");
@@ -87,17 +101,23 @@ FileType file_type(const std::string& path) {
   std::fclose(file);
   const std::string head(bytes, size);
   if (head.starts_with("\x89TPHOT")) return FileType::photons;
+  if (head.starts_with("\x89TIRPT")) return FileType::irradpoints;
+  if (head.starts_with("\x89TIRRC")) return FileType::irradcache;
   if (head.find_first_not_of(" \t\r\n") < size && head[head.find_first_not_of(" \t\r\n")] == '{')
     return FileType::json;
   for (const char* magic : {"\x76\x2f\x31\x01", "\x89PNG", "\xff\xd8\xff", "#?", "II*", "MM"})
     if (head.starts_with(magic)) return FileType::image;
-  throw InputError(path + ": not a file we know; it is no .photons, no image and no JSON");
+  throw InputError(path + ": not a file we know; it is none of our formats, no image and no JSON");
 }
 
 Facts facts_of(const std::string& path, bool allow_nan) {
   switch (file_type(path)) {
     case FileType::photons:
       return photon_facts(path);
+    case FileType::irradpoints:
+      return irradpoints_facts(path);
+    case FileType::irradcache:
+      return irradcache_facts(path);
     case FileType::image:
       return image_facts(path, allow_nan);
     case FileType::json:
@@ -114,12 +134,31 @@ Facts difference_of(const std::string& a, const std::string& b) {
   switch (type) {
     case FileType::photons:
       return photon_difference(a, b);
+    case FileType::irradpoints:
+      return irradpoints_difference(a, b);
+    case FileType::irradcache:
+      return irradcache_difference(a, b);
     case FileType::image:
       return image_difference(a, b);
     case FileType::json:
       break;
   }
   return json_difference(a, b);
+}
+
+void export_points(const std::string& path, const std::string& format, Output& output) {
+  switch (file_type(path)) {
+    case FileType::photons:
+      return export_photons(path, format, output);
+    case FileType::irradpoints:
+      return export_irradpoints(path, format, output);
+    case FileType::irradcache:
+      return export_irradcache(path, format, output);
+    case FileType::image:
+    case FileType::json:
+      break;
+  }
+  throw InputError(path + ": holds no points to export; use --png or --json");
 }
 
 std::string facts_as_text(const Facts& facts) {

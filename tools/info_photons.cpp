@@ -18,20 +18,6 @@ using namespace formats;
 
 constexpr const char* kKindNames[] = {"direct", "caustic", "indirect", "volume"};
 
-Facts identity_facts(const Identity& identity) {
-  if (!identity.known()) return nullptr;
-  Facts facts = {{"frames", {identity.first_frame, identity.last_frame}}};
-  const auto add = [&](const char* name, const std::string& hash) {
-    if (!hash.empty()) facts[name] = hash;
-  };
-  add("static_geometry", identity.static_geometry);
-  add("moving_geometry", identity.moving_geometry);
-  add("materials", identity.materials);
-  add("lights", identity.lights);
-  add("media", identity.media);
-  return facts;
-}
-
 std::string column_names(std::uint32_t columns) {
   std::string names;
   if (columns & column_direction) names = "direction";

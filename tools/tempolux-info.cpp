@@ -100,7 +100,7 @@ int answer(tools::Tool& tool, Request& request) {
   } else if (!request.format.empty()) {
     using Kind = tools::Output::Kind;
     tools::Output output(request.output, keep, request.format == "csv" ? Kind::text : Kind::binary);
-    tools::export_photons(only_file(request, "--export"), request.format, output);
+    tools::export_points(only_file(request, "--export"), request.format, output);
     output.commit();
   } else {
     return print_files(request);
@@ -111,7 +111,7 @@ int answer(tools::Tool& tool, Request& request) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("tempolux-info", "Tell what is in .photons, frames and other images, and our JSON files.",
+  tools::Tool tool("tempolux-info", "Tell what is in .photons, .irradpoints, .irradcache, frames and other images, and our JSON files.",
                    argc, argv);
   Request request;
   CLI::App& app = tool.app();
@@ -125,7 +125,7 @@ int main(int argc, char** argv) {
   CLI::Option* diff =
       app.add_flag("--diff", request.diff, "of two files: where they differ; exit 1 if their data do");
   app.add_flag("--json", request.json, "facts as JSON instead of text");
-  CLI::Option* format = app.add_option("--export", request.format, "photons as points, with -o: ply or csv")
+  CLI::Option* format = app.add_option("--export", request.format, "photons, irradiance points or records as points, with -o: ply or csv")
                             ->type_name("FORMAT")
                             ->check(CLI::IsMember({"ply", "csv"}));
   CLI::Option* output = tool.output_option(request.output, "file that --export writes; - is standard output");
