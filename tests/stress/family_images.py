@@ -1,4 +1,5 @@
-"""Images: one pixel, one column, 16k wide; black; NaN and infinity on input; beyond half floats; depth and motion far out."""
+"""Images: one pixel, one column, 16k wide; black; NaN and infinity on input; beyond half floats; depth and motion far
+out."""
 import math
 import os
 
@@ -17,7 +18,7 @@ def furnace(s, emission=1.0, rho=0.5):
 
 
 def sizes(s, shapes):
-    """In a furnace every picture has the same mean, whatever its shape: 4 standard errors of one path, about L/4 each."""
+    """In a furnace every picture has the same mean, whatever its shape: 4 standard errors, of one path about L/4."""
     scene = furnace(s)
     map_ = s.photons(scene, "10k")
     for width, height, spp in shapes:

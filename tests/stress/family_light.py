@@ -98,7 +98,8 @@ def many_lights(s):
     corners = [(-0.5, 1, -0.5), (0.5, 1, -0.5), (0.5, 1, 0.5), (-0.5, 1, 0.5)]
     closed = 0.8 / math.pi * irradiance_of_polygon((0, 0, 0), (0, 1, 0), corners, 5.0)
     for name, image in zip(("2 triangles", "10082 triangles"), means):
-        s.near(f"lamp of {name}: radiance of the plate", closed, image.mean(), 4 * image.sigma_of_mean() / closed + 2e-6)
+        s.near(f"lamp of {name}: radiance of the plate", closed, image.mean(),
+               4 * image.sigma_of_mean() / closed + 2e-6)
     s.cost_at_most("CPU time of 10082 triangles / of 2", 10, cost[1] / cost[0])
 
     scene = Scene()

@@ -1,8 +1,8 @@
 """Scale: a room of 1e-4 m, 1 m and 1e6 m, and one of 1 m that stands at 1e5 m from the origin.
 
-Law: radiance of area lights does not change with size s, their flux goes with s^2; a point light gives the same radiance
-if its intensity goes with s^2. With the same seed every random decision is the same, so the images are equal: to the
-bit if s is a power of two (then all floats are those of s = 1 with another exponent), else to rounding.
+Law: radiance of area lights does not change with size s, their flux goes with s^2; a point light gives the same
+radiance if its intensity goes with s^2. With the same seed every random decision is the same, so the images are equal:
+to the bit if s is a power of two (then all floats are those of s = 1 with another exponent), else to rounding.
 """
 import math
 

@@ -53,7 +53,8 @@ def ranges(s):
         folder = s.path("")
         os.mkdir(folder)
         s.done(s.run("photon-trace", scene, "--frames", text, "--photons", "1k", "-o", f"{folder}/####.photons"))
-        s.done(s.run("frame-render", scene, "--frames", text, "--size", "16x16", "--spp", 1, "-o", f"{folder}/####.exr"))
+        s.done(s.run("frame-render", scene, "--frames", text, "--size", "16x16", "--spp", 1,
+                     "-o", f"{folder}/####.exr"))
         plan(s, scene, text)
         folders.append(folder)
     names = sorted(os.listdir(folders[0]))

@@ -140,7 +140,8 @@ class Session:
             texts.append(file.read())
             file.close()
         return Run(" ".join([tool, *command[1:]]), process.returncode, time.monotonic() - start,
-                   usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, texts[0], texts[1].decode("utf-8", "replace"), killed)
+                   usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024, texts[0],
+                   texts[1].decode("utf-8", "replace"), killed)
 
     def done(self, run, codes=(0,)):
         """The run, if it ended well; otherwise the case ends here."""

@@ -71,7 +71,7 @@ def main():
     parser.add_argument("--case", default="", help="only cases with this in their name")
     parser.add_argument("--short", action="store_true", help="fewer samples, wider tolerances, below 90 s")
     parser.add_argument("--long", action="store_true", help="also what takes gigabytes or many minutes")
-    parser.add_argument("--sanitized", action="store_true", help="the tools carry run-time checks: costs are not judged")
+    parser.add_argument("--sanitized", action="store_true", help="tools with run-time checks: costs are not judged")
     parser.add_argument("--json", help="write the rows as JSON")
     parser.add_argument("--markdown", help="write the rows as a Markdown table")
     options = parser.parse_args()
