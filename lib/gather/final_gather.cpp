@@ -72,7 +72,7 @@ Rgb FinalGather::reflected(const SurfacePoint& hit, Vec3 wo, float distance, std
   const PathRandom random(key, std::uint64_t(depth));
   if (side.bsdf.has_diffuse()) {
     const Rgb rho = side.bsdf.diffuse_reflectance(side.wo_local.z);
-    const IrradiancePoint* point = points_.find(hit.position, side.geometric, hit.object);
+    const PointLight* point = points_.find(hit.position, side.geometric, hit.object);
     if (!point) {
       ++counts.unanswered;
     } else {

@@ -16,9 +16,10 @@ constexpr int kMoreCandidates = 64;        ///< where none of the nearest can be
 constexpr int kMaxProbes = 16;
 constexpr std::uint32_t kNormalBins = 8;   ///< per octahedral coordinate
 constexpr float kCellsPerSpacing = 1.4f;
-constexpr float kMostCells = 16000;        ///< per axis: 14 bits in the key
+constexpr float kMostCells = 1 << 20;      ///< per axis: more than coordinates can tell apart
 constexpr float kNeighbourhood = 2.5f;     ///< spacings: how far the neighbours are that a point must reach
-constexpr std::uint32_t kSeparated = 0x80000000u;
+constexpr float kCellDiagonal = 1.4142f;   ///< of a cell's section along a surface
+constexpr std::uint32_t kSeparated = 1;      ///< of an answer, else 2 x (0: none; point + 1)
 
 /// 3 bits of each octahedral coordinate; n need not be encoded to the last bit for that.
 std::uint32_t normal_bin(Vec3 n) {
@@ -56,12 +57,25 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
     as_photons[i].normal = formats::encode_normal({p.normal.x, p.normal.y, p.normal.z});
   }
   index_ = PhotonIndex(as_photons);
-  const float extent = bounds.empty() ? 1 : max_component(bounds.upper - bounds.lower);
-  cell_ = std::max(spacing / kCellsPerSpacing, extent / kMostCells);
-  inverse_cell_ = 1 / cell_;
-  const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(1 << 12, 8 * points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    lights_.push_back({points[i].total(), points[i].radius, points[i].caustic, std::uint32_t(i)});
+    objects_ = std::max(objects_, points[i].object + 2);   // one more for all objects without points
+  }
+  value_bits_ = int(std::bit_width(2 * (points.size() + 1)));
+  const Vec3 extent = bounds.empty() ? Vec3{1, 1, 1} : bounds.upper - bounds.lower;
+  cell_ = std::max(spacing / kCellsPerSpacing, max_component(extent) / kMostCells);
+  for (double keys = INFINITY; !(keys < std::ldexp(1.0, 63 - value_bits_)); cell_ *= 1.1f) {
+    keys = double(objects_) * kNormalBins * kNormalBins;
+    inverse_cell_ = 1 / cell_;
+    for (int a = 0; a < 3; ++a) {
+      size_[std::size_t(a)] = std::uint32_t(std::max(0.0f, extent[a] * inverse_cell_)) + 1;
+      keys *= size_[std::size_t(a)];
+    }
+  }
+  cell_ = 1 / inverse_cell_;
+  const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(1 << 12, 4 * points.size()));
   mask_ = capacity - 1;
-  entries_ = std::make_unique<Entry[]>(capacity);
+  entries_ = std::make_unique<std::atomic<std::uint64_t>[]>(capacity);
   if (reach_) separated_ = std::make_unique<std::atomic<std::uint8_t>[]>(points.size());
 }
 
@@ -73,18 +87,35 @@ std::uint32_t PointLookup::search(Vec3 position, Vec3 normal, std::uint32_t obje
   query.normal = normal;
   query.min_cos = kSameSide;
   index_.find_nearest(query, kCandidates, found);
-  if (found.count() == 0) return 1;
+  if (found.count() == 0) return 0;
   found.sort_by_distance();
   for (std::uint32_t i : found.photons())
-    if (points_[index_.source(i)].object == object) return index_.source(i) + 2;
-  return index_.source(found.photons()[0]) + 2;
+    if (points_[index_.source(i)].object == object) return index_.source(i) + 1;
+  return index_.source(found.photons()[0]) + 1;
 }
 
-std::uint32_t PointLookup::search_cell(const std::uint32_t cell[3], std::uint32_t bin, std::uint32_t object) const {
-  const Vec3 middle =
-      lower_ + Vec3{float(cell[0]) + 0.5f, float(cell[1]) + 0.5f, float(cell[2]) + 0.5f} * cell_;
-  const std::uint32_t value = search(middle, bin_direction(bin), object);
-  return reach_ && value > 1 && separated(value - 2) ? value | kSeparated : value;
+/// The answer of a cell: 0 or point + 1, doubled, and kSeparated if its hits are to be answered one by one.
+std::uint32_t PointLookup::search_cell(Vec3 middle, std::uint32_t bin, std::uint32_t object) const {
+  const std::uint32_t found = search(middle, bin_direction(bin), object);
+  const bool one_by_one = reach_ && found && separated(found - 1) && cut(middle, found - 1);
+  return 2 * found + (one_by_one ? kSeparated : 0);
+}
+
+/// Is there a point that may be the nearest to some place of a cell, and `nearest` cannot reach it?
+bool PointLookup::cut(Vec3 middle, std::uint32_t nearest) const {
+  thread_local NeighbourList found;
+  const IrradiancePoint& point = points_[nearest];
+  PhotonQuery query;
+  query.point = middle;
+  query.normal = point.normal;
+  query.min_cos = kSameSide;
+  query.max_radius = length(point.position - middle) + kCellDiagonal * cell_;
+  index_.find_within(query, found);
+  for (std::uint32_t i : found.photons()) {
+    const IrradiancePoint& other = points_[index_.source(i)];
+    if (&other != &point && !reach_(point.position, point.normal, other.position, other.normal)) return true;
+  }
+  return false;
 }
 
 /// Is there a neighbour, facing the same way, that the point cannot reach?
@@ -121,38 +152,41 @@ std::uint32_t PointLookup::search_reachable(Vec3 position, Vec3 normal, std::uin
       for (std::uint32_t i : found.photons()) {
         const IrradiancePoint& point = points_[index_.source(i)];
         if ((point.object == object) == same && reach_(position, normal, point.position, point.normal))
-          return index_.source(i) + 2;
+          return index_.source(i) + 1;
       }
   }
   return search(position, normal, object);
 }
 
-const IrradiancePoint* PointLookup::find(Vec3 position, Vec3 normal, std::uint32_t object) const {
+const PointLight* PointLookup::find(Vec3 position, Vec3 normal, std::uint32_t object) const {
   const Vec3 local = (position - lower_) * inverse_cell_;
-  const auto coordinate = [](float x) { return std::uint32_t(std::clamp(x, 0.0f, 16383.0f)); };
-  const std::uint32_t cell[3]{coordinate(local.x), coordinate(local.y), coordinate(local.z)};
+  const auto coordinate = [this](float x, std::size_t axis) {
+    return std::min(size_[axis] - 1, std::uint32_t(std::clamp(x, 0.0f, 2 * kMostCells)));
+  };
+  const std::uint32_t x = coordinate(local.x, 0), y = coordinate(local.y, 1), z = coordinate(local.z, 2);
   const std::uint32_t bin = normal_bin(normal);
-  // 3 x 14 bits of cell, 6 of direction, 16 of object (formats and photons number no more). All ones is no cell's.
-  const std::uint64_t key = (std::uint64_t(cell[0]) << 50 | std::uint64_t(cell[1]) << 36 | std::uint64_t(cell[2]) << 22 |
-                             std::uint64_t(bin) << 16 | (object & 0xffff)) + 1;
-  const auto answer = [&](std::uint32_t value) -> const IrradiancePoint* {
-    if (value & kSeparated) value = search_reachable(position, normal, object);
-    return value > 1 ? &points_[value - 2] : nullptr;
+  const std::uint64_t cell = (std::uint64_t(z) * size_[1] + y) * size_[0] + x;
+  const std::uint64_t key =
+      (cell * objects_ + std::min(object, objects_ - 1)) * (kNormalBins * kNormalBins) + bin + 1;
+  const auto answer = [&](std::uint32_t value) -> const PointLight* {
+    const std::uint32_t found = value & kSeparated ? search_reachable(position, normal, object) : value / 2;
+    return found ? &lights_[found - 1] : nullptr;
   };
 
+  const std::uint64_t value_mask = (std::uint64_t(1) << value_bits_) - 1;
   std::size_t slot = mix64(key) & mask_;
-  for (int probe = 0; probe < kMaxProbes; ++probe, slot = (slot + 1) & mask_) {
-    Entry& entry = entries_[slot];
-    std::uint64_t there = entry.key.load(std::memory_order_acquire);
-    if (there != 0 && there != key) continue;
-    if (there == key)
-      if (const std::uint32_t value = entry.value.load(std::memory_order_acquire)) return answer(value);
-    const std::uint32_t value = search_cell(cell, bin, object);
-    if (there == 0 && !entry.key.compare_exchange_strong(there, key) && there != key) continue;
-    entry.value.store(value, std::memory_order_release);
-    return answer(value);
+  std::atomic<std::uint64_t>* empty = nullptr;
+  for (int probe = 0; probe < kMaxProbes && !empty; ++probe, slot = (slot + 1) & mask_) {
+    const std::uint64_t there = entries_[slot].load(std::memory_order_relaxed);
+    if (there >> value_bits_ == key) return answer(std::uint32_t(there & value_mask));
+    if (there == 0) empty = &entries_[slot];
   }
-  return answer(search_cell(cell, bin, object));
+  const Vec3 middle = lower_ + Vec3{float(x) + 0.5f, float(y) + 0.5f, float(z) + 0.5f} * cell_;
+  const std::uint32_t value = search_cell(middle, bin, object);
+  // Another thread may have taken the place meanwhile: then this cell is looked up again next time.
+  std::uint64_t none = 0;
+  if (empty) empty->compare_exchange_strong(none, key << value_bits_ | value, std::memory_order_relaxed);
+  return answer(value);
 }
 
 }  // namespace tempolux
