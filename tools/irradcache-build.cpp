@@ -100,9 +100,9 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
       throw InputError(options.scene() + ": frame " + std::to_string(number) + " is lit or built differently from frame " +
                        std::to_string(first.frame) + ": one cache cannot hold for both; make one for each");
     const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
-    const std::size_t added = place_records(
-        gather, [&](std::size_t pixel) { return seen_through(tracer, view, pixel); }, options.width, options.height,
-        first.bounds, options.placement, store, counts, [&](double done) { tool.progress(done); });
+    const PixelView seen = [&](float x, float y, const PathRandom* random) { return seen_through(tracer, view, x, y, random); };
+    const std::size_t added = place_records(gather, seen, options.width, options.height, first.bounds, options.placement,
+                                            store, counts, [&](double done) { tool.progress(done); });
     tool.stats().set("records_added." + std::to_string(number), double(added));
   }
   tool.stats().phase("write");

@@ -13,6 +13,14 @@ namespace {
 constexpr std::size_t kBatch = 256;
 constexpr int kCoarsest = 16;
 
+std::vector<std::size_t> shuffled(std::vector<std::size_t> pixels) {
+  std::sort(pixels.begin(), pixels.end(), [](std::size_t a, std::size_t b) {
+    const std::uint64_t ka = mix64(a), kb = mix64(b);
+    return ka != kb ? ka < kb : a < b;
+  });
+  return pixels;
+}
+
 /// Pixels of the lattice of `stride` that are on no coarser one, in a fixed shuffled order.
 std::vector<std::size_t> lattice(int width, int height, int stride) {
   std::vector<std::size_t> pixels;
@@ -21,12 +29,93 @@ std::vector<std::size_t> lattice(int width, int height, int stride) {
       if (stride < kCoarsest && x % (2 * stride) == 0 && y % (2 * stride) == 0) continue;
       pixels.push_back(std::size_t(y) * std::size_t(width) + std::size_t(x));
     }
-  std::sort(pixels.begin(), pixels.end(), [](std::size_t a, std::size_t b) {
-    const std::uint64_t ka = mix64(a), kb = mix64(b);
-    return ka != kb ? ka < kb : a < b;
-  });
+  return shuffled(std::move(pixels));
+}
+
+/// What a pixel saw, in short.
+struct Glimpse {
+  Vec3 position, normal;
+  float footprint = 0;
+  std::uint32_t object = 0;
+  bool any = false, by_choice = false;
+
+  /// Could something else lie between this pixel's centre and its neighbour's?
+  bool parted_from(const Glimpse& o) const {
+    if (any != o.any || object != o.object) return true;
+    if (!any) return false;
+    return dot(normal, o.normal) < 0.9f || std::abs(dot(normal, o.position - position)) > 2 * footprint;
+  }
+};
+
+/// Pixels that differ from one beside or below them, both; and those seen by choice.
+std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int width, int height) {
+  std::vector<std::uint8_t> edge(glimpses.size());
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const std::size_t at = std::size_t(y) * std::size_t(width) + std::size_t(x);
+      if (glimpses[at].by_choice) edge[at] = 1;
+      if (x + 1 < width && glimpses[at].parted_from(glimpses[at + 1])) edge[at] = edge[at + 1] = 1;
+      const std::size_t below = at + std::size_t(width);
+      if (y + 1 < height && glimpses[at].parted_from(glimpses[below])) edge[at] = edge[below] = 1;
+    }
+  std::vector<std::size_t> pixels;
+  for (std::size_t p = 0; p < edge.size(); ++p)
+    if (edge[p]) pixels.push_back(p);
   return pixels;
 }
+
+/// Adds records at points that none covers yet.
+class Placement {
+ public:
+  Placement(const FinalGather& gather, const Box3& bounds, const PlacementOptions& options, RecordStore& store, GatherCounts& counts)
+      : gather_(gather),
+        options_(options),
+        max_radius_(options.max_radius > 0 ? options.max_radius : 0.1f * bounds.diagonal()),
+        store_(store),
+        counts_(counts) {}
+
+  /// Points 0 .. count-1 in this order; view(i) may say that there is nothing to cover.
+  template <class View>
+  void cover(std::size_t count, const View& view) {
+    // What is covered now stays covered: only the rest is looked at again, batch by batch.
+    std::vector<std::optional<SeenPoint>> open(count);
+    parallel_chunks(count, 1024, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        if (const std::optional<SeenPoint> seen = view(i); seen && !is_covered(*seen)) open[i] = seen;
+    });
+    std::erase_if(open, [](const auto& seen) { return !seen; });
+    for (std::size_t start = 0; start < open.size(); start += kBatch)
+      add_batch(std::span(open).subspan(start, std::min(kBatch, open.size() - start)));
+  }
+
+ private:
+  bool is_covered(const SeenPoint& seen) const {
+    return store_.interpolate(seen.surface.position, seen.normal).weight >= options_.min_weight;
+  }
+
+  void add_batch(std::span<const std::optional<SeenPoint>> points) {
+    std::vector<std::optional<IrradianceRecord>> records(points.size());
+    std::mutex mutex;
+    parallel_chunks(points.size(), 8, [&](std::size_t first, std::size_t last) {
+      GatherCounts local;
+      for (std::size_t i = first; i < last; ++i) {
+        if (is_covered(*points[i])) continue;
+        records[i] = gather_.gather(points[i]->surface, points[i]->normal, local);
+        limit_radius(*records[i], points[i]->footprint, max_radius_, options_);
+      }
+      const std::lock_guard lock(mutex);
+      counts_ += local;
+    });
+    for (const auto& record : records)
+      if (record) store_.add(*record);
+  }
+
+  const FinalGather& gather_;
+  const PlacementOptions& options_;
+  float max_radius_;
+  RecordStore& store_;
+  GatherCounts& counts_;
+};
 
 }  // namespace
 
@@ -47,48 +136,34 @@ void limit_radius(IrradianceRecord& record, float footprint, float max_radius, c
 std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height, const Box3& bounds,
                           const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
                           const std::function<void(double)>& progress) {
-  const float max_radius = options.max_radius > 0 ? options.max_radius : 0.1f * bounds.diagonal();
   const std::size_t before = store.records().size();
+  Placement placement(gather, bounds, options, store, counts);
+  std::vector<Glimpse> glimpses(std::size_t(width) * std::size_t(height));
   std::size_t done = 0;
-  struct Candidate {
-    SeenPoint seen;
-    IrradianceRecord record;
+  const auto advance = [&](std::size_t pixels) {
+    done += pixels;
+    if (progress) progress(double(done) / (1.25 * double(width) * height));
   };
   for (int stride = kCoarsest; stride >= 1; stride /= 2) {
     const std::vector<std::size_t> pixels = lattice(width, height, stride);
-    // What is covered now stays covered: only the rest is looked at again, batch by batch.
-    std::vector<std::optional<SeenPoint>> open(pixels.size());
-    parallel_chunks(pixels.size(), 1024, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        const std::optional<SeenPoint> seen = view(pixels[i]);
-        if (seen && store.interpolate(seen->surface.position, seen->normal).weight < options.min_weight) open[i] = seen;
-      }
+    placement.cover(pixels.size(), [&](std::size_t i) {
+      const std::size_t x = pixels[i] % std::size_t(width), y = pixels[i] / std::size_t(width);
+      const std::optional<SeenPoint> seen = view(float(x) + 0.5f, float(y) + 0.5f, nullptr);
+      if (seen)
+        glimpses[pixels[i]] = {seen->surface.position, seen->normal, seen->footprint, seen->surface.object, true, seen->by_choice};
+      return seen;
     });
-    std::vector<Candidate> waiting;
-    for (const auto& seen : open)
-      if (seen) waiting.push_back({*seen, {}});
-    for (std::size_t start = 0; start < waiting.size(); start += kBatch) {
-      const std::size_t end = std::min(waiting.size(), start + kBatch);
-      std::vector<std::uint8_t> needed(end - start);
-      std::mutex mutex;
-      parallel_chunks(end - start, 8, [&](std::size_t first, std::size_t last) {
-        GatherCounts local;
-        for (std::size_t i = first; i < last; ++i) {
-          Candidate& candidate = waiting[start + i];
-          const SeenPoint& seen = candidate.seen;
-          if (store.interpolate(seen.surface.position, seen.normal).weight >= options.min_weight) continue;
-          needed[i] = 1;
-          candidate.record = gather.gather(seen.surface, seen.normal, local);
-          limit_radius(candidate.record, seen.footprint, max_radius, options);
-        }
-        const std::lock_guard lock(mutex);
-        counts += local;
-      });
-      for (std::size_t i = 0; i < end - start; ++i)
-        if (needed[i]) store.add(waiting[start + i].record);
-    }
-    done += pixels.size();
-    if (progress) progress(double(done) / (double(width) * height));
+    advance(pixels.size());
+  }
+  const std::vector<std::size_t> edges = shuffled(edge_pixels(glimpses, width, height));
+  constexpr Vec2 kWithin[4] = {{0.125f, 0.625f}, {0.375f, 0.125f}, {0.625f, 0.875f}, {0.875f, 0.375f}};
+  for (std::uint32_t k = 0; k < 4; ++k) {
+    placement.cover(edges.size(), [&](std::size_t i) {
+      const std::size_t x = edges[i] % std::size_t(width), y = edges[i] / std::size_t(width);
+      const PathRandom random(mix64(edges[i]), k);
+      return view(float(x) + kWithin[k].x, float(y) + kWithin[k].y, &random);
+    });
+    advance(std::size_t(width) * std::size_t(height) / 16);
   }
   return store.records().size() - before;
 }

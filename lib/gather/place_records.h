@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "lib/core/random.h"
 #include "lib/gather/final_gather.h"
 
 namespace tempolux {
@@ -22,14 +23,18 @@ struct SeenPoint {
   SurfacePoint surface;
   Vec3 normal;                        ///< shading normal on the side seen
   float footprint = 0;                ///< m: size of a pixel there
+  bool by_choice = false;             ///< seen through a surface that could have sent the ray elsewhere
 };
 
-/// What pixel number i of a picture sees; nothing if it needs no indirect light.
-using PixelView = std::function<std::optional<SeenPoint>(std::size_t pixel)>;
+/// What raster position (x, y) of a picture sees; nothing if it needs no indirect light. Where the way forks
+/// (glass, gloss) it is drawn from `random`, or the likelier one without.
+using PixelView = std::function<std::optional<SeenPoint>(float x, float y, const PathRandom* random)>;
 
-/// Adds records until every pixel's point is covered: lattices of 16, 8, 4, 2 and 1 pixels one after the other, each
-/// in a fixed shuffled order and in batches of fixed size: a batch is tested and gathered in parallel, its
-/// records are added in order. The same records for any number of threads. Returns how many were added.
+/// Adds records until every pixel's point is covered: the points through the centres of lattices of 16, 8, 4, 2 and
+/// 1 pixels one after the other, each in a fixed shuffled order and in batches of fixed size: a batch is tested and
+/// gathered in parallel, its records are added in order. Then four more points in each pixel at an edge or behind
+/// glass, so that a frame's samples find records there too. The same records for any number of threads.
+/// Returns how many were added.
 std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,
                           const Box3& bounds, const PlacementOptions& options, RecordStore& store,
                           GatherCounts& counts, const std::function<void(double)>& progress = {});

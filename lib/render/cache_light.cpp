@@ -6,7 +6,7 @@
 namespace tempolux {
 namespace {
 
-constexpr int kMirrorsInARow = 16;
+constexpr std::uint32_t kMirrorsInARow = 16;
 
 }  // namespace
 
@@ -27,11 +27,10 @@ DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geomet
   return result;
 }
 
-std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, std::size_t pixel) {
-  const auto x = float(int(pixel % std::size_t(view.width()))) + 0.5f, y = float(int(pixel / std::size_t(view.width()))) + 0.5f;
+std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, float x, float y, const PathRandom* random) {
   Ray ray = view.ray(x, y);
   float distance = 0;
-  for (int mirrors = 0; mirrors < kMirrorsInARow; ++mirrors) {
+  for (std::uint32_t mirrors = 0; mirrors < kMirrorsInARow; ++mirrors) {
     Hit hit;
     if (!tracer.intersect(ray, hit)) return std::nullopt;
     const SurfacePoint point = tracer.surface_point(hit);
@@ -40,10 +39,12 @@ std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& vi
     if (shading.bsdf.has_diffuse()) {
       // Size of a pixel there: the angle to the neighbouring pixel's ray times the whole way.
       const float step = view.pixel_size(distance);
-      return SeenPoint{point, shading.normal, step};
+      return SeenPoint{point, shading.normal, step, mirrors > 0};
     }
     // u = 0.5 follows what is more than half of the light.
-    const Bsdf::Sample next = shading.bsdf.sample(shading.wo_local, 0.5f, {0.5f, 0.5f});
+    const float lobe = random ? random->get1(mirrors, Purpose::lobe) : 0.5f;
+    const Vec2 within = random ? random->get2(mirrors, Purpose::scatter) : Vec2{0.5f, 0.5f};
+    const Bsdf::Sample next = shading.bsdf.sample(shading.wo_local, lobe, within);
     if (is_black(next.weight)) return std::nullopt;
     ray = spawn_ray(point, shading.frame.to_world(next.wi));
   }

@@ -33,8 +33,8 @@ class CacheLight : public DiffuseLight {
   mutable std::atomic<std::uint64_t> missing_{0};
 };
 
-/// What a pixel sees through its centre: the first surface with a Lambert lobe, through mirrors and glass by the
-/// likelier of reflection and transmission.
-std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, std::size_t pixel);
+/// What raster position (x, y) sees: the first surface with a Lambert lobe, through mirrors and glass by the
+/// likelier of reflection and transmission, or by one drawn from `random`.
+std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, float x, float y, const PathRandom* random);
 
 }  // namespace tempolux
