@@ -115,6 +115,29 @@ TEST(Tracer, ARoomIsClosedAtEveryScale) {
   }
 }
 
+/// Rays aimed at the very edges of a long room, and what leaves the points they meet: rounding must not put such
+/// a point behind the neighbouring wall, from where the next ray would find the way out.
+TEST(Tracer, WhatLeavesAnEdgeStaysInTheRoom) {
+  HandMadeScene scene;
+  scene.add_room({-5, -0.5f, -0.5f}, {5, 0.5f, 0.5f}, matte(Rgb(0.5f)));
+  const Tracer tracer(scene.frame());
+  int lost = 0;
+  for (std::uint32_t i = 0; i < 200000; ++i) {
+    const PathRandom random(9, i);
+    const Vec2 u = random.get2(0, Purpose::test);
+    const float sx = i & 1 ? 5.0f : -5.0f, sy = i & 2 ? 0.5f : -0.5f;
+    const Vec3 edge = i % 3 == 0 ? Vec3{sx, sy, u.x - 0.5f} : i % 3 == 1 ? Vec3{sx, u.x - 0.5f, sy} : Vec3{10 * u.x - 5, sy, i & 1 ? 0.5f : -0.5f};
+    const Vec3 from = Vec3{9 * u.y - 4.5f, 0.9f * random.get1(1, Purpose::test) - 0.45f, 0.9f * random.get1(2, Purpose::test) - 0.45f};
+    Hit hit;
+    if (!tracer.intersect({from, edge - from, 0, INFINITY}, hit)) { ++lost; continue; }
+    const SurfacePoint point = tracer.surface_point(hit);
+    const Vec3 inwards = dot(point.normal_geometric, from - point.position) < 0 ? -point.normal_geometric : point.normal_geometric;
+    const Vec3 travel = Frame(inwards).to_world(sample_hemisphere_cos(random.get2(3, Purpose::test)));
+    lost += !tracer.intersect(spawn_ray(point, travel), hit);
+  }
+  EXPECT_EQ(lost, 0);
+}
+
 TEST(Tracer, AShadowRayIsFreeBetweenTwoWallsAndBlockedByAThird) {
   HandMadeScene scene;
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
