@@ -43,7 +43,10 @@ if(TEMPOLUX_BENCH)
 endif()
 
 # Stiff and extreme cases, short form; with sanitizers what a case costs is not judged.
+set(sanitized)
+if(TEMPOLUX_SANITIZE)
+  set(sanitized --sanitized)
+endif()
 add_test(NAME stress.short COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/stress/stress.py --short
-                                   --bin ${CMAKE_BINARY_DIR}/bin $<$<BOOL:${TEMPOLUX_SANITIZE}>:--sanitized>
-         COMMAND_EXPAND_LISTS)
+                                   --bin ${CMAKE_BINARY_DIR}/bin ${sanitized})
 set_tests_properties(stress.short PROPERTIES TIMEOUT 300)
