@@ -65,11 +65,17 @@ Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& rando
     return Rgb(estimate.irradiance);
   }
   const bool whole = open_and_flat(point, radius, random.get1(2, Purpose::points));
+  // In a whole disc what lies in its plane can be reached; a sheet close above it may still be another side's.
+  const auto counts = [&](std::uint32_t photon) {
+    const Vec3 place = index_.position(photon);
+    return (whole && std::abs(dot(place - point.position, point.normal)) < 4 * reach_.offset()) ||
+           reach_(point.position, point.normal, place, index_.normal(photon));
+  };
   Rgbd flux{0.0};
   bool any = false;
   for (std::size_t i = 0; i < found.count(); ++i) {
     const std::uint32_t photon = found.photons()[i];
-    if (i == farthest || (!whole && !reach_(point.position, point.normal, index_.position(photon), index_.normal(photon)))) continue;
+    if (i == farthest || !counts(photon)) continue;
     flux += Rgbd(index_.flux(photon));
     any = true;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "formats/photons/photons.h"
 #include "lib/core/random.h"
@@ -49,7 +50,7 @@ Vec3 bin_direction(std::uint32_t bin) {
 }  // namespace
 
 PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing, ReachTest reach)
-    : points_(points), reach_(std::move(reach)), lower_(bounds.lower), spacing_(spacing) {
+    : points_(points), reach_(std::move(reach)), lower_(bounds.empty() ? Vec3{} : bounds.lower), spacing_(spacing) {
   std::vector<formats::Photon> as_photons(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const IrradiancePoint& p = points[i];
@@ -161,7 +162,7 @@ std::uint32_t PointLookup::search_reachable(Vec3 position, Vec3 normal, std::uin
 const PointLight* PointLookup::find(Vec3 position, Vec3 normal, std::uint32_t object) const {
   const Vec3 local = (position - lower_) * inverse_cell_;
   const auto coordinate = [this](float x, std::size_t axis) {
-    return std::min(size_[axis] - 1, std::uint32_t(std::clamp(x, 0.0f, 2 * kMostCells)));
+    return x > 0 ? std::min(size_[axis] - 1, std::uint32_t(std::min(x, 2 * kMostCells))) : 0u;   // NaN: 0
   };
   const std::uint32_t x = coordinate(local.x, 0), y = coordinate(local.y, 1), z = coordinate(local.z, 2);
   const std::uint32_t bin = normal_bin(normal);
