@@ -32,6 +32,13 @@ void flush_denormals_to_zero() {
   _mm_setcsr(_mm_getcsr() | kFlushToZero | kDenormalsAreZero);
 }
 
+/// Memory once used is kept. Workers take and free pieces of up to a megabyte over and over; given back to the
+/// system each time they would come back as page faults, 5 % of photon-trace.
+void keep_freed_memory() {
+  mallopt(M_MMAP_THRESHOLD, 4 << 20);
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+}
+
 /// If started with a standard stream closed, an output file could get its number and receive our messages.
 void hold_standard_streams() {
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
@@ -69,6 +76,7 @@ std::uint64_t Common::seed_for_frame(int frame) const {
 
 Tool::Tool(std::string name, std::string what, int argc, char** argv) {
   flush_denormals_to_zero();
+  keep_freed_memory();
   hold_standard_streams();
   install_signal_handlers();
   state_ = std::make_unique<State>(std::move(name), std::move(what), argc, argv);

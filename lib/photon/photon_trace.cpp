@@ -39,6 +39,18 @@ struct Arrival {
   }
 };
 
+/// Field by field into its place: a copy of 32 bytes just put together would wait for each of them.
+void record(Rgb flux, const SurfacePoint& point, Vec3 normal, PathKind kind, std::uint32_t bounce,
+            std::vector<formats::Photon>& photons) {
+  formats::Photon& photon = photons.emplace_back();
+  photon.position = {point.position.x, point.position.y, point.position.z};
+  photon.flux = {flux.r, flux.g, flux.b};
+  photon.normal = formats::encode_normal({normal.x, normal.y, normal.z});
+  photon.object = std::uint16_t(point.object);
+  photon.kind = kind;
+  photon.bounce = std::uint8_t(std::min(bounce, 255u));
+}
+
 }  // namespace
 
 void PhotonOptions::set_kinds(const std::string& list) {
@@ -115,10 +127,7 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
                         : kind == PathKind::caustic ? options_.store_caustic : options_.store_indirect;
     if (wanted && bsdf.has_lambert() && at.shading_correction > 0) {
       const Rgb stored = flux * (bsdf.arrival_weight(at.wi_local.z) * at.shading_correction);
-      const Vec3 p = point.position, n = at.normal_geometric;
-      batch.block.photons.push_back({{p.x, p.y, p.z}, {stored.r, stored.g, stored.b},
-                                     formats::encode_normal({n.x, n.y, n.z}), std::uint16_t(point.object), kind,
-                                     std::uint8_t(std::min(bounce, 255u))});
+      record(stored, point, at.normal_geometric, kind, bounce, batch.block.photons);
     }
 
     // Scatter, or be absorbed.

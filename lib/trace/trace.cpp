@@ -22,11 +22,12 @@ constexpr float kOffsetScale = 0x1p-20f;
 /// edge must not put a point behind the neighbouring wall, from where the next ray would leave a closed room.
 constexpr float kSmallestBarycentric = 0x1p-18f;
 
-/// Finite, t_min >= 0, and small enough that Embree's squared lengths stay finite.
+/// Finite, t_min >= 0, and small enough that Embree's squared lengths stay finite. A sum that is below a number
+/// has no NaN in it.
 bool usable(const Ray& ray) {
   constexpr float kLargest = 1e18f;
-  const bool finite = is_finite(ray.origin) && is_finite(ray.direction) && ray.t_min >= 0 && !std::isnan(ray.t_max);
-  return finite && max_component(abs(ray.origin)) < kLargest && max_component(abs(ray.direction)) < kLargest;
+  const auto sum = [](Vec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); };
+  return sum(ray.origin) < kLargest && sum(ray.direction) < kLargest && ray.t_min >= 0 && !std::isnan(ray.t_max);
 }
 
 struct Tree {
@@ -238,21 +239,8 @@ SurfacePoint Tracer::surface_point(const Hit& hit) const {
 std::uint64_t Tracer::refused_ray_count() const { return impl_->refused.load(); }
 const SceneFrame& Tracer::frame() const { return *impl_->frame; }
 
-namespace {
-
-Vec3 offset_origin(const SurfacePoint& point, Vec3 direction) {
-  const float side = dot(direction, point.normal_geometric) < 0 ? -point.offset : point.offset;
-  return point.position + point.normal_geometric * side;
-}
-
-}  // namespace
-
-Ray spawn_ray(const SurfacePoint& point, Vec3 direction) {
-  return {offset_origin(point, direction), direction, 0, INFINITY};
-}
-
 Ray spawn_shadow_ray(const SurfacePoint& point, Vec3 target, float target_offset) {
-  const Vec3 origin = offset_origin(point, target - point.position);
+  const Vec3 origin = spawn_ray(point, target - point.position).origin;
   const Vec3 direction = target - origin;
   const float distance = length(direction);
   // Stop short of the light by its own offset, a few ulp of the distance at least.

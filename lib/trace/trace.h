@@ -58,7 +58,10 @@ class Tracer {
 };
 
 /// A ray that leaves `point` into `direction`, started off the surface on the side it leaves to.
-Ray spawn_ray(const SurfacePoint& point, Vec3 direction);
+inline Ray spawn_ray(const SurfacePoint& point, Vec3 direction) {
+  const float side = dot(direction, point.normal_geometric) < 0 ? -point.offset : point.offset;
+  return {point.position + point.normal_geometric * side, direction, 0, INFINITY};
+}
 /// A ray from `point` that ends just before `target`; target_offset is that point's own offset, or 0.
 /// Direction is not normalised: t runs from 0 to 1.
 Ray spawn_shadow_ray(const SurfacePoint& point, Vec3 target, float target_offset);
