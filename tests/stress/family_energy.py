@@ -57,7 +57,8 @@ def build(s, shape, rho):
 
 def photon_totals(s, shape, rho, paths):
     path, _, _ = build(s, shape, rho)
-    totals = s.photon_totals(path, paths, "--seed", list(SHAPES).index(shape))     # else all shapes share their luck
+    # Seeds of their own: else all shapes share one sequence of survivals.
+    totals = s.photon_totals(path, paths, "--seed", list(SHAPES).index(shape), timeout=1800)
     s.near(f"photons, {shape}, rho {rho:g}: stored flux, W", FLUX / (1 - rho), totals["stored"][1],
            4 * math.sqrt(rho / paths) + 1e-6)
     s.near(f"photons, {shape}, rho {rho:g}: escaped", 0, totals["escaped"][1] / FLUX, 0)
@@ -85,7 +86,7 @@ def closed_boxes_paths(s):
             mean = variance = 0.0
             for camera, size, share in views:
                 spp = s.pick(8, 512)
-                image = s.render(path, size, spp, "--integrator", "path", "--camera", camera)
+                image = s.render(path, size, spp, "--integrator", "path", "--camera", camera, timeout=1800)
                 mean += share * image.mean()
                 variance += (share * image.sigma_of_mean())**2
             expected = FLUX / (area * (1 - rho))

@@ -225,7 +225,8 @@ class Session:
         if mark != b"END!" or not all(map(math.isfinite, sums)):
             raise Failed(f"no end block, or sums that are not finite: {run.command}")
         return {"photons": photons, "stored": sums[0:3], "emitted": sums[3:6], "escaped": sums[6:9],
-                "absorbed": sums[9:12], "seconds": run.seconds, "memory": self.read_json(stats)["peak_memory_bytes"]}
+                "absorbed": sums[9:12], "seconds": run.seconds, "cpu": run.cpu,
+                "memory": self.read_json(stats)["peak_memory_bytes"]}
 
     def info(self, path):
         return finite_json(self.done(self.run("tempolux-info", "--json", path)).out)
