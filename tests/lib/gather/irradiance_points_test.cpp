@@ -111,9 +111,16 @@ INSTANTIATE_TEST_SUITE_P(Boxes, ClosedBoxPoints,
 /// Uniform light in a room: 40k photons on both sides of 24 m^2, k = 50, so the disc's radius is 0.14 m, a seventh of a
 /// half wall: a third of all discs are cut. An estimate has sigma 14 %; neighbouring ones share photons: over 4
 /// seeds 80k photons on the inside determine the mean to 0.35 %, the strip's (10 % of a wall) to 1.1 %, a wall's to 0.9 %.
-TEST(IrradiancePoints, NothingIsLostAtEdgesAndCorners) {
-  HandMadeScene scene;
-  scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
+/// The same with every other triangle's front turned outwards.
+class RoomPoints : public testing::TestWithParam<bool> {};
+
+TEST_P(RoomPoints, NothingIsLostAtEdgesAndCorners) {
+  HandMadeScene room, scene;
+  room.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
+  const Surface& walls = room.frame().surfaces[0];
+  std::vector<std::array<std::uint32_t, 3>> triangles = walls.primitive->triangles;
+  for (std::size_t t = 0; GetParam() && t < triangles.size(); t += 2) std::swap(triangles[t][1], triangles[t][2]);
+  scene.add({walls.positions.begin(), walls.positions.end()}, triangles, matte(Rgb(0.5f)));
   Stage stage(scene);
   Mean all, strip, corner;
   std::map<int, Mean> wall;
@@ -134,6 +141,8 @@ TEST(IrradiancePoints, NothingIsLostAtEdgesAndCorners) {
   EXPECT_NEAR(corner.value(), 1, 0.05);   // 1 % of the area: 800 photons
   for (const auto& [number, mean] : wall) EXPECT_NEAR(mean.value(), 1, 0.027) << number;
 }
+
+INSTANTIATE_TEST_SUITE_P(Windings, RoomPoints, testing::Bool());
 
 /// A wall between a bright and a dark half of a room, as one sheet and 1 mm thick: the dark side gets nothing at all,
 /// the bright side loses nothing, neither on the wall nor on the floor beside it.
