@@ -90,6 +90,15 @@ void share_light(std::vector<PlannedSegment>& segments) {
     for (PlannedFrame& frame : segment.frames) frame.lit_frame = first_with.at(content(segment, frame));
 }
 
+/// Sets picture of the frames asked for: those with equal light and camera show the same.
+void share_pictures(std::vector<PlannedSegment>& segments) {
+  std::map<std::pair<int, std::string>, int> first_with;
+  for (PlannedSegment& segment : segments)
+    for (PlannedFrame& frame : segment.frames)
+      if (frame.asked)
+        frame.picture = first_with.try_emplace({frame.lit_frame, frame.camera}, frame.frame).first->second;
+}
+
 bool cameras_differ(const std::vector<PlannedFrame>& frames) {
   std::set<std::string> hashes;
   for (const PlannedFrame& frame : frames)
@@ -148,13 +157,13 @@ std::string share(std::size_t count, std::size_t of, const std::string& how) {
   return std::to_string(count) + " of " + counted(of, "material") + verb + how;
 }
 
-/// How many states of light transport the frames asked for have.
-std::size_t lit_state_count(const Plan& plan) {
-  std::set<int> states;
+/// How many different values a member has in the frames asked for: states of light transport, pictures.
+std::size_t different(const Plan& plan, int PlannedFrame::*member) {
+  std::set<int> values;
   for (const PlannedSegment& segment : plan.segments)
     for (const PlannedFrame& frame : segment.frames)
-      if (frame.asked) states.insert(frame.lit_frame);
-  return states.size();
+      if (frame.asked) values.insert(frame.*member);
+  return values.size();
 }
 
 /// The stages, and by which fact each is needed or not.
@@ -169,16 +178,19 @@ void plan_stages(const Scene& scene, Plan& plan) {
   const std::string lambert = share(diffuse, used.size(), "by a Lambert lobe");
   const std::string other = share(specular, used.size(), "by a mirror or glossy lobe");
   const std::string frames = counted(plan.frames.size(), "frame") + " asked for";
+  const std::string states = counted(different(plan, &PlannedFrame::lit_frame), "state") + " of light transport";
+  const std::string pictures = counted(different(plan, &PlannedFrame::picture), "different picture");
 
   const bool indirect = diffuse > 0, caustic = indirect && specular > 0;
   plan.photon_kinds = caustic ? "caustic,indirect" : indirect ? "indirect" : "";
   plan.stages = {
-      {"photon-trace", indirect,
-       indirect ? frames + ", " + counted(lit_state_count(plan), "state") + " of light transport" : lambert},
+      {"photon-trace", indirect, indirect ? frames + ", " + states : lambert},
       {"photon-trace --kinds indirect", indirect, lambert},
       {"photon-trace --kinds caustic", caustic, indirect ? other : lambert},
       {"photon-trace --kinds direct", false, "frame-render samples the lights for direct light"},
-      {"frame-render", true, frames}};
+      {"irradcache-build points", indirect, indirect ? states : lambert},
+      {"irradcache-build records", indirect, indirect ? states + ", " + pictures : lambert},
+      {"frame-render", true, frames + ", " + pictures}};
 }
 
 }  // namespace
@@ -200,6 +212,7 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
     for (const PlannedFrame& frame : plan.segments.back().frames) beyond += frame.frame != frame.evaluated;
   }
   share_light(plan.segments);
+  share_pictures(plan.segments);
   if (beyond > 0)
     plan.warnings.push_back(counted(beyond, "frame") + " outside the animation: the nearest end is shown");
   plan_stages(scene, plan);

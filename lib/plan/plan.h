@@ -23,6 +23,7 @@ struct PlannedFrame {
   bool asked = false;               ///< in the range of the plan; the others only complete their segment
   int evaluated = 0;                ///< whose state it shows: `frame`, or the animation's nearest end
   int lit_frame = 0;                ///< first frame of the plan's segments with the same light transport
+  int picture = 0;                  ///< if asked: first frame asked for with the same light transport and camera
   std::string camera;               ///< hash of the chosen camera; empty if not asked
   std::string moving_geometry;      ///< hashes, as in SceneHashes
   std::string lights;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -17,6 +18,7 @@ Json frame_json(const PlannedFrame& frame, bool photons) {
   Json json = {{"frame", frame.frame}, {"asked", frame.asked}};
   if (frame.evaluated != frame.frame) json["shows"] = frame.evaluated;
   if (photons) json["photons"] = frame.lit_frame;
+  if (frame.asked) json["picture"] = frame.picture;
   json["hashes"] = {{"moving_geometry", frame.moving_geometry}, {"lights", frame.lights}};
   if (frame.asked) json["hashes"]["camera"] = frame.camera;
   return json;
@@ -35,14 +37,13 @@ Json segment_json(const PlannedSegment& segment, bool photons) {
   return json;
 }
 
-/// Frames at which photons are to be traced: one per state of light transport among those asked for.
-std::set<int> photon_frames(const Plan& plan) {
-  std::set<int> frames;
-  if (plan.photon_kinds.empty()) return frames;
+/// For each state of light transport among the frames asked for, by its first frame: the pictures that show it.
+std::map<int, std::set<int>> pictures_by_light(const Plan& plan) {
+  std::map<int, std::set<int>> pictures;
   for (const PlannedSegment& segment : plan.segments)
     for (const PlannedFrame& frame : segment.frames)
-      if (frame.asked) frames.insert(frame.lit_frame);
-  return frames;
+      if (frame.asked) pictures[frame.lit_frame].insert(frame.picture);
+  return pictures;
 }
 
 template <class Frames>
@@ -103,8 +104,14 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   check_folder_name(folder);
   const bool photons = !plan.photon_kinds.empty();
   std::string text = "# Written by scene-plan; formats/plan/plan.md says what each variable is.\n";
-  text += variable("plan_frames", plan.frames) + variable("plan_photons", photon_frames(plan));
-  text += "plan_kinds := " + plan.photon_kinds + "\n";
+  const std::map<int, std::set<int>> lit = pictures_by_light(plan);
+  std::set<int> pictures, photon_frames;
+  for (const auto& [light, views] : lit) {
+    pictures.insert(views.begin(), views.end());
+    if (photons) photon_frames.insert(light);
+  }
+  text += variable("plan_frames", plan.frames) + variable("plan_pictures", pictures);
+  text += variable("plan_photons", photon_frames) + "plan_kinds := " + plan.photon_kinds + "\n";
   for (const std::string& file : scene_files)  // the empty rule: a file that is gone asks for a new plan
     text += folder + "/plan.mk: " + escaped_for_make(file) + "\n" + escaped_for_make(file) + ":\n";
   for (const PlannedSegment& segment : plan.segments) {
@@ -116,9 +123,12 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
               " materials." + first + " frozen." + first + " moving." + digits + " lights." + digits + ")\n";
       if (!frame.asked) continue;
       text += "camera_" + digits + " := " + folder + "/state/camera." + digits + "\n";
+      text += "picture_" + digits + " := " + frame_digits(frame.picture) + "\n";
       if (photons) text += "photons_" + digits + " := " + frame_digits(frame.lit_frame) + "\n";
     }
   }
+  if (photons) text += "\n# photon maps, and the pictures they light\n";
+  for (const int light : photon_frames) text += variable("views_" + frame_digits(light), lit.at(light));
   return text;
 }
 

@@ -7,6 +7,7 @@ for word; do
   case $previous in -o | --json | --png | --sheet) output=${word##*/}; folder=${word%/*}; folder=${folder##*/};; esac
   previous=$word
 done
+[ $tool = cp ] && output=${3##*/} folder=frames
 case $output in plan | report | stdout) ;; *) output=$folder/$output ;; esac
 echo "$tool $output" >> "$log"
 exec "$@"

@@ -8,12 +8,14 @@ log=$work/log scene=$work/scene.glb source=pipelines/scenes/S2_cornell_moving.gl
 
 edit() { python3 tests/pipelines/edit_gltf.py "$@" || exit 1; }
 
-# make_runs WHAT EXPECTED [VARIABLE=VALUE...]: runs the demo; the commands run, sorted, must be EXPECTED.
+# make_runs WHAT EXPECTED [VARIABLE=VALUE...]: makes $target; the commands run, sorted, must be EXPECTED.
+target=demo
 make_runs() {
   what=$1 expected=$2; shift 2
   : > "$log"
-  if ! make -f Makefile.example --no-print-directory demo BIN="$bin" RUN="sh tests/pipelines/record.sh $log" \
-      OUT="$work/out" SCENE="$scene" FRAMES=0-3 TIME='--segment 2' SIZE=32x18 PHOTONS=2k SAMPLES=1 PATHS=2 "$@" \
+  if ! make -f Makefile.example --no-print-directory $target BIN="$bin" RUN="sh tests/pipelines/record.sh $log" \
+      OUT="$work/out" SCENE="$scene" FRAMES=0-3 TIME='--segment 2' SIZE=32x18 PHOTONS=2k PATHS=2 \
+      POINTS='--point-count 1k' CACHE='--rays 20 --error-bound 1' PIXELS='--spp 1 --pixel-error 0' "$@" \
       > "$work/make.txt" 2>&1; then
     echo "FAILED: $what: make failed:"; cat "$work/make.txt"; exit 1
   fi
@@ -26,15 +28,19 @@ make_runs() {
 
 plan=scene-plan:plan
 trace() { for f; do echo photon-trace:photons/$f.photons; done; }
-photon() { for f; do echo frame-render:photon/$f.exr tempolux-info:photon/$f.png; done; }
-path() { for f; do echo frame-render:path/$f.exr tempolux-info:path/$f.png; done; }
-exposure=tempolux-info:stdout  # of the first frame of the reference; all pictures hang on it
+points() { for f; do echo irradcache-build:points/$f.irradpoints; done; }
+cache() { for f; do echo irradcache-build:cache/$f.irradcache; done; }
+light() { trace "$@"; points "$@"; cache "$@"; }
+frames() { for f; do echo frame-render:frames/$f.exr tempolux-info:frames/$f.png; done; }
+same() { for f; do echo cp:frames/$f.exr tempolux-info:frames/$f.png; done; }
+path() { for f; do echo frame-render:path/$f.exr aqm-compare:error/$f.json; done; }
+exposure=tempolux-info:stdout  # of the first frame; all pictures hang on it
 sheet=tempolux-info:out/sheet.png
 
 all='0000 0001 0002 0003'
 
 cp "$source" "$scene"
-make_runs 'the first run makes everything' "$plan $(trace $all) $(photon $all) $exposure $(path $all) $sheet"
+make_runs 'the first run makes everything' "$plan $(light $all) $(frames $all) $exposure $sheet"
 make_runs 'nothing changed: nothing runs' ''
 touch "$scene"
 make_runs 'scene touched: only scene-plan' "$plan"
@@ -42,34 +48,50 @@ edit "$source" "$scene" same
 make_runs 'scene exported again, equal in content: only scene-plan' "$plan"
 
 edit "$source" "$scene" camera-from 2
-make_runs 'camera edited from frame 2 on: no photons, frames 2 and 3' "$plan $(photon 0002 0003) $(path 0002 0003) $sheet"
+make_runs 'camera edited from frame 2 on: no photons, no points, frames 2 and 3' "$plan $(cache 0002 0003) $(frames 0002 0003) $sheet"
 cp "$source" "$scene"
-make_runs 'camera put back: the same again' "$plan $(photon 0002 0003) $(path 0002 0003) $sheet"
+make_runs 'camera put back: the same again' "$plan $(cache 0002 0003) $(frames 0002 0003) $sheet"
 
-make_runs 'options of the photon view: neither photons nor the reference' "$(photon $all) $sheet" SAMPLES=2
-make_runs 'options of the reference: nothing else but pictures' "$exposure $(path $all) $(for f in $all; do echo tempolux-info:photon/$f.png; done) $sheet" SAMPLES=2 PATHS=4
-make_runs 'more photons: no reference' "$(trace $all) $(photon $all) $sheet" SAMPLES=2 PATHS=4 PHOTONS=3k
-make_runs 'fewer frames: no stage but the plan' "$plan $sheet" SAMPLES=2 PATHS=4 PHOTONS=3k FRAMES=0-2
-make_runs 'and all of them again' "$plan $sheet" SAMPLES=2 PATHS=4 PHOTONS=3k
+rm "$work/out/photons/0000.photons" "$work/out/cache/0001.irradcache" "$work/out/frames/0002.exr" "$work/out/frames/0003.png"
+make_runs 'files deleted: they come back' "$(light 0000) $(cache 0001) $(frames 0000 0001 0002) $exposure tempolux-info:frames/0003.png $sheet"
+
+again="$(frames $all) $exposure $sheet"
+make_runs 'options of the pixels: nothing before them' "$again" PIXELS='--spp 2 --pixel-error 0'
+make_runs 'options of the records: neither photons nor points' "$(cache $all) $again" CACHE='--rays 25'
+make_runs 'options of the points: no photons' "$(points $all) $(cache $all) $again" POINTS='--point-count 2k'
+make_runs 'options of the photons: all but the plan' "$(light $all) $again" PHOTONS=3k
+make_runs 'and all of them back' "$(light $all) $again"
+make_runs 'fewer frames: no stage but the plan' "$plan $sheet" FRAMES=0-2
+make_runs 'and all of them again' "$plan $sheet"
+
+target=report
+make_runs 'a report: path tracing of two frames' "$(path 0000 0003) error-report:report"
+make_runs 'options of the reference: nothing else' "$(path 0000 0003) error-report:report" PATHS=4
+make_runs 'one frame more: that frame' "$(path 0001) error-report:report" PATHS=4 REPORT_FRAMES='0000 0001 0003'
+target=demo
 
 rm -r "$work/out"
 edit "$source" "$scene" lamp
-make_runs 'with a moving lamp' "$plan $(trace $all) $(photon $all) $exposure $(path $all) $sheet"
+make_runs 'with a moving lamp' "$plan $(light $all) $(frames $all) $exposure $sheet"
 edit "$source" "$scene" lamp 3
-make_runs 'lamp edited at frame 3: only what frame 3 shows' "$plan $(trace 0003) $(photon 0003) $(path 0003) $sheet"
+make_runs 'lamp edited at frame 3: only what frame 3 shows' "$plan $(light 0003) $(frames 0003) $sheet"
 
 rm -r "$work/out"
 edit "$source" "$scene" still
-make_runs 'a still scene: one photon map' "$plan $(trace 0000) $(photon $all) $exposure $(path $all) $sheet"
+make_runs 'nothing moves: one of everything, its frame copied' "$plan $(light 0000) $(frames 0000) $(same 0001 0002 0003) $exposure $sheet"
 edit "$scene" "$work/walk.glb" camera-from 2 && mv "$work/walk.glb" "$scene"
-make_runs 'the camera starts to move: still one, and untouched' "$plan $(photon 0002 0003) $(path 0002 0003) $sheet"
+make_runs 'the camera starts to move: no light, one cache for both places' \
+  "$plan $(cache 0000) $(frames 0000 0002) $(same 0001 0003) $exposure $sheet"
+placed=$("$bin/tempolux-info" --json "$work/out/cache/0000.irradcache" | tr -d ' \n' | sed 's/.*"placed_frames":\(\[[][0-9,]*\]\),.*/\1/')
+[ "$placed" = '[[0,0],[2,2]]' ] || { echo "FAILED: the cache was placed for frames $placed"; failed=1; }
 edit "$scene" "$work/bright.glb" emission 2 && mv "$work/bright.glb" "$scene"
-make_runs 'a lamp made brighter: one photon map, all frames' "$plan $(trace 0000) $(photon $all) $exposure $(path $all) $sheet"
+make_runs 'a lamp made brighter: one of everything that light is made of' \
+  "$plan $(light 0000) $(frames 0000 0002) $(same 0001 0003) $exposure $sheet"
 
 rm -r "$work/out"
 edit "$source" "$work/scene.gltf" same
 scene=$work/scene.gltf
-make_runs 'a scene of two files' "$plan $(trace $all) $(photon $all) $exposure $(path $all) $sheet"
+make_runs 'a scene of two files' "$plan $(light $all) $(frames $all) $exposure $sheet"
 touch "$work/scene.bin"
 make_runs 'its buffer touched: only scene-plan' "$plan"
 

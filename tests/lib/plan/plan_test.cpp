@@ -84,6 +84,15 @@ std::map<int, int> lit_frames(const Plan& plan) {
   return lit;
 }
 
+/// Frame asked for -> frame that shows the same.
+std::map<int, int> pictures(const Plan& plan) {
+  std::map<int, int> same;
+  for (const PlannedSegment& segment : plan.segments)
+    for (const PlannedFrame& frame : segment.frames)
+      if (frame.asked) same[frame.frame] = frame.picture;
+  return same;
+}
+
 std::map<std::string, std::string> states(const Plan& plan) {
   std::map<std::string, std::string> files;
   for (const PlanFile& file : state_files(plan)) files[file.name] = file.content;
@@ -127,6 +136,15 @@ TEST(Plan, ABoxThatComesBackIsLitByTheSamePhotons) {
   const Plan plan = plan_of(scene, {0, 1, 2, 3});
   EXPECT_EQ(lit_frames(plan), (Lit{{0, 0}, {1, 1}, {2, 1}, {3, 0}}));
   EXPECT_EQ(plan.segments[0].moves[0].why, "translation of Box");
+}
+
+TEST(Plan, FramesOfEqualLightAndCameraShowTheSamePicture) {
+  Scene scene = still_room();
+  EXPECT_EQ(pictures(plan_of(scene, {1, 2, 3}, 2)), (Lit{{1, 1}, {2, 1}, {3, 1}}));  // not 0: nobody asked for it
+  slide(scene, kBox, {0, 1, 1, 0, 0});
+  EXPECT_EQ(pictures(plan_of(scene, {0, 1, 2, 3, 4})), (Lit{{0, 0}, {1, 1}, {2, 1}, {3, 0}, {4, 0}}));
+  slide(scene, kCamera, {0, 0, 1, 0, 2});
+  EXPECT_EQ(pictures(plan_of(scene, {0, 1, 2, 3, 4})), (Lit{{0, 0}, {1, 1}, {2, 2}, {3, 0}, {4, 4}}));
 }
 
 TEST(Plan, SegmentsWithOtherBoundsShareNoPhotons) {
@@ -228,6 +246,7 @@ TEST(PlanMakefile, SaysWhichPhotonsHoldForAFrameAndWhatTheyDependOn) {
   EXPECT_EQ(plan_makefile(plan_of(scene, {2}), "out/plan", scene.files),
             "# Written by scene-plan; formats/plan/plan.md says what each variable is.\n"
             "plan_frames := 0002\n"
+            "plan_pictures := 0002\n"
             "plan_photons := 0001\n"
             "plan_kinds := indirect\n"
             "out/plan/plan.mk: room.glb\n"
@@ -242,9 +261,21 @@ TEST(PlanMakefile, SaysWhichPhotonsHoldForAFrameAndWhatTheyDependOn) {
             "light_0002 := $(addprefix out/plan/state/,"
             "static.0000 materials.0000 frozen.0000 moving.0002 lights.0002)\n"
             "camera_0002 := out/plan/state/camera.0002\n"
+            "picture_0002 := 0002\n"
             "photons_0002 := 0001\n"
             "light_0003 := $(addprefix out/plan/state/,"
-            "static.0000 materials.0000 frozen.0000 moving.0003 lights.0003)\n");
+            "static.0000 materials.0000 frozen.0000 moving.0003 lights.0003)\n"
+            "\n# photon maps, and the pictures they light\n"
+            "views_0001 := 0002\n");
+}
+
+TEST(PlanMakefile, NamesTheCamerasThatOneStateOfLightServes) {
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 1, 1, 0, 0});
+  slide(scene, kCamera, {0, 0, 1, 0, 2});
+  const std::string text = plan_makefile(plan_of(scene, {0, 1, 2, 3, 4}), "plan", scene.files);
+  EXPECT_NE(text.find("plan_pictures := 0000 0001 0002 0004\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("views_0000 := 0000 0004\nviews_0001 := 0001 0002\n"), std::string::npos) << text;
 }
 
 TEST(PlanMakefile, RefusesAFolderThatMakeCannotName) {
