@@ -127,7 +127,12 @@ void limit_radius(IrradianceRecord& record, float footprint, float max_radius, c
   if (slope * r > e && slope > 0) r = e / slope;
   r = std::min(options.error_bound * r, record.radius);
   record.radius_unclamped *= options.error_bound;
-  record.radius = std::max(std::min(r, max_radius), options.min_radius_px * footprint);
+  r = std::min(r, max_radius);
+  record.radius = std::max(r, options.min_radius_px * footprint);
+  // Near a wall the gradient is large, noisy, and holds over a part of this radius only [Jakob, Mitsuba 0.6].
+  if (r < record.radius)
+    for (Vec3& g : record.translational) g *= r / record.radius;
+  slope *= r / record.radius;
   // A gradient steeper than the irradiance over the smallest radius would extrapolate below zero.
   if (slope * record.radius > e && slope > 0)
     for (Vec3& g : record.translational) g *= e / (slope * record.radius);
