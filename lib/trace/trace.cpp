@@ -213,16 +213,23 @@ SurfacePoint Tracer::surface_point(const Hit& hit) const {
   v *= scale;
   w *= scale;
 
-  SurfacePoint point;
-  point.position = a * w + b * u + c * v;
-  point.normal_geometric = normalize(cross(b - a, c - a));
-  if (surface.flipped) point.normal_geometric = -point.normal_geometric;
-  point.normal = point.normal_geometric;
+  // Kept in registers until stored once: a vector just stored and copied waits for its parts.
+  Vec3 normal_geometric = normalize(cross(b - a, c - a));
+  if (surface.flipped) normal_geometric = -normal_geometric;
+  Vec3 normal = normal_geometric;
   if (surface.normals) {
     const Vec3 n = normalize(surface.normals[corner[0]] * w + surface.normals[corner[1]] * u +
                              surface.normals[corner[2]] * v);
-    if (length2(n) > 0) point.normal = dot(n, point.normal_geometric) < 0 ? -n : n;
+    if (length2(n) > 0) {
+      const bool behind = dot(n, normal_geometric) < 0;
+      normal = {behind ? -n.x : n.x, behind ? -n.y : n.y, behind ? -n.z : n.z};
+    }
   }
+
+  SurfacePoint point;
+  point.position = a * w + b * u + c * v;
+  point.normal_geometric = normal_geometric;
+  point.normal = normal;
   if (const Vec2* uv = surface.uvs)
     point.uv = {uv[corner[0]].x * w + uv[corner[1]].x * u + uv[corner[2]].x * v,
                 uv[corner[0]].y * w + uv[corner[1]].y * u + uv[corner[2]].y * v};
