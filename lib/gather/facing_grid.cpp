@@ -9,8 +9,8 @@
 namespace tempolux {
 namespace {
 
-constexpr float kMostCells = 40;      ///< along the longest side
-constexpr float kSlack = 0.01f;       ///< rad: photons' normals are kept to 1e-3 per component
+constexpr float kMostCells = 40;  ///< along the longest side
+constexpr float kSlack = 0.01f;   ///< rad: photons' normals are kept to 1e-3 per component
 
 Vec3 decode(std::uint32_t u, std::uint32_t v, std::uint32_t steps) {
   const auto code = [steps](std::uint32_t i) { return std::uint16_t(std::min(65534u, i * 65535u / steps)); };
@@ -42,14 +42,17 @@ FacingGrid::FacingGrid(const PhotonIndex& photons, float max_radius) {
       const Vec3 middle = decode(2 * u + 1, 2 * v + 1, 2 * kBins);
       bin_middle_.push_back(middle);
       for (std::uint32_t corner = 0; corner < 4; ++corner)
-        widest = std::max(widest, std::acos(std::clamp(dot(middle, decode(u + (corner & 1), v + (corner >> 1), kBins)), -1.0f, 1.0f)));
+        widest = std::max(
+            widest, std::acos(std::clamp(dot(middle, decode(u + (corner & 1), v + (corner >> 1), kBins)),
+                                         -1.0f, 1.0f)));
     }
   bin_sine_ = std::sin(widest + kSlack);
   bin_cosine_ = std::cos(widest + kSlack);
 
   for (std::size_t i = 0; i < photons.size(); ++i) {
     const Vec3 at = (photons.position(i) - lower_) * inverse_cell_;
-    const std::size_t place = (std::size_t(at.z) * size_[1] + std::size_t(at.y)) * size_[0] + std::size_t(at.x);
+    const std::size_t place =
+        (std::size_t(at.z) * size_[1] + std::size_t(at.y)) * size_[0] + std::size_t(at.x);
     const std::uint32_t bin = bin_of(photons.normal(i));
     cells_[place][bin / 64] |= std::uint64_t(1) << bin % 64;
   }

@@ -16,12 +16,12 @@ class FacingGrid {
   /// max_radius: m, > 0, of the questions to come.
   FacingGrid(const PhotonIndex& photons, float max_radius);
 
-  /// False only if no photon within max_radius of `point` has dot(normal of the photon, normal) > min_cos. May be
-  /// true without one.
+  /// False only if no photon within max_radius of `point` has dot(normal of the photon, normal) > min_cos.
+  /// May be true without one.
   bool any_near(Vec3 point, Vec3 normal, float min_cos) const;
 
  private:
-  static constexpr std::uint32_t kBins = 32;   ///< per octahedral coordinate
+  static constexpr std::uint32_t kBins = 32;  ///< per octahedral coordinate
   using Directions = std::array<std::uint64_t, kBins * kBins / 64>;
   static std::uint32_t bin_of(Vec3 normal);
   void spread(std::size_t stride, std::size_t count);
@@ -30,8 +30,8 @@ class FacingGrid {
   float inverse_cell_ = 0;
   std::array<std::size_t, 3> size_{};
   std::vector<Directions> cells_;
-  std::vector<Vec3> bin_middle_;               ///< unit
-  float bin_sine_ = 0, bin_cosine_ = 1;        ///< of the largest angle between a bin's middle and its corners
+  std::vector<Vec3> bin_middle_;         ///< unit
+  float bin_sine_ = 0, bin_cosine_ = 1;  ///< of the largest angle between a bin's middle and its corners
 };
 
 }  // namespace tempolux

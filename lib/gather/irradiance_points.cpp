@@ -31,8 +31,8 @@ double storing_area(const SceneFrame& frame) {
   return area;
 }
 
-/// One surface's points, both sides: a scrambled Sobol sequence along the line of its triangles' areas. `rank`
-/// tells surfaces of one object apart.
+/// One surface's points, both sides: a scrambled Sobol sequence along the line of its triangles' areas.
+/// `rank` tells surfaces of one object apart.
 void place_on(const Surface& surface, std::uint32_t rank, double area_per_point, std::uint64_t seed,
               std::vector<IrradiancePoint>& points) {
   const auto& triangles = surface.primitive->triangles;
@@ -62,9 +62,10 @@ void place_on(const Surface& surface, std::uint32_t rank, double area_per_point,
   }
 }
 
-/// Direct light at a point: mean over stratified light samples of radiance cos / pdf where nothing is in between.
-Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset, int samples,
-                 const PathRandom& random) {
+/// Direct light at a point: mean over stratified light samples of radiance cos / pdf where nothing is in
+/// between.
+Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset,
+                 int samples, const PathRandom& random) {
   SurfacePoint from;
   from.position = point.position;
   from.normal = from.normal_geometric = point.normal;
@@ -77,13 +78,15 @@ Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoi
                        random.get2(0, Purpose::light_point, std::uint32_t(s)), light))
       continue;
     const float cosine = dot(light.wi, point.normal);
-    if (!(cosine > 0) || tracer.occluded(spawn_shadow_ray(from, light.position, light.position_offset))) continue;
+    if (!(cosine > 0) || tracer.occluded(spawn_shadow_ray(from, light.position, light.position_offset)))
+      continue;
     sum += Rgbd(light.radiance) * double(cosine);
   }
   return Rgb(sum / double(samples));
 }
 
-std::vector<formats::Photon> of_kind(std::span<const formats::Photon> photons, formats::PathKind kind, Vec3d shift) {
+std::vector<formats::Photon> of_kind(std::span<const formats::Photon> photons, formats::PathKind kind,
+                                     Vec3d shift) {
   std::vector<formats::Photon> chosen;
   for (const formats::Photon& photon : photons) {
     if (photon.kind != kind) continue;
@@ -127,8 +130,9 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[order[i]];
       const PathRandom random(options.seed ^ 0x706f696e74ull, order[i]);
-      point.direct = lights.empty() ? Rgb(0.0f)
-                                    : direct_light(tracer, lights, point, offset, options.light_samples, random);
+      point.direct = lights.empty()
+                         ? Rgb(0.0f)
+                         : direct_light(tracer, lights, point, offset, options.light_samples, random);
       float unused;
       point.caustic = caustic.estimate(point, random, unused);
       point.indirect = indirect.estimate(point, random, point.radius);

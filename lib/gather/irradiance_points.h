@@ -16,11 +16,11 @@ namespace tempolux {
 
 struct PointOptions {
   std::uint64_t seed = 0;
-  std::uint32_t count = 20000;      ///< per side of all surfaces together; every surface gets at least one
-  int neighbours = 50;              ///< k of the density estimates
-  float max_radius = 0;             ///< m; 0: a twentieth of the scene's diagonal
-  int light_samples = 4;            ///< shadow rays per point for direct light
-  int area_probes = 32;             ///< that must arrive in a disc cut by walls or edges
+  std::uint32_t count = 20000;  ///< per side of all surfaces together; every surface gets at least one
+  int neighbours = 50;          ///< k of the density estimates
+  float max_radius = 0;         ///< m; 0: a twentieth of the scene's diagonal
+  int light_samples = 4;        ///< shadow rays per point for direct light
+  int area_probes = 32;         ///< that must arrive in a disc cut by walls or edges
 };
 
 /// Mean distance of neighbouring points, m: square root of the area each stands for.
@@ -34,7 +34,8 @@ std::vector<IrradiancePoint> place_points(const SceneFrame& frame, const PointOp
 /// Fills in the irradiance of all points:
 /// - direct by light sampling, stratified shadow rays;
 /// - caustic and indirect by the density of the photons of that kind (PointDensity).
-/// photon_shift is added to the photons' positions: scene space minus theirs. Same results for any number of threads.
+/// photon_shift is added to the photons' positions: scene space minus theirs. Same results for any number of
+/// threads.
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,
                      Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points);
 

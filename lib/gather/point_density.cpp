@@ -12,13 +12,12 @@
 namespace tempolux {
 namespace {
 
-constexpr float kFlattening = 10;      ///< of the search's ellipsoid along the normal
-constexpr float kMinCos = 0.1f;        ///< of a photon's and the point's normal
-constexpr int kRim = 16;               ///< places on the rim that are looked at first
-constexpr float kFlat = 0.005f;        ///< of the radius: how far off the plane the rim of a flat disc may lie
-constexpr int kMostProbes = 32;        ///< times area_probes
-constexpr float kNormalError = 2e-3f; ///< rad: photons' normals are kept to 1e-3 per component
-constexpr int kMostInColumn = 8;       ///< surfaces on top of each other
+constexpr float kFlattening = 10;  ///< of the search's ellipsoid along the normal
+constexpr float kMinCos = 0.1f;    ///< of a photon's and the point's normal
+constexpr int kRim = 16;           ///< places on the rim that are looked at first
+constexpr float kFlat = 0.005f;    ///< of the radius: how far off the plane the rim of a flat disc may lie
+constexpr int kMostProbes = 32;    ///< times area_probes
+constexpr int kMostInColumn = 8;   ///< surfaces on top of each other
 
 }  // namespace
 
@@ -27,23 +26,26 @@ Reach::Reach(const Tracer& tracer) : tracer_(tracer) {
   offset_ = 0x1p-20f * max_component(max(abs(bounds.lower), abs(bounds.upper)));
 }
 
-bool Reach::free(Vec3 from, Vec3 to) const {
-  return !tracer_.occluded({from, to - from, 0, 1});
-}
+bool Reach::free(Vec3 from, Vec3 to) const { return !tracer_.occluded({from, to - from, 0, 1}); }
 
 bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
   const Vec3 start = from + normal * (2 * offset_), end = to + to_normal * (2 * offset_);
-  // From behind `to` a ray would end before it meets the surface that `to` is on.
-  const float before = dot(start - to, to_normal);
-  if (before > -kNormalError * length(start - to) && free(start, end)) return true;
+  // Both ends stand on the lit sides: a ray from behind `to` meets the surface that `to` is on just before
+  // its end.
+  if (free(start, end)) return true;
   const float below = dot(from - to, normal);
   if (!(below > 0)) return false;
   const Vec3 corner = end + normal * below;
   return free(start, corner) && free(corner, end);
 }
 
-PointDensity::PointDensity(const Tracer& tracer, std::vector<formats::Photon> photons, const DensityOptions& options)
-    : tracer_(tracer), options_(options), reach_(tracer), index_(photons), facing_(index_, options.max_radius) {
+PointDensity::PointDensity(const Tracer& tracer, std::vector<formats::Photon> photons,
+                           const DensityOptions& options)
+    : tracer_(tracer),
+      options_(options),
+      reach_(tracer),
+      index_(photons),
+      facing_(index_, options.max_radius) {
   for (const Material& material : tracer.frame().materials) stores_.push_back(Bsdf(material).has_lambert());
 }
 
@@ -58,14 +60,18 @@ Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& rando
   const std::size_t farthest = full ? found.farthest() : found.count();
   radius = full ? std::sqrt(found.distance2()[farthest]) : options_.max_radius;
   if (!(radius > 4 * reach_.offset())) {  // closer than coordinates can tell: the plain rule copes
-    const IrradianceOptions plain{.neighbours = options_.neighbours, .max_radius = options_.max_radius,
-                                  .min_cos = kMinCos, .flattening = kFlattening};
-    const IrradianceEstimate estimate = estimate_irradiance(index_, point.position, point.normal, plain, found);
+    const IrradianceOptions plain{.neighbours = options_.neighbours,
+                                  .max_radius = options_.max_radius,
+                                  .min_cos = kMinCos,
+                                  .flattening = kFlattening};
+    const IrradianceEstimate estimate =
+        estimate_irradiance(index_, point.position, point.normal, plain, found);
     radius = estimate.radius;
     return Rgb(estimate.irradiance);
   }
   const bool whole = open_and_flat(point, radius, random.get1(2, Purpose::points));
-  // In a whole disc what lies in its plane can be reached; a sheet close above it may still be another side's.
+  // In a whole disc what lies in its plane can be reached; a sheet close above it may still be another
+  // side's.
   const auto counts = [&](std::uint32_t photon) {
     const Vec3 place = index_.position(photon);
     return (whole && std::abs(dot(place - point.position, point.normal)) < 4 * reach_.offset()) ||
@@ -80,7 +86,8 @@ Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& rando
     any = true;
   }
   if (!any) return Rgb(0.0f);
-  const double inverse = whole ? 1 / (double(kPi) * double(radius) * double(radius)) : inverse_area(point, radius, random);
+  const double inverse =
+      whole ? 1 / (double(kPi) * double(radius) * double(radius)) : inverse_area(point, radius, random);
   return Rgb(Rgbd{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)} * inverse);
 }
 
@@ -101,14 +108,16 @@ bool PointDensity::open_and_flat(const IrradiancePoint& point, float radius, flo
   return true;
 }
 
-/// 1 / area that can be reached, 1/m^2; 0 if there is none. Columns along the normal are drawn over the disc until
-/// a fixed number m of them arrives: the mean of (number drawn) / m is exactly 1 / (share that arrives)
-/// [inverse binomial sampling, Haldane 1945], where m / (a fixed number drawn) would be too small in the mean.
-double PointDensity::inverse_area(const IrradiancePoint& point, float radius, const PathRandom& random) const {
+/// 1 / area that can be reached, 1/m^2; 0 if there is none. Columns along the normal are drawn over the disc
+/// until a fixed number m of them arrives: the mean of (number drawn) / m is exactly 1 / (share that arrives)
+/// [inverse binomial sampling, Haldane 1945], where m / (a fixed number drawn) would be too small in the
+/// mean.
+double PointDensity::inverse_area(const IrradiancePoint& point, float radius,
+                                  const PathRandom& random) const {
   const Frame frame(point.normal);
   const std::uint64_t key = random.bits(1, Purpose::points);
   int arrived = 0, drawn = 0;
-  double surface = 0;   // m^2 per m^2 of the disc, summed
+  double surface = 0;  // m^2 per m^2 of the disc, summed
   while (arrived < options_.area_probes && drawn < kMostProbes * options_.area_probes) {
     const Vec2 d = sample_disc_concentric(sobol_owen_2d(std::uint32_t(drawn++), key));
     const float height = radius / kFlattening * std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y));
@@ -132,7 +141,8 @@ float PointDensity::column(const IrradiancePoint& point, Vec3 across, float heig
     const SurfacePoint there = tracer_.surface_point(hit);
     const float side = dot(there.normal_geometric, point.normal), cosine = std::abs(side);
     const Vec3 up = side < 0 ? -there.normal_geometric : there.normal_geometric;
-    if (cosine > kMinCos && stores_[there.material] && reach_(point.position, point.normal, there.position, up))
+    if (cosine > kMinCos && stores_[there.material] &&
+        reach_(point.position, point.normal, there.position, up))
       sum += 1 / cosine;
     const float step = hit.t + 4 * reach_.offset();
     top = top - point.normal * step;

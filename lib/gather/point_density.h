@@ -18,8 +18,8 @@ class Reach {
 
   /// Either nothing is between the two, or nothing is on the way across the tangent plane of `from` and down
   /// from there: the straight line cuts through a surface that bends away, the other way through one that
-  /// bends up. Both ways run a little (2 offset()) above the surfaces and arrive on the lit side of `to`; normals
-  /// are unit and on the lit sides, `to_normal` within 2e-3.
+  /// bends up. Both ways run a little (2 offset()) above the surfaces, whose normals are
+  /// unit and on the lit sides; that of `to` may be off by 1e-2.
   bool operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const;
   /// Is nothing between the two, which lie above surfaces?
   bool free(Vec3 from, Vec3 to) const;
@@ -32,21 +32,22 @@ class Reach {
 };
 
 struct DensityOptions {
-  int neighbours = 50;       ///< k
-  float max_radius = 1;      ///< m
-  int area_probes = 32;      ///< that must arrive where the disc is not whole
+  int neighbours = 50;   ///< k
+  float max_radius = 1;  ///< m
+  int area_probes = 32;  ///< that must arrive where the disc is not whole
 };
 
 /// Density estimates over one set of photons. Thread-safe.
 ///
 ///     E = sum of flux over those of the k-1 nearest that can be reached / area that can be reached
 ///
-/// nearest and area: in the ellipsoid 1 : 1/10 about the point that touches the k-th photon (or of max_radius,
-/// with all its photons, if it holds fewer), on surfaces within 84 degrees of the point's plane. Where light is
-/// uniform on what can be reached, whatever it is beyond, E has no bias: given the ellipsoid, each of the
-/// k-1 photons is one with probability (light that can be reached / all light in it), and (k-1) / (all light in it) has
-/// the mean 1 (irradiance_estimate.h). For that the same test (Reach) must decide on photons and on area: clipping
-/// the area alone gains light at thin walls, dropping photons alone loses it in corners (prototype.md 7).
+/// nearest and area: in the ellipsoid 1 : 1/10 about the point that touches the k-th photon (or of
+/// max_radius, with all its photons, if it holds fewer), on surfaces within 84 degrees of the point's plane.
+/// Where light is uniform on what can be reached, whatever it is beyond, E has no bias: given the ellipsoid,
+/// each of the k-1 photons is one with probability (light that can be reached / all light in it), and (k-1) /
+/// (all light in it) has the mean 1 (irradiance_estimate.h). For that the same test (Reach) must decide on
+/// photons and on area: clipping the area alone gains light at thin walls, dropping photons alone loses it in
+/// corners (prototype.md 7).
 class PointDensity {
  public:
   PointDensity(const Tracer& tracer, std::vector<formats::Photon> photons, const DensityOptions& options);
@@ -64,7 +65,7 @@ class PointDensity {
   Reach reach_;
   PhotonIndex index_;
   FacingGrid facing_;
-  std::vector<char> stores_;   ///< by material: has a Lambert lobe
+  std::vector<char> stores_;  ///< by material: has a Lambert lobe
 };
 
 }  // namespace tempolux

@@ -11,16 +11,16 @@
 namespace tempolux {
 namespace {
 
-constexpr float kSameSide = 0.5f;          ///< cosine between a cell's direction and a point's normal, at least
-constexpr int kCandidates = 8;             ///< nearest points among which one of the same object is looked for
-constexpr int kMoreCandidates = 64;        ///< where none of the nearest can be reached
+constexpr float kSameSide = 0.5f;    ///< cosine between a cell's direction and a point's normal, at least
+constexpr int kCandidates = 8;       ///< nearest points among which one of the same object is looked for
+constexpr int kMoreCandidates = 64;  ///< where none of the nearest can be reached
 constexpr int kMaxProbes = 16;
-constexpr std::uint32_t kNormalBins = 8;   ///< per octahedral coordinate
+constexpr std::uint32_t kNormalBins = 8;  ///< per octahedral coordinate
 constexpr float kCellsPerSpacing = 1.4f;
-constexpr float kMostCells = 1 << 20;      ///< per axis: more than coordinates can tell apart
-constexpr float kNeighbourhood = 2.5f;     ///< spacings: how far the neighbours are that a point must reach
-constexpr float kCellDiagonal = 1.4142f;   ///< of a cell's section along a surface
-constexpr std::uint32_t kSeparated = 1;      ///< of an answer, else 2 x (0: none; point + 1)
+constexpr float kMostCells = 1 << 20;     ///< per axis: more than coordinates can tell apart
+constexpr float kNeighbourhood = 2.5f;    ///< spacings: how far the neighbours are that a point must reach
+constexpr float kCellDiagonal = 1.4142f;  ///< of a cell's section along a surface
+constexpr std::uint32_t kSeparated = 1;   ///< of an answer, else 2 x (0: none; point + 1)
 
 /// 3 bits of each octahedral coordinate; n need not be encoded to the last bit for that.
 std::uint32_t normal_bin(Vec3 n) {
@@ -31,7 +31,9 @@ std::uint32_t normal_bin(Vec3 n) {
     v = (1 - std::abs(u)) * std::copysign(1.0f, v);
     u = folded;
   }
-  const auto bin = [](float x) { return std::min(kNormalBins - 1, std::uint32_t((x + 1) * (0.5f * kNormalBins))); };
+  const auto bin = [](float x) {
+    return std::min(kNormalBins - 1, std::uint32_t((x + 1) * (0.5f * kNormalBins)));
+  };
   return bin(u) * kNormalBins + bin(v);
 }
 
@@ -49,8 +51,12 @@ Vec3 bin_direction(std::uint32_t bin) {
 
 }  // namespace
 
-PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing, ReachTest reach)
-    : points_(points), reach_(std::move(reach)), lower_(bounds.empty() ? Vec3{} : bounds.lower), spacing_(spacing) {
+PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing,
+                         ReachTest reach)
+    : points_(points),
+      reach_(std::move(reach)),
+      lower_(bounds.empty() ? Vec3{} : bounds.lower),
+      spacing_(spacing) {
   std::vector<formats::Photon> as_photons(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const IrradiancePoint& p = points[i];
@@ -60,7 +66,7 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
   index_ = PhotonIndex(as_photons);
   for (std::size_t i = 0; i < points.size(); ++i) {
     lights_.push_back({points[i].total(), points[i].radius, points[i].caustic, std::uint32_t(i)});
-    objects_ = std::max(objects_, points[i].object + 2);   // one more for all objects without points
+    objects_ = std::max(objects_, points[i].object + 2);  // one more for all objects without points
   }
   value_bits_ = int(std::bit_width(2 * (points.size() + 1)));
   const Vec3 extent = bounds.empty() ? Vec3{1, 1, 1} : bounds.upper - bounds.lower;
@@ -139,7 +145,8 @@ bool PointLookup::separated(std::uint32_t i) const {
   return !all;
 }
 
-/// The nearest point that can be reached from the hit, one of the same object first; if there is none, as search().
+/// The nearest point that can be reached from the hit, one of the same object first; if there is none, as
+/// search().
 std::uint32_t PointLookup::search_reachable(Vec3 position, Vec3 normal, std::uint32_t object) const {
   thread_local NeighbourList found;
   PhotonQuery query;
@@ -162,7 +169,7 @@ std::uint32_t PointLookup::search_reachable(Vec3 position, Vec3 normal, std::uin
 const PointLight* PointLookup::find(Vec3 position, Vec3 normal, std::uint32_t object) const {
   const Vec3 local = (position - lower_) * inverse_cell_;
   const auto coordinate = [this](float x, std::size_t axis) {
-    return x > 0 ? std::min(size_[axis] - 1, std::uint32_t(std::min(x, 2 * kMostCells))) : 0u;   // NaN: 0
+    return x > 0 ? std::min(size_[axis] - 1, std::uint32_t(std::min(x, 2 * kMostCells))) : 0u;  // NaN: 0
   };
   const std::uint32_t x = coordinate(local.x, 0), y = coordinate(local.y, 1), z = coordinate(local.z, 2);
   const std::uint32_t bin = normal_bin(normal);

@@ -16,41 +16,43 @@ namespace tempolux {
 
 /// Irradiance at one side of a surface point, by kind of the light that arrives [W/m^2].
 struct IrradiancePoint {
-  Vec3 position;               ///< m, scene space
-  Vec3 normal;                 ///< unit, geometric, on the side that is lit
-  std::uint32_t object = 0;    ///< id.object
-  float radius = 0;            ///< m: of the density estimate behind `indirect`; 0: none was possible
-  Rgb direct{0.0f};            ///< L D, by light sampling
-  Rgb caustic{0.0f};           ///< L S+ D, by density
-  Rgb indirect{0.0f};          ///< everything else, by density
+  Vec3 position;             ///< m, scene space
+  Vec3 normal;               ///< unit, geometric, on the side that is lit
+  std::uint32_t object = 0;  ///< id.object
+  float radius = 0;          ///< m: of the density estimate behind `indirect`; 0: none was possible
+  Rgb direct{0.0f};          ///< L D, by light sampling
+  Rgb caustic{0.0f};         ///< L S+ D, by density
+  Rgb indirect{0.0f};        ///< everything else, by density
   Rgb total() const { return direct + caustic + indirect; }
 };
 
 /// What a gather ray reads of a point: half a cache line instead of two.
 struct alignas(32) PointLight {
-  Rgb all{0.0f};               ///< W/m^2, of all kinds
-  float radius = 0;            ///< as IrradiancePoint's
+  Rgb all{0.0f};     ///< W/m^2, of all kinds
+  float radius = 0;  ///< as IrradiancePoint's
   Rgb caustic{0.0f};
-  std::uint32_t point = 0;     ///< index of the IrradiancePoint
+  std::uint32_t point = 0;  ///< index of the IrradiancePoint
   Rgb total() const { return all; }
 };
 
-/// Can light at one place (with its normal on the lit side) be taken for light at the other? lib/gather's Reach.
+/// Can light at one place (with its normal on the lit side) be taken for light at the other? lib/gather's
+/// Reach.
 using ReachTest = std::function<bool(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal)>;
 
 /// Finds the point to read at a hit: the one nearest to the middle of the hit's cell (of the spacing of the
 /// points) among those of the same object that face the same way, else the nearest that faces the same way.
-/// A cell's answer depends on the cell alone and is remembered, so most look-ups are one table access; results
-/// are the same for any number of threads.
+/// A cell's answer depends on the cell alone and is remembered, so most look-ups are one table access;
+/// results are the same for any number of threads.
 ///
-/// With a reach test, hits near a point that something separates from one of its neighbours (a wall between two
-/// rooms, a box on a floor: the floor under it is dark) are answered one by one: the nearest point that can be
-/// reached from the hit.
+/// With a reach test, hits near a point that something separates from one of its neighbours (a wall between
+/// two rooms, a box on a floor: the floor under it is dark) are answered one by one: the nearest point that
+/// can be reached from the hit.
 class PointLookup {
  public:
   /// spacing: mean distance of neighbouring points, m, > 0. Keeps the span; it must outlive this.
   /// Cells are larger where more than 2^63 numbers of cells, directions and objects would be needed.
-  PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing, ReachTest reach = {});
+  PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing,
+              ReachTest reach = {});
 
   /// nullptr if no point faces this way. normal: unit, on the lit side. Thread-safe.
   const PointLight* find(Vec3 position, Vec3 normal, std::uint32_t object) const;
@@ -68,14 +70,14 @@ class PointLookup {
   PhotonIndex index_;
   Vec3 lower_;
   float inverse_cell_ = 0, cell_ = 0, spacing_ = 0;
-  std::array<std::uint32_t, 3> size_{};      ///< of the grid, cells
-  std::uint32_t objects_ = 1;                ///< ids are below it
+  std::array<std::uint32_t, 3> size_{};  ///< of the grid, cells
+  std::uint32_t objects_ = 1;            ///< ids are below it
   std::size_t mask_ = 0;
   int value_bits_ = 0;
   /// Number of cell, direction and object + 1, above value_bits_ bits of answer; 0: empty.
   mutable std::unique_ptr<std::atomic<std::uint64_t>[]> entries_;
-  std::vector<PointLight> lights_;           ///< by point
-  mutable std::unique_ptr<std::atomic<std::uint8_t>[]> separated_;   ///< by point: 0 not known, 1 no, 2 yes
+  std::vector<PointLight> lights_;                                  ///< by point
+  mutable std::unique_ptr<std::atomic<std::uint8_t>[]> separated_;  ///< by point: 0 not known, 1 no, 2 yes
 };
 
 }  // namespace tempolux

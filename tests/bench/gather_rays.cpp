@@ -47,8 +47,8 @@ RTCScene bare_tree(const SceneFrame& frame, RTCDevice device) {
   for (const Surface& surface : frame.surfaces) {
     const auto& triangles = surface.primitive->triangles;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                sizeof(Vec3), surface.positions.size()));
+    auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), surface.positions.size()));
     std::copy(surface.positions.begin(), surface.positions.end(), vertices);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                                sizeof triangles[0], triangles.size());
@@ -61,7 +61,8 @@ RTCScene bare_tree(const SceneFrame& frame, RTCDevice device) {
 }
 
 /// Cosine rays from points of the lit sides, those of one place one after the other.
-std::vector<Ray> gather_rays(const Tracer& tracer, const std::vector<IrradiancePoint>& points, const Options& options) {
+std::vector<Ray> gather_rays(const Tracer& tracer, const std::vector<IrradiancePoint>& points,
+                             const Options& options) {
   std::vector<Ray> rays;
   std::vector<const IrradiancePoint*> lit;
   for (const IrradiancePoint& point : points)
@@ -73,7 +74,8 @@ std::vector<Ray> gather_rays(const Tracer& tracer, const std::vector<IrradianceP
     const PathRandom random(1, std::uint64_t(r));
     for (int i = 0; i < options.rays; ++i)
       rays.push_back({from.position + from.normal * offset,
-                      frame.to_world(sample_hemisphere_cos(random.get2(std::uint32_t(i), Purpose::test))), 0, INFINITY});
+                      frame.to_world(sample_hemisphere_cos(random.get2(std::uint32_t(i), Purpose::test))), 0,
+                      INFINITY});
   }
   return rays;
 }
@@ -82,8 +84,12 @@ double time_bare(RTCScene tree, const std::vector<Ray>& rays, double& distance) 
   const double start = cpu_seconds();
   for (const Ray& ray : rays) {
     RTCRayHit query{};
-    query.ray.org_x = ray.origin.x; query.ray.org_y = ray.origin.y; query.ray.org_z = ray.origin.z;
-    query.ray.dir_x = ray.direction.x; query.ray.dir_y = ray.direction.y; query.ray.dir_z = ray.direction.z;
+    query.ray.org_x = ray.origin.x;
+    query.ray.org_y = ray.origin.y;
+    query.ray.org_z = ray.origin.z;
+    query.ray.dir_x = ray.direction.x;
+    query.ray.dir_y = ray.direction.y;
+    query.ray.dir_z = ray.direction.z;
     query.ray.tfar = INFINITY;
     query.ray.mask = 0xffffffffu;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -95,7 +101,8 @@ double time_bare(RTCScene tree, const std::vector<Ray>& rays, double& distance) 
   return cpu_seconds() - start;
 }
 
-double time_gather(const FinalGather& gather, const std::vector<Ray>& rays, GatherCounts& counts, double& sum) {
+double time_gather(const FinalGather& gather, const std::vector<Ray>& rays, GatherCounts& counts,
+                   double& sum) {
   const double start = cpu_seconds();
   for (std::size_t i = 0; i < rays.size(); ++i) {
     float distance;
@@ -137,17 +144,19 @@ void run(const Options& options) {
     const PointLookup lookup(points, frame.bounds, point_spacing(frame, point_options), point_reach(tracer));
     const FinalGather gather(tracer, lights, lookup, {});
     bare.push_back(time_bare(tree, rays, distance));
-    first.push_back(time_gather(gather, rays, counts, sum));   // fills the look-up's table
+    first.push_back(time_gather(gather, rays, counts, sum));  // fills the look-up's table
     counts = {};
     with_lookup.push_back(time_gather(gather, rays, counts, sum));
     ratio.push_back(bare.back() / first.back());
   }
-  std::printf("{\"rays\": %zu, \"points\": %zu, \"photons\": %zu, \"estimate_points_cpu_s\": %.4f, \"bare_cpu_s\": %.4f, "
-              "\"gather_cpu_s\": %.4f, \"gather_again_cpu_s\": %.4f, \"bare_over_gather\": %.3f, "
-              "\"rays_per_gather_ray\": %.3f, \"mean_distance_m\": %.3f, \"mean_radiance\": %.5f}\n",
-              rays.size(), points.size(), photons.size(), estimate, median(bare), median(first), median(with_lookup),
-              median(ratio), double(counts.rays) / double(rays.size()), distance / double(5 * rays.size()),
-              sum / double(10 * rays.size()));
+  std::printf(
+      "{\"rays\": %zu, \"points\": %zu, \"photons\": %zu, \"estimate_points_cpu_s\": %.4f, \"bare_cpu_s\": "
+      "%.4f, "
+      "\"gather_cpu_s\": %.4f, \"gather_again_cpu_s\": %.4f, \"bare_over_gather\": %.3f, "
+      "\"rays_per_gather_ray\": %.3f, \"mean_distance_m\": %.3f, \"mean_radiance\": %.5f}\n",
+      rays.size(), points.size(), photons.size(), estimate, median(bare), median(first), median(with_lookup),
+      median(ratio), double(counts.rays) / double(rays.size()), distance / double(5 * rays.size()),
+      sum / double(10 * rays.size()));
   rtcReleaseScene(tree);
   rtcReleaseDevice(device);
 }
@@ -159,11 +168,16 @@ int main(int argc, char** argv) {
   tempolux::Options options;
   for (int i = 1; i < argc; ++i) {
     const bool valued = i + 1 < argc;
-    if (valued && !std::strcmp(argv[i], "--frame")) options.frame = std::atoi(argv[++i]);
-    else if (valued && !std::strcmp(argv[i], "--photons")) options.photons = std::strtoull(argv[++i], nullptr, 10);
-    else if (valued && !std::strcmp(argv[i], "--records")) options.records = std::max(1, std::atoi(argv[++i]));
-    else if (valued && !std::strcmp(argv[i], "--rays")) options.rays = std::max(1, std::atoi(argv[++i]));
-    else options.scene = argv[i];
+    if (valued && !std::strcmp(argv[i], "--frame"))
+      options.frame = std::atoi(argv[++i]);
+    else if (valued && !std::strcmp(argv[i], "--photons"))
+      options.photons = std::strtoull(argv[++i], nullptr, 10);
+    else if (valued && !std::strcmp(argv[i], "--records"))
+      options.records = std::max(1, std::atoi(argv[++i]));
+    else if (valued && !std::strcmp(argv[i], "--rays"))
+      options.rays = std::max(1, std::atoi(argv[++i]));
+    else
+      options.scene = argv[i];
   }
   try {
     tempolux::run(options);

@@ -16,29 +16,36 @@ namespace tempolux {
 namespace {
 
 using test::HandMadeScene;
-using test::Shape;
 using test::matte;
+using test::Shape;
 
-/// Photons of a uniform light on every surface (both sides): flux = irradiance 1 x 2 area / count each, at uniform
-/// random places. What a furnace sends, without its noise of directions.
-std::vector<formats::Photon> uniform_photons(const SceneFrame& frame, std::uint32_t count, std::uint64_t seed) {
+/// Photons of a uniform light on every surface (both sides): flux = irradiance 1 x 2 area / count each, at
+/// uniform random places. What a furnace sends, without its noise of directions.
+std::vector<formats::Photon> uniform_photons(const SceneFrame& frame, std::uint32_t count,
+                                             std::uint64_t seed) {
   const test::AreaSampler area(frame);
   const PathRandom random(seed, 9);
   std::vector<std::uint32_t> object;
-  for (const Surface& surface : frame.surfaces) object.insert(object.end(), surface.primitive->triangles.size(), surface.object);
+  for (const Surface& surface : frame.surfaces)
+    object.insert(object.end(), surface.primitive->triangles.size(), surface.object);
   std::vector<formats::Photon> photons;
   for (std::uint32_t i = 0; i < count; ++i) {
     Vec3 p, n;
     area.sample(random.get1(i, Purpose::test), random.get2(i, Purpose::place), p, n);
     if (random.get1(i, Purpose::lobe) < 0.5f) n = -n;
     const float flux = float(2 * area.area() / count);
-    photons.push_back({{p.x, p.y, p.z}, {flux, flux, flux}, formats::encode_normal({n.x, n.y, n.z}), 0,
-                       formats::PathKind::indirect, 1});
+    photons.push_back({{p.x, p.y, p.z},
+                       {flux, flux, flux},
+                       formats::encode_normal({n.x, n.y, n.z}),
+                       0,
+                       formats::PathKind::indirect,
+                       1});
   }
   return photons;
 }
 
-std::vector<formats::Photon> traced_photons(const Tracer& tracer, const Lights& lights, std::uint64_t count, std::uint64_t seed) {
+std::vector<formats::Photon> traced_photons(const Tracer& tracer, const Lights& lights, std::uint64_t count,
+                                            std::uint64_t seed) {
   PhotonOptions options;
   options.photon_count = count;
   options.seed = seed;
@@ -55,7 +62,10 @@ std::vector<formats::Photon> traced_photons(const Tracer& tracer, const Lights& 
 struct Mean {
   double sum = 0;
   int count = 0;
-  void add(double x) { sum += x; ++count; }
+  void add(double x) {
+    sum += x;
+    ++count;
+  }
   double value() const { return sum / count; }
 };
 
@@ -68,7 +78,8 @@ struct Stage {
   explicit Stage(HandMadeScene& scene)
       : frame(scene.frame()), table(build_emission_table({&frame, 1})), tracer(frame), lights(frame, table) {}
 
-  std::vector<IrradiancePoint> estimate(const std::vector<formats::Photon>& photons, const PointOptions& options) const {
+  std::vector<IrradiancePoint> estimate(const std::vector<formats::Photon>& photons,
+                                        const PointOptions& options) const {
     std::vector<IrradiancePoint> points = place_points(frame, options);
     estimate_points(tracer, lights, photons, {}, options, points);
     return points;
@@ -84,9 +95,10 @@ PointOptions few(std::uint32_t count, std::uint64_t seed) {
 
 class ClosedBoxPoints : public testing::TestWithParam<std::tuple<Shape, float>> {};
 
-/// Mean of direct + indirect over the inside = F / (S (1 - rho)). Four seeds of 20k paths, which leave about n = 20k
-/// rho/(1-rho) photons: sigma of the indirect part 1/sqrt(4 * 20k) sqrt((1+rho)/(rho)) < 1 %, of long paths (rho =
-/// 0.99: 100 bounces, path lengths vary by 100 %) 0.4 %; direct light by 4 samples at 4 x 6000 points: exact to 0.2 %.
+/// Mean of direct + indirect over the inside = F / (S (1 - rho)). Four seeds of 20k paths, which leave about
+/// n = 20k rho/(1-rho) photons: sigma of the indirect part 1/sqrt(4 * 20k) sqrt((1+rho)/(rho)) < 1 %, of long
+/// paths (rho = 0.99: 100 bounces, path lengths vary by 100 %) 0.4 %; direct light by 4 samples at 4 x 6000
+/// points: exact to 0.2 %.
 TEST_P(ClosedBoxPoints, MeanIrradianceIsTheGeometricSeries) {
   const auto [shape, rho] = GetParam();
   test::ClosedBox box(shape, rho);
@@ -108,10 +120,10 @@ INSTANTIATE_TEST_SUITE_P(Boxes, ClosedBoxPoints,
                          testing::Combine(testing::Values(Shape::cube, Shape::corridor, Shape::sphere),
                                           testing::Values(0.0f, 0.5f, 0.8f, 0.99f)));
 
-/// Uniform light in a room: 40k photons on both sides of 24 m^2, k = 50, so the disc's radius is 0.14 m, a seventh of a
-/// half wall: a third of all discs are cut. An estimate has sigma 14 %; neighbouring ones share photons: over 4
-/// seeds 80k photons on the inside determine the mean to 0.35 %, the strip's (10 % of a wall) to 1.1 %, a wall's to 0.9 %.
-/// The same with every other triangle's front turned outwards.
+/// Uniform light in a room: 40k photons on both sides of 24 m^2, k = 50, so the disc's radius is 0.14 m, a
+/// seventh of a half wall: a third of all discs are cut. An estimate has sigma 14 %; neighbouring ones share
+/// photons: over 4 seeds 80k photons on the inside determine the mean to 0.35 %, the strip's (10 % of a wall)
+/// to 1.1 %, a wall's to 0.9 %. The same with every other triangle's front turned outwards.
 class RoomPoints : public testing::TestWithParam<bool> {};
 
 TEST_P(RoomPoints, NothingIsLostAtEdgesAndCorners) {
@@ -119,13 +131,15 @@ TEST_P(RoomPoints, NothingIsLostAtEdgesAndCorners) {
   room.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
   const Surface& walls = room.frame().surfaces[0];
   std::vector<std::array<std::uint32_t, 3>> triangles = walls.primitive->triangles;
-  for (std::size_t t = 0; GetParam() && t < triangles.size(); t += 2) std::swap(triangles[t][1], triangles[t][2]);
+  for (std::size_t t = 0; GetParam() && t < triangles.size(); t += 2)
+    std::swap(triangles[t][1], triangles[t][2]);
   scene.add({walls.positions.begin(), walls.positions.end()}, triangles, matte(Rgb(0.5f)));
   Stage stage(scene);
   Mean all, strip, corner;
   std::map<int, Mean> wall;
   for (std::uint64_t seed = 0; seed < 4; ++seed)
-    for (const IrradiancePoint& p : stage.estimate(uniform_photons(stage.frame, 40000, seed), few(5000, seed))) {
+    for (const IrradiancePoint& p :
+         stage.estimate(uniform_photons(stage.frame, 40000, seed), few(5000, seed))) {
       if (dot(p.normal, p.position) > 0) continue;
       const double e = double(p.indirect.g);
       all.add(e);
@@ -137,15 +151,15 @@ TEST_P(RoomPoints, NothingIsLostAtEdgesAndCorners) {
       if (near == 2) corner.add(e);
     }
   EXPECT_NEAR(all.value(), 1, 0.012);
-  EXPECT_NEAR(strip.value(), 1, 0.02);    // a point on an edge itself loses half of its disc
-  EXPECT_NEAR(corner.value(), 1, 0.05);   // 1 % of the area: 800 photons
+  EXPECT_NEAR(strip.value(), 1, 0.02);   // a point on an edge itself loses half of its disc
+  EXPECT_NEAR(corner.value(), 1, 0.05);  // 1 % of the area: 800 photons
   for (const auto& [number, mean] : wall) EXPECT_NEAR(mean.value(), 1, 0.027) << number;
 }
 
 INSTANTIATE_TEST_SUITE_P(Windings, RoomPoints, testing::Bool());
 
-/// A wall between a bright and a dark half of a room, as one sheet and 1 mm thick: the dark side gets nothing at all,
-/// the bright side loses nothing, neither on the wall nor on the floor beside it.
+/// A wall between a bright and a dark half of a room, as one sheet and 1 mm thick: the dark side gets nothing
+/// at all, the bright side loses nothing, neither on the wall nor on the floor beside it.
 class ThinWall : public testing::TestWithParam<float> {};
 
 TEST_P(ThinWall, DarkSideGetsNothingBrightSideLosesNothing) {
@@ -153,13 +167,15 @@ TEST_P(ThinWall, DarkSideGetsNothingBrightSideLosesNothing) {
   HandMadeScene scene;
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
   scene.add_quad({0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}, matte(Rgb(0.5f)));
-  if (thickness > 0) scene.add_quad({-thickness, -1, -1}, {-thickness, 1, -1}, {-thickness, 1, 1}, {-thickness, -1, 1}, matte(Rgb(0.5f)));
+  if (thickness > 0)
+    scene.add_quad({-thickness, -1, -1}, {-thickness, 1, -1}, {-thickness, 1, 1}, {-thickness, -1, 1},
+                   matte(Rgb(0.5f)));
   Stage stage(scene);
   Mean bright, bright_strip;
   double dark = 0;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     std::vector<formats::Photon> photons = uniform_photons(stage.frame, 60000, seed);
-    std::erase_if(photons, [](const formats::Photon& photon) {   // keep what arrives in the bright half
+    std::erase_if(photons, [](const formats::Photon& photon) {  // keep what arrives in the bright half
       const auto n = formats::decode_normal(photon.normal);
       const Vec3 p{photon.position[0], photon.position[1], photon.position[2]};
       const Vec3 just_above = p + Vec3{n[0], n[1], n[2]} * 1e-4f;
@@ -169,15 +185,16 @@ TEST_P(ThinWall, DarkSideGetsNothingBrightSideLosesNothing) {
       const Vec3 above = p.position + p.normal * 1e-4f;
       if (above.x > 0 && max_component(abs(above)) < 1) {
         bright.add(double(p.indirect.g));
-        if (p.position.x > 0 && p.position.x < 0.1f && std::abs(p.normal.x) < 0.5f) bright_strip.add(double(p.indirect.g));
+        if (p.position.x > 0 && p.position.x < 0.1f && std::abs(p.normal.x) < 0.5f)
+          bright_strip.add(double(p.indirect.g));
       } else {
         dark += double(p.indirect.g);
       }
     }
   }
   EXPECT_EQ(dark, 0);
-  EXPECT_NEAR(bright.value(), 1, 0.015);         // 4 x 17k photons: 3 sigma
-  EXPECT_NEAR(bright_strip.value(), 1, 0.04);    // 5 % of that area
+  EXPECT_NEAR(bright.value(), 1, 0.015);       // 4 x 17k photons: 3 sigma
+  EXPECT_NEAR(bright_strip.value(), 1, 0.04);  // 5 % of that area
 }
 
 INSTANTIATE_TEST_SUITE_P(Thicknesses, ThinWall, testing::Values(0.0f, 0.001f));
@@ -197,12 +214,13 @@ TEST(IrradiancePoints, ABoxOnAFloorShadesOnlyWhatItCovers) {
       const auto n = formats::decode_normal(photon.normal);
       const Vec3 p{photon.position[0], photon.position[1], photon.position[2]};
       if (p.y < 1e-6f) return n[1] < 0 || covered(p);
-      return dot(Vec3{n[0], n[1], n[2]}, p - Vec3{0, 0.3f, 0}) < 0;   // the box is lit from outside
+      return dot(Vec3{n[0], n[1], n[2]}, p - Vec3{0, 0.3f, 0}) < 0;  // the box is lit from outside
     });
     for (const IrradiancePoint& p : stage.estimate(photons, few(5000, seed))) {
       const double e = double(p.indirect.g);
       if (p.object == 0 && p.normal.y > 0) {
-        if (covered(p.position)) under += e;
+        if (covered(p.position))
+          under += e;
         else {
           around.add(e);
           if (std::max(std::abs(p.position.x), std::abs(p.position.z)) < 0.4f) beside.add(e);
@@ -214,17 +232,18 @@ TEST(IrradiancePoints, ABoxOnAFloorShadesOnlyWhatItCovers) {
   }
   EXPECT_EQ(under, 0);
   EXPECT_EQ(inside, 0);
-  EXPECT_NEAR(around.value(), 1, 0.02);   // 4 x 19k photons: 0.4 %; free edges of the floor
-  EXPECT_NEAR(beside.value(), 1, 0.04);   // 0.28 of 3.64 m^2: 4 x 1400 photons, 1.3 %
+  EXPECT_NEAR(around.value(), 1, 0.02);  // 4 x 19k photons: 0.4 %; free edges of the floor
+  EXPECT_NEAR(beside.value(), 1, 0.04);  // 0.28 of 3.64 m^2: 4 x 1400 photons, 1.3 %
 }
 
-/// A lamp flush in a ceiling that stores no photons (a mirror): discs that reach over its border lose nothing.
+/// A lamp flush in a ceiling that stores no photons (a mirror): discs that reach over its border lose
+/// nothing.
 TEST(IrradiancePoints, WhatStoresNoPhotonsIsNoArea) {
   HandMadeScene scene;
   Material mirror;
   mirror.metallic = 1;
   mirror.roughness = 0;
-  for (int x = -2; x < 2; ++x)      // a chequerboard of tiles half a metre wide
+  for (int x = -2; x < 2; ++x)  // a chequerboard of tiles half a metre wide
     for (int z = -2; z < 2; ++z) {
       const float a = 0.5f * float(x), b = 0.5f * float(z), c = a + 0.5f, d = b + 0.5f;
       scene.add_quad({a, 0, d}, {c, 0, d}, {c, 0, b}, {a, 0, b}, (x + z) % 2 ? mirror : matte(Rgb(0.5f)));
@@ -238,11 +257,11 @@ TEST(IrradiancePoints, WhatStoresNoPhotonsIsNoArea) {
     });
     for (const IrradiancePoint& p : stage.estimate(photons, few(4000, seed))) mean.add(double(p.indirect.g));
   }
-  EXPECT_NEAR(mean.value(), 1, 0.015);   // 80k photons; free edges all around
+  EXPECT_NEAR(mean.value(), 1, 0.015);  // 80k photons; free edges all around
 }
 
-/// Spheres of 128 to 968 flat triangles and a torus, inside and outside: uniform light comes out uniform; the lowest and
-/// highest tenth of all estimates say whether there are rings along the edges of the triangles.
+/// Spheres of 128 to 968 flat triangles and a torus, inside and outside: uniform light comes out uniform; the
+/// lowest and highest tenth of all estimates say whether there are rings along the edges of the triangles.
 class Curved : public testing::TestWithParam<int> {};
 
 TEST_P(Curved, UniformLightStaysUniform) {
@@ -256,7 +275,8 @@ TEST_P(Curved, UniformLightStaysUniform) {
     constexpr std::uint32_t kMajor = 24, kMinor = 12;
     for (std::uint32_t i = 0; i < kMajor; ++i)
       for (std::uint32_t j = 0; j < kMinor; ++j) {
-        const float a = 2 * kPi * float(i) / float(kMajor), b = 2 * kPi * float(j) / float(kMinor), r = 1 + 0.35f * std::cos(b);
+        const float a = 2 * kPi * float(i) / float(kMajor), b = 2 * kPi * float(j) / float(kMinor),
+                    r = 1 + 0.35f * std::cos(b);
         p.push_back({r * std::cos(a), 0.35f * std::sin(b), r * std::sin(a)});
         const auto at = [&](std::uint32_t x, std::uint32_t y) { return x % kMajor * kMinor + y % kMinor; };
         t.push_back({at(i, j), at(i, j + 1), at(i + 1, j)});
@@ -266,7 +286,7 @@ TEST_P(Curved, UniformLightStaysUniform) {
   }
   Stage stage(scene);
   Mean in, out;
-  Mean bands[2][5];              // from the middles of the triangles to their corners
+  Mean bands[2][5];  // from the middles of the triangles to their corners
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const auto photons = uniform_photons(stage.frame, 100000, seed);
     for (const IrradiancePoint& p : stage.estimate(photons, few(4000, seed))) {
@@ -277,9 +297,12 @@ TEST_P(Curved, UniformLightStaysUniform) {
       }
       const bool outside = dot(p.normal, middle) > 0;
       (outside ? out : in).add(double(p.indirect.g));
-      // The triangle's plane is nearest to the centre in its middle: height over it orders places from middle to edge.
-      const float plane = std::abs(dot(p.position, p.normal)), off = std::sqrt(std::max(0.0f, length2(p.position) - plane * plane));
-      if (n > 0) bands[outside][std::min(4, int(off / (0.75f * 1.6f / float(n)) * 5))].add(double(p.indirect.g));
+      // The triangle's plane is nearest to the centre in its middle: height over it orders places from middle
+      // to edge.
+      const float plane = std::abs(dot(p.position, p.normal)),
+                  off = std::sqrt(std::max(0.0f, length2(p.position) - plane * plane));
+      if (n > 0)
+        bands[outside][std::min(4, int(off / (0.75f * 1.6f / float(n)) * 5))].add(double(p.indirect.g));
     }
   }
   // 4 x 50k photons a side, 0.23 %, and what is left of the area's noise.
@@ -298,16 +321,24 @@ INSTANTIATE_TEST_SUITE_P(Meshes, Curved, testing::Values(4, 8, 11, 0));
 TEST(IrradiancePoints, AStepLosesNothing) {
   HandMadeScene scene;
   const Material material = matte(Rgb(0.5f));
-  scene.add({{-1, 0, 1}, {0, 0, 1}, {0, 0, -1}, {-1, 0, -1}, {0, 0.03f, 1}, {0, 0.03f, -1}, {1, 0.03f, 1}, {1, 0.03f, -1}},
+  scene.add({{-1, 0, 1},
+             {0, 0, 1},
+             {0, 0, -1},
+             {-1, 0, -1},
+             {0, 0.03f, 1},
+             {0, 0.03f, -1},
+             {1, 0.03f, 1},
+             {1, 0.03f, -1}},
             {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}, {4, 6, 7}, {4, 7, 5}}, material);
   Stage stage(scene);
   Mean low, high;
   for (std::uint64_t seed = 0; seed < 4; ++seed)
-    for (const IrradiancePoint& p : stage.estimate(uniform_photons(stage.frame, 60000, seed), few(8000, seed))) {
+    for (const IrradiancePoint& p :
+         stage.estimate(uniform_photons(stage.frame, 60000, seed), few(8000, seed))) {
       if (p.normal.y < 0.5f || std::abs(p.position.x) > 0.1f) continue;
       (p.position.x < 0 ? low : high).add(double(p.indirect.g));
     }
-  EXPECT_NEAR(low.value(), 1, 0.035);   // 5 % of 120k photons that fall on this side: 6000, 1.3 %
+  EXPECT_NEAR(low.value(), 1, 0.035);  // 5 % of 120k photons that fall on this side: 6000, 1.3 %
   EXPECT_NEAR(high.value(), 1, 0.035);
 }
 
@@ -329,8 +360,10 @@ TEST(IrradiancePoints, ThinClosedShapesStayDarkInside) {
       return formats::decode_normal(photon.normal)[1] * photon.position[1] < 0;
     });
     for (const IrradiancePoint& q : stage.estimate(photons, few(3000, seed))) {
-      if (q.normal.y * q.position.y < 0) inside += double(q.indirect.g);
-      else outside.add(double(q.indirect.g));
+      if (q.normal.y * q.position.y < 0)
+        inside += double(q.indirect.g);
+      else
+        outside.add(double(q.indirect.g));
     }
   }
   EXPECT_EQ(inside, 0);
@@ -351,7 +384,8 @@ TEST(IrradiancePoints, AnyNumberOfThreadsGivesTheSameBytes) {
   }
 }
 
-/// Points per area are equal on all surfaces, up to the rounding up of each surface's number; both sides alike.
+/// Points per area are equal on all surfaces, up to the rounding up of each surface's number; both sides
+/// alike.
 TEST(IrradiancePoints, AreUniformByArea) {
   HandMadeScene scene;
   scene.add_quad({0, 0, 1}, {3, 0, 1}, {3, 0, 0}, {0, 0, 0}, matte(Rgb(0.5f)));
@@ -366,7 +400,7 @@ TEST(IrradiancePoints, AreUniformByArea) {
   }
   EXPECT_NEAR(count[0], 6000, 2);
   EXPECT_NEAR(count[1], 2000, 2);
-  EXPECT_EQ(count[2], 2);                // one on each side at least
+  EXPECT_EQ(count[2], 2);  // one on each side at least
   EXPECT_EQ(2 * up, int(points.size()));
   EXPECT_NEAR(point_spacing(scene.frame(), few(4000, 3)), std::sqrt(4.0f / 4000), 1e-5f);
 }

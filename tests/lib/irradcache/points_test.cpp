@@ -69,7 +69,8 @@ TEST(PointLookup, SidesAreNeverMixedUp) {
     EXPECT_GE(lookup.find({u.x, 0, u.y}, {0, 1, 0}, 0)->all.g, 0);
     EXPECT_EQ(lookup.find({u.x, -0.001f, u.y}, {0, -1, 0}, 0)->all.g, -1);
   }
-  EXPECT_EQ(PointLookup(std::span(points).first(400), box({0, 0, 0}, {1, 0, 1}), 0.05f).find({0.5f, 0, 0.5f}, {0, -1, 0}, 0),
+  EXPECT_EQ(PointLookup(std::span(points).first(400), box({0, 0, 0}, {1, 0, 1}), 0.05f)
+                .find({0.5f, 0, 0.5f}, {0, -1, 0}, 0),
             nullptr);
 }
 
@@ -94,14 +95,14 @@ TEST(PointLookup, ThousandsOfObjectsAreToldApart) {
   for (std::uint32_t i = 0; i < 3 * kTiles; ++i)
     points.push_back(point_at({float(i % kTiles % 32), 0, float(i % kTiles / 32)}, {0, 1, 0}, i, float(i)));
   const PointLookup lookup(points, box({0, 0, 0}, {32, 0, 32}), 1);
-  for (int round = 0; round < 2; ++round)   // the second round reads what the first remembered
+  for (int round = 0; round < 2; ++round)  // the second round reads what the first remembered
     for (std::uint32_t i = 0; i < 3 * kTiles; ++i)
       ASSERT_EQ(lookup.find(points[i].position + Vec3{0.1f, 0, 0.1f}, {0, 1, 0}, i)->all.g, float(i));
-  EXPECT_NE(lookup.find({3, 0, 3}, {0, 1, 0}, 60000), nullptr);   // an object without points reads a near one
+  EXPECT_NE(lookup.find({3, 0, 3}, {0, 1, 0}, 60000), nullptr);  // an object without points reads a near one
 }
 
-/// A wall at x = 0.5 between a bright and a dark room on one floor, and a patch of floor under a box: with the
-/// reach test no hit reads beyond, without it those within a cell of the wall do.
+/// A wall at x = 0.5 between a bright and a dark room on one floor, and a patch of floor under a box: with
+/// the reach test no hit reads beyond, without it those within a cell of the wall do.
 TEST(PointLookup, NoHitReadsThroughAWall) {
   std::vector<IrradiancePoint> points = square(2000);
   const auto room = [](Vec3 p) { return p.x < 0.5f ? 0.0f : p.x > 0.8f && p.z > 0.8f ? 2.0f : 1.0f; };
@@ -118,7 +119,7 @@ TEST(PointLookup, NoHitReadsThroughAWall) {
     wrong_open += open.find(hit, {0, 1, 0}, 0)->all.g != room(hit);
     wrong_walled += walled.find(hit, {0, 1, 0}, 0)->all.g != room(hit);
   }
-  EXPECT_GT(wrong_open, 100);    // about 1.4 m of wall x half a cell
+  EXPECT_GT(wrong_open, 100);  // about 1.4 m of wall x half a cell
   EXPECT_EQ(wrong_walled, 0);
 }
 
@@ -133,7 +134,8 @@ TEST(PointLookup, AnswersDoNotDependOnThreadsOrOrder) {
   constexpr std::size_t kHits = 50000;
   std::vector<std::uint32_t> expected(kHits), answers(kHits);
   const PointLookup forwards(points, bounds, 0.014f), backwards(points, bounds, 0.014f);
-  for (std::size_t i = 0; i < kHits; ++i) expected[i] = forwards.find(hit(i), {0, 1, 0}, std::uint32_t(i % 7))->point;
+  for (std::size_t i = 0; i < kHits; ++i)
+    expected[i] = forwards.find(hit(i), {0, 1, 0}, std::uint32_t(i % 7))->point;
   parallel_chunks(kHits, 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const std::size_t j = kHits - 1 - i;
