@@ -85,7 +85,7 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
     tools::Output keep(options.keep_points, tool.common().no_clobber);
     tools::write_points(tool, points, first, keep);
   }
-  const PointLookup lookup(points.points, first.bounds, points.spacing);
+  const PointLookup lookup(points.points, first.bounds, points.spacing, point_reach(tracer));
   const FinalGather gather(tracer, lights, lookup, options.gather);
   RecordStore store(first.bounds);
   std::string history = points.history;
