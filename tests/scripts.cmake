@@ -31,7 +31,12 @@ add_test(NAME pipelines.plan_example COMMAND sh tests/pipelines/plan_example.sh 
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.plan_refuses COMMAND sh tests/pipelines/plan_refuses.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.rerun pipelines.plan_example pipelines.plan_refuses PROPERTIES TIMEOUT 300)
+add_test(NAME pipelines.drop_kind COMMAND sh tests/pipelines/drop_kind.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+add_test(NAME pipelines.scenes COMMAND sh tests/pipelines/scenes.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.rerun pipelines.plan_example pipelines.plan_refuses pipelines.drop_kind pipelines.scenes
+                     PROPERTIES TIMEOUT 300)
 
 add_test(NAME cli.no_heavy_libraries COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cli/no_heavy_libraries.sh ${CMAKE_BINARY_DIR}/bin)
 
