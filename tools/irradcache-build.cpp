@@ -151,7 +151,7 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
       ->capture_default_str()->check(CLI::PositiveNumber);
   app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
-      ->capture_default_str()->check(CLI::Range(1e-6, 10.0));
+      ->capture_default_str()->check(CLI::Range(1e-6, 0.99));
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.keep_points, "also write the points made from --photons, .irradpoints", "--keep-points");
   tool.output_option(options.output, ".irradcache file (points: .irradpoints); - for standard output")->required();

@@ -15,7 +15,7 @@ struct PlacementOptions {
   float error_bound = 0.2f;           ///< validity radius / harmonic mean distance to what is seen
   float min_radius_px = 4;            ///< a record is valid this many pixels around it at least
   float max_radius = 0;               ///< m; 0: a tenth of the scene's diagonal
-  float min_weight = 1;               ///< sum of weights that counts as covered
+  float min_weight = 0.9f;           ///< sum of weights that counts as covered; a record has 1 at its own place
 };
 
 /// A surface point that a camera sees at a pixel, directly or through mirrors and glass.
