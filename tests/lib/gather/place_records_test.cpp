@@ -1,0 +1,180 @@
+// Placement of records: every pixel covered, the same for any number of threads; limits of the radius.
+#include "lib/gather/place_records.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lib/core/parallel.h"
+#include "tests/support/scenes.h"
+
+namespace tempolux {
+namespace {
+
+using test::HandMadeScene;
+using test::matte;
+
+/// A room of 2 m with a box in it, seen by a pinhole from a corner; every irradiance point says 1 or 3 W/m^2.
+struct Room {
+  HandMadeScene scene;
+  std::vector<IrradiancePoint> points;
+  const SceneFrame* frame;
+  std::unique_ptr<Tracer> tracer;
+  std::unique_ptr<Lights> lights;
+  std::unique_ptr<PointLookup> lookup;
+  std::unique_ptr<FinalGather> gather;
+
+  Room() {
+    scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
+    scene.add_room({-0.3f, -1, -0.3f}, {0.2f, -0.4f, 0.3f}, matte(Rgb(0.7f)));
+    frame = &scene.frame();
+    for (std::uint32_t object = 0; object < 2; ++object)
+      for (Vec3 n : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
+        IrradiancePoint point;
+        point.position = -n;
+        point.normal = n;
+        point.object = object;
+        point.indirect = Rgb(n.x > 0 ? 3.0f : 1.0f);
+        points.push_back(point);
+      }
+    tracer = std::make_unique<Tracer>(*frame);
+    lights = std::make_unique<Lights>(*frame, EmissionTable{});
+    lookup = std::make_unique<PointLookup>(points, frame->bounds, 2.0f);
+    GatherOptions options;
+    options.rays = 50;
+    gather = std::make_unique<FinalGather>(*tracer, *lights, *lookup, options);
+  }
+
+  std::optional<SeenPoint> see(float x, float y, int width, int height) const {
+    const Vec3 eye{0.9f, 0.7f, 0.9f};
+    const Vec3 forward = normalize(Vec3{-0.9f, -1, -0.9f}), right = normalize(cross(forward, Vec3{0, 1, 0})), up = cross(right, forward);
+    const float u = 2 * x / float(width) - 1, v = 1 - 2 * y / float(height);
+    const Vec3 direction = normalize(forward + right * u + up * (v * float(height) / float(width)));
+    Hit hit;
+    if (!tracer->intersect({eye, direction}, hit)) return std::nullopt;
+    const SurfacePoint point = tracer->surface_point(hit);
+    const Vec3 n = dot(point.normal, direction) > 0 ? -point.normal : point.normal;
+    return SeenPoint{point, n, hit.t * 2 / float(width), false};
+  }
+
+  std::size_t place(int width, int height, RecordStore& store, GatherCounts& counts, const PlacementOptions& options = {}) const {
+    const PixelView view = [&, width, height](float x, float y, const PathRandom*) { return see(x, y, width, height); };
+    return place_records(*gather, view, width, height, frame->bounds, options, store, counts);
+  }
+};
+
+TEST(PlaceRecords, EveryPixelIsCoveredAndASecondTimeNothingIsAdded) {
+  const Room room;
+  RecordStore store(room.frame->bounds);
+  GatherCounts counts;
+  const std::size_t added = room.place(96, 64, store, counts);
+  EXPECT_EQ(added, store.records().size());
+  EXPECT_GT(added, 20u);
+  EXPECT_LT(added, 96u * 64u / 4);
+  int covered = 0;
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 96; ++x) {
+      const auto seen = room.see(float(x) + 0.5f, float(y) + 0.5f, 96, 64);
+      ASSERT_TRUE(seen);
+      covered += store.interpolate(seen->surface.position, seen->normal).weight >= PlacementOptions{}.min_weight;
+    }
+  EXPECT_EQ(covered, 96 * 64);
+  EXPECT_EQ(room.place(96, 64, store, counts), 0u);
+}
+
+TEST(PlaceRecords, TheSameRecordsForAnyNumberOfThreads) {
+  const Room room;
+  std::vector<IrradianceRecord> first;
+  for (int threads : {1, 2, 3, 7}) {
+    const ThreadLimit limit(threads);
+    RecordStore store(room.frame->bounds);
+    GatherCounts counts;
+    room.place(64, 48, store, counts);
+    if (first.empty()) first.assign(store.records().begin(), store.records().end());
+    ASSERT_EQ(store.records().size(), first.size()) << threads;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      const IrradianceRecord &a = first[i], &b = store.records()[i];
+      ASSERT_TRUE(a.position == b.position && a.normal == b.normal && a.irradiance == b.irradiance && a.radius == b.radius &&
+                  a.rotational == b.rotational && a.translational == b.translational)
+          << "record " << i << ", " << threads << " threads";
+    }
+  }
+}
+
+/// A pixel bigger than the room still gets its record; a picture of nothing gets none.
+TEST(PlaceRecords, PicturesOfOnePixelAndOfNothing) {
+  const Room room;
+  RecordStore store(room.frame->bounds);
+  GatherCounts counts;
+  EXPECT_GE(room.place(1, 1, store, counts), 1u);
+  RecordStore none(room.frame->bounds);
+  const PixelView nothing = [](float, float, const PathRandom*) { return std::optional<SeenPoint>(); };
+  EXPECT_EQ(place_records(*room.gather, nothing, 32, 32, room.frame->bounds, {}, none, counts), 0u);
+}
+
+/// What is seen through a choice (glass) is looked at within pixels too, with random numbers to draw it.
+TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
+  const Room room;
+  RecordStore store(room.frame->bounds);
+  GatherCounts counts;
+  int drawn = 0;
+  const PixelView view = [&](float x, float y, const PathRandom* random) {
+    drawn += random != nullptr;
+    auto seen = room.see(x, y, 8, 8);
+    if (seen) seen->by_choice = true;
+    return seen;
+  };
+  const ThreadLimit limit(1);
+  place_records(*room.gather, view, 8, 8, room.frame->bounds, {}, store, counts);
+  EXPECT_EQ(drawn, 4 * 64);
+}
+
+IrradianceRecord gathered(float irradiance, Vec3 slope, float harmonic, float nearest) {
+  IrradianceRecord r;
+  r.normal = {0, 1, 0};
+  r.irradiance = Rgb(irradiance);
+  r.translational = {slope, slope, slope};
+  r.radius_unclamped = harmonic;
+  r.radius = nearest;
+  return r;
+}
+
+TEST(LimitRadius, EachLimitDecidesWhereItIsTheSmallest) {
+  PlacementOptions options;
+  options.error_bound = 0.2f;
+  options.min_radius_px = 4;
+  const auto limited = [&](IrradianceRecord r, float footprint) {
+    limit_radius(r, footprint, 0.5f, options);
+    return r;
+  };
+  EXPECT_FLOAT_EQ(limited(gathered(1, {}, 1, INFINITY), 1e-3f).radius, 0.2f);             // bound x harmonic mean
+  EXPECT_FLOAT_EQ(limited(gathered(1, {}, 1, 0.1f), 1e-3f).radius, 0.1f);                 // nearest surface
+  EXPECT_FLOAT_EQ(limited(gathered(1, {}, 10, INFINITY), 1e-3f).radius, 0.5f);            // largest
+  EXPECT_FLOAT_EQ(limited(gathered(1, {}, 1, 1e-5f), 1e-3f).radius, 4e-3f);               // smallest: 4 pixels
+  EXPECT_FLOAT_EQ(limited(gathered(1, {4, 0, 0}, 1, INFINITY), 1e-3f).radius, 0.05f);     // E / |grad| = 0.25
+  // Widened fourfold over what it holds: the gradient shrinks as much.
+  EXPECT_FLOAT_EQ(limited(gathered(1, {1, 0, 0}, 1, 1e-3f), 1e-3f).translational[0].x, 0.25f);
+  EXPECT_FLOAT_EQ(limited(gathered(1, {}, 1, INFINITY), 1e-3f).radius_unclamped, 0.2f);
+}
+
+/// algorithms of the literature divide 0 by 0 in these; ours say the largest or smallest radius.
+TEST(LimitRadius, DegenerateGathers) {
+  const PlacementOptions options;
+  IrradianceRecord misses = gathered(0, {}, INFINITY, INFINITY);
+  limit_radius(misses, 1e-3f, 0.5f, options);
+  EXPECT_EQ(misses.radius, 0.5f);
+  IrradianceRecord touching = gathered(1, {1e20f, 0, 0}, 0, 0);
+  limit_radius(touching, 1e-3f, 0.5f, options);
+  EXPECT_FLOAT_EQ(touching.radius, options.min_radius_px * 1e-3f);
+  EXPECT_EQ(touching.translational[0].x, 0);
+  IrradianceRecord dark = gathered(0, {}, 1, 1);
+  limit_radius(dark, 1e-3f, 0.5f, options);
+  EXPECT_FLOAT_EQ(dark.radius, options.error_bound);
+  for (const IrradianceRecord& r : {misses, touching, dark}) {
+    EXPECT_TRUE(std::isfinite(r.radius));
+    for (Vec3 g : r.translational) EXPECT_TRUE(is_finite(g));
+  }
+}
+
+}  // namespace
+}  // namespace tempolux
