@@ -342,6 +342,36 @@ TEST(IrradiancePoints, AStepLosesNothing) {
   EXPECT_NEAR(high.value(), 1, 0.035);
 }
 
+/// A folded sheet, 60 degrees from face to face. Within 3 cm of a fold a tenth of a disc's light comes from
+/// the other face, whose true area is twice its shadow on the point's plane.
+TEST(IrradiancePoints, FoldsLoseNothing) {
+  HandMadeScene scene;
+  constexpr int kFolds = 10;
+  constexpr float kWidth = 0.3f;
+  std::vector<Vec3> p;
+  std::vector<std::array<std::uint32_t, 3>> t;
+  for (std::uint32_t i = 0; i <= kFolds; ++i) {
+    const Vec3 at{kWidth * float(i), i % 2 ? kWidth / std::sqrt(3.0f) : 0, 0};
+    p.push_back(at);
+    p.push_back(at + Vec3{0, 0, 3});
+    if (i > 0) {
+      t.push_back({2 * i - 2, 2 * i - 1, 2 * i + 1});
+      t.push_back({2 * i - 2, 2 * i + 1, 2 * i});
+    }
+  }
+  scene.add(p, t, matte(Rgb(0.5f)));
+  Stage stage(scene);
+  Mean mean;
+  for (std::uint64_t seed = 0; seed < 4; ++seed)
+    for (const IrradiancePoint& q :
+         stage.estimate(uniform_photons(stage.frame, 60000, seed), few(8000, seed))) {
+      const float off = std::abs(q.position.x / kWidth - std::round(q.position.x / kWidth)) * kWidth;
+      if (off < 0.03f && q.position.x > kWidth / 2 && q.position.x < kWidth * (kFolds - 0.5f))
+        mean.add(double(q.indirect.g));
+    }
+  EXPECT_NEAR(mean.value(), 1, 0.015);  // a fifth of 240k photons: 0.45 %
+}
+
 /// A closed shell as thin as an ear: photons outside, none inside. Nothing may leak in, at any angle.
 TEST(IrradiancePoints, ThinClosedShapesStayDarkInside) {
   HandMadeScene scene;
