@@ -33,7 +33,7 @@ const FinalGather* IndirectLight::make_gather(int number) {
   else if (!options_.photons.empty())
     points_ = make_points(tool_, frame_name(options_.photons, number), tracer_, lights_, options_.points_made);
   else return nullptr;
-  lookup_ = std::make_unique<PointLookup>(points_.points, tracer_.frame().bounds, points_.spacing);
+  lookup_ = std::make_unique<PointLookup>(points_.points, tracer_.frame().bounds, points_.spacing, point_reach(tracer_));
   gather_ = std::make_unique<FinalGather>(tracer_, lights_, *lookup_, options_.gather);
   return gather_.get();
 }
