@@ -12,7 +12,7 @@ namespace {
 
 using formats::PathKind;
 
-constexpr float kLargestSurvival = 0.998f;   ///< in a lossless box paths end after 500 bounces in the mean
+constexpr float kLargestSurvival = 0.9995f;  ///< in a lossless box paths end after 2000 bounces in the mean
 
 /// Kind of a photon by the events so far (architecture.md 3).
 PathKind kind_after(bool diffuse_seen, bool specular_seen) {

@@ -60,13 +60,45 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
   });
 }
 
-PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
+/// A pixel's first samples ask for caustic and indirect light; if they all met one surface, later samples that meet
+/// it take the mean of those answers: that light is smooth, and they are there for the direct light.
+class PixelLight : public DiffuseLight {
+ public:
+  struct Memory {
+    std::uint32_t surface = kNone;   ///< kNone: nothing met yet
+    int count = 0;                   ///< 0 after several surfaces were met: nothing to reuse
+    Irradiance sum;
+  };
+  PixelLight(const DiffuseLight& light, Memory& memory, bool reuse) : light_(light), memory_(memory), reuse_(reuse) {}
+
+  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const override {
+    if (reuse_) {
+      if (memory_.count == 0 || surface.surface != memory_.surface) return light_.at(surface, geometric, shading);
+      const float scale = 1 / float(memory_.count);
+      return {memory_.sum.caustic * scale, memory_.sum.indirect * scale};
+    }
+    const Irradiance found = light_.at(surface, geometric, shading);
+    const bool same = memory_.surface == kNone || (memory_.count > 0 && memory_.surface == surface.surface);
+    memory_.surface = surface.surface;
+    memory_.count = same ? memory_.count + 1 : 0;
+    memory_.sum.caustic += found.caustic;
+    memory_.sum.indirect += found.indirect;
+    return found;
+  }
+
+ private:
+  const DiffuseLight& light_;
+  Memory& memory_;
+  bool reuse_;
+};
+
+PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const DiffuseLight* light,
                       std::size_t pixel, int x, int y, int first, int count, RayCounts& counts) {
   PixelSum sum;
   for (int s = first; s < first + count; ++s) {
     const PixelRandom random(seed, pixel, std::uint32_t(s));
     const Vec2 jitter = random.get2(0, Purpose::pixel);
-    sum.add(trace_eye_path(scene, view.ray(float(x) + jitter.x, float(y) + jitter.y), random, options.diffuse_light, counts));
+    sum.add(trace_eye_path(scene, view.ray(float(x) + jitter.x, float(y) + jitter.y), random, light, counts));
   }
   return sum;
 }
@@ -76,7 +108,8 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
                  int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
   const int first = image.samples;
   for_each_pixel(view, options, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    join(sample_pixel(scene, view, seed, options, pixel, x, y, first, count, counts), first, count, image.pixels[pixel]);
+    join(sample_pixel(scene, view, seed, options.diffuse_light, pixel, x, y, first, count, counts), first, count,
+         image.pixels[pixel]);
   });
   image.samples += count;
 }
@@ -115,8 +148,14 @@ std::vector<int> missing_samples(const CameraView& view, const FrameOptions& opt
 void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
   LayerImage& image = frame.mean;
   std::vector<double> mean(image.pixels.size()), variance(image.pixels.size());
+  std::vector<PixelLight::Memory> memory(options.diffuse_light ? image.pixels.size() : 0);
+  const auto sample = [&](std::size_t pixel, int x, int y, int first, int count, RayCounts& counts) {
+    if (!options.diffuse_light) return sample_pixel(scene, view, options.seed, nullptr, pixel, x, y, first, count, counts);
+    const PixelLight light(*options.diffuse_light, memory[pixel], first > 0);
+    return sample_pixel(scene, view, options.seed, &light, pixel, x, y, first, count, counts);
+  };
   for_each_pixel(view, options, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    const PixelSum sum = sample_pixel(scene, view, options.seed, options, pixel, x, y, 0, options.samples, counts);
+    const PixelSum sum = sample(pixel, x, y, 0, options.samples, counts);
     join(sum, 0, options.samples, image.pixels[pixel]);
     mean[pixel] = sum.value() / options.samples;
     variance[pixel] = std::max(0.0, sum.square - mean[pixel] * sum.value()) / std::max(1, options.samples - 1);
@@ -124,8 +163,7 @@ void render_adaptive(const RenderScene& scene, const CameraView& view, const Fra
   const std::vector<int> missing = missing_samples(view, options, mean, variance);
   for_each_pixel(view, options, frame.rays, options.progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     if (const int count = missing[pixel])
-      join(sample_pixel(scene, view, options.seed, options, pixel, x, y, options.samples, count, counts),
-           options.samples, count, image.pixels[pixel]);
+      join(sample(pixel, x, y, options.samples, count, counts), options.samples, count, image.pixels[pixel]);
   });
   double sum = 0;
   for (int count : missing) sum += count;
