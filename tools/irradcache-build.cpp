@@ -70,6 +70,10 @@ formats::IrradcacheHeader cache_header(const Options& options, const SceneFrame&
   return header;
 }
 
+/// Of min_weight: what covers a pixel once there are records for another frame's camera. All frames are interpolated
+/// from what the first was worth; a stricter first keeps the others from adding a few everywhere.
+constexpr float kLaterWeight = 0.5f;
+
 /// Records for the cameras of all frames: one cache, valid while nothing but the camera changes.
 void build_records(tools::Tool& tool, tools::SceneInput& input, Options options, const std::vector<int>& frames) {
   tools::Output output(options.output, tool.common().no_clobber);
@@ -100,8 +104,10 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
       throw InputError(options.scene() + ": frame " + std::to_string(number) + " is lit or built differently from frame " +
                        std::to_string(first.frame) + ": one cache cannot hold for both; make one for each");
     const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
+    PlacementOptions placement = options.placement;
+    if (number != frames.front()) placement.min_weight *= kLaterWeight;
     const PixelView seen = [&](float x, float y, const PathRandom* random) { return seen_through(tracer, view, x, y, random); };
-    const std::size_t added = place_records(gather, seen, options.width, options.height, first.bounds, options.placement,
+    const std::size_t added = place_records(gather, seen, options.width, options.height, first.bounds, placement,
                                             store, counts, [&](double done) { tool.progress(done); });
     tool.stats().set("records_added." + std::to_string(number), double(added));
   }

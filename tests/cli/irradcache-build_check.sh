@@ -1,0 +1,73 @@
+# irradcache-build: both steps and one run, extending, several frames, what it must refuse.
+failed=0
+bad() { echo "$*"; failed=1; }
+same() { tempolux-info --diff "$1" "$2" >diff.txt; }   # equal data, whatever the history
+refuses() {   # exit 2 and these words in one line; nothing is written
+  words=$1; shift
+  "$@" >out.txt 2>errors.txt
+  code=$?
+  [ $code = 2 ] || bad "exit $code, not 2: $*"
+  grep -q -- "$words" errors.txt || bad "does not say '$words': $(cat errors.txt)"
+  [ -e refused ] && bad "left an output: $*" && rm -f refused
+}
+scenes=$HERE/../../pipelines/scenes
+still=$scenes/S1_cornell.glb moving=$scenes/S2_cornell_moving.glb
+small="--size 48x27 --rays 64"
+photon-trace "$still" --photons 20k -o p.photons -q || bad 'photons'
+
+# The two steps and both in one give the same records; so do all numbers of threads.
+irradcache-build points "$still" --photons p.photons --point-count 1k -o p.irradpoints -q || bad 'points'
+irradcache-build records "$still" --points p.irradpoints $small -o two.irradcache -q --stats two.json || bad 'records'
+irradcache-build "$still" --photons p.photons --point-count 1k $small -o one.irradcache --keep-points kept.irradpoints -q || bad 'both'
+same two.irradcache one.irradcache || bad 'two steps differ from one'
+same p.irradpoints kept.irradpoints || bad 'kept points differ'
+for threads in 1 2 3 7; do
+  irradcache-build "$still" --photons p.photons --point-count 1k $small -o "one.irradcache.$threads" --threads $threads -q
+  irradcache-build points "$still" --photons p.photons --point-count 1k -o "p.irradpoints.$threads" --threads $threads -q
+done
+for threads in 2 3 7; do
+  cmp one.irradcache.1 "one.irradcache.$threads" || bad "records differ with $threads threads"
+  cmp p.irradpoints.1 "p.irradpoints.$threads" || bad "points differ with $threads threads"
+done
+tempolux-info --check one.irradcache p.irradpoints >/dev/null || bad 'not valid'
+irradcache-build records "$still" --points - $small -o - -q <p.irradpoints >piped.irradcache || bad 'pipes'
+same piped.irradcache two.irradcache || bad 'a pipe changes the records'
+
+# Extending keeps what is there, adds nothing for the same picture, and covers a finer one.
+irradcache-build records "$still" --points p.irradpoints $small --records two.irradcache -o same.irradcache -q || bad 'extend'
+same same.irradcache two.irradcache || bad 'extending for the same picture adds records'
+irradcache-build records "$still" --points p.irradpoints --rays 64 --size 192x108 --records two.irradcache -o finer.irradcache -q --stats finer.json
+"${PYTHON:-python3}" - <<'END' || bad 'a finer picture keeps the records and adds some'
+import json
+two, finer = (json.load(open(name + ".json")) for name in ("two", "finer"))
+added = finer["results"]["records_added.0"]
+assert added > 0 and finer["counts"]["records"] == two["counts"]["records"] + added, (two, finer)
+END
+
+# A frame from the cache, and the same one however the cache came to be.
+for cache in one two; do
+  frame-render "$still" --size 48x27 --spp 2 --pixel-error 0 --irradcache $cache.irradcache --channels layers -o $cache.exr -q || bad "frame from $cache"
+done
+tempolux-info --diff one.exr two.exr >/dev/null || bad 'frames of equal caches differ'
+
+# Frames that are lit alike are one cache; frames that are not are refused.
+irradcache-build "$still" --photons p.photons --point-count 1k $small --frames 0-2 -o frames.irradcache --stats frames.json -q || bad '--frames'
+grep -q '"records_added.2": 0' frames.json || bad 'the same camera needs more records at a later frame'
+photon-trace "$moving" --frame 3 --photons 20k -o moving.photons -q
+refuses 'one cache cannot hold for both' irradcache-build "$moving" --photons moving.photons --point-count 500 $small --frames 3-5 -o refused
+
+# Wrong steps and inputs.
+refuses 'is not a step' irradcache-build recrods "$still" --points p.irradpoints -o refused
+refuses 'name the photon map with --photons' irradcache-build points "$still" -o refused
+refuses 'name the points with --points' irradcache-build records "$still" -o refused
+refuses 'either the photon map' irradcache-build "$still" -o refused
+refuses 'either the photon map' irradcache-build "$still" --photons p.photons --points p.irradpoints -o refused
+refuses 'several frames need a pattern' irradcache-build points "$still" --photons p.photons --frames 0-1 -o refused
+refuses 'p.photons' irradcache-build "$moving" --frame 3 --photons p.photons $small -o refused
+refuses 'moving.photons' irradcache-build "$moving" --frame 10 --photons moving.photons $small -o refused
+refuses 'p.irradpoints' irradcache-build records "$moving" --frame 3 --points p.irradpoints $small -o refused
+refuses 'one.irradcache' irradcache-build "$moving" --frame 3 --photons moving.photons --records one.irradcache $small -o refused
+refuses 'p.photons' irradcache-build records "$still" --points p.photons $small -o refused
+refuses 'min-weight' irradcache-build "$still" --photons p.photons --min-weight 1 -o refused
+irradcache-build "$moving" --frame 10 --photons moving.photons --point-count 500 $small --allow-stale -o stale.irradcache -q || bad '--allow-stale'
+exit $failed
