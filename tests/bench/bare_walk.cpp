@@ -1,12 +1,13 @@
 // tests/bench/bare_walk.cpp -- the limit of photon-trace: the same random walks with Embree and nothing else.
 //
-//     bare_walk SCENE [--frame 10] [--photons 4000000] [--threads 2]
+//     bare_walk SCENE [--frame 10] [--photons 4000000] [--threads 2] [--robust yes]
 //
-// Photons start on the emissive triangles by flux and cosine, are followed by rtcIntersect1 through one tree of
-// all triangles at the frame, turn into cosine directions and die by roulette on the albedo, as in photon-trace
-// on matte surfaces. Nothing is looked up twice, recorded, checked or repeatable; the generator is the cheapest
-// one that will do. Prints JSON: seconds of the walk alone (no loading, no building), rays and hits, so that
-// one sees that the walks are the same.
+// Photons start on the emissive triangles by flux and cosine, are followed by rtcIntersect1 through one tree
+// of all triangles at the frame, turn into cosine directions and die by roulette on the albedo, as in
+// photon-trace on matte surfaces. Nothing is looked up twice, recorded, checked or repeatable; the generator
+// is the cheapest one that will do. --robust yes: no ray slips through an edge (RTC_SCENE_FLAG_ROBUST), as
+// in our tools. Prints JSON: seconds of the walk alone (no loading, no building), rays and hits, so that one
+// sees that the walks are the same.
 #include <embree3/rtcore.h>
 
 #include <chrono>
@@ -60,15 +61,16 @@ struct Generator {
   }
 };
 
-Walk make_walk(const SceneFrame& frame, RTCDevice device) {
+Walk make_walk(const SceneFrame& frame, RTCDevice device, bool robust) {
   Walk walk;
   walk.tree = rtcNewScene(device);
+  rtcSetSceneFlags(walk.tree, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   double flux = 0;
   for (const Surface& surface : frame.surfaces) {
     const Material& material = frame.materials[surface.material];
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* p = static_cast<Vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                         sizeof(Vec3), surface.positions.size()));
+    auto* p = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), surface.positions.size()));
     std::copy(surface.positions.begin(), surface.positions.end(), p);
     const auto& triangles = surface.primitive->triangles;
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
@@ -79,8 +81,8 @@ Walk make_walk(const SceneFrame& frame, RTCDevice device) {
     walk.albedo.push_back(material.base_color * (1 - material.metallic));
     if (!material.emissive()) continue;
     for (const auto& t : triangles) {
-      Emitter e{surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]], {}, material.emission,
-                material.double_sided};
+      Emitter e{surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]], {},
+                material.emission, material.double_sided};
       const Vec3 n = cross(e.b - e.a, e.c - e.a);
       e.normal = normalize(surface.flipped ? -n : n);
       flux += double(length(n)) * double(max_component(e.radiance)) * (e.two_sided ? 2 : 1);
@@ -100,8 +102,9 @@ struct Counts {
 };
 
 void start(const Walk& walk, Generator& random, RTCRay& ray, Rgb& flux) {
+  const double u = random.next();
   std::size_t i = 0;
-  for (const float u = random.next(); i + 1 < walk.emitters.size() && double(u) >= walk.emitters[i].cumulative;) ++i;
+  while (i + 1 < walk.emitters.size() && u >= walk.emitters[i].cumulative) ++i;
   const Emitter& e = walk.emitters[i];
   const Vec2 at = sample_triangle({random.next(), random.next()});
   const Vec3 normal = e.two_sided && random.next() < 0.5f ? -e.normal : e.normal;
@@ -153,12 +156,13 @@ double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-void run(const std::string& scene_file, int frame_number, std::uint64_t photons, unsigned threads) {
+void run(const std::string& scene_file, int frame_number, std::uint64_t photons, unsigned threads,
+         bool robust) {
   const Scene scene = load_gltf(scene_file);
   const TimeOptions time;
   const SceneFrame frame = scene_at_frame(scene, segment_of(scene, frame_number, time), frame_number, time);
   RTCDevice device = rtcNewDevice(nullptr);
-  const Walk walk = make_walk(frame, device);
+  const Walk walk = make_walk(frame, device, robust);
   std::vector<Counts> counts(threads);
   const double cpu = cpu_seconds(), wall = wall_seconds();
   std::vector<std::thread> workers;
@@ -173,10 +177,10 @@ void run(const std::string& scene_file, int frame_number, std::uint64_t photons,
   const double cpu_s = cpu_seconds() - cpu, wall_s = wall_seconds() - wall;
   Counts all;
   for (const Counts& c : counts) all = {all.rays + c.rays, all.hits + c.hits, all.distance + c.distance};
-  std::printf("{\"photons\": %llu, \"threads\": %u, \"cpu_s\": %.6f, \"wall_s\": %.6f, \"rays\": %llu, \"hits\": %llu, "
-              "\"mean_distance_m\": %.6f}\n",
-              static_cast<unsigned long long>(photons), threads, cpu_s, wall_s,
-              static_cast<unsigned long long>(all.rays), static_cast<unsigned long long>(all.hits),
+  using Count = unsigned long long;
+  std::printf("{\"photons\": %llu, \"threads\": %u, \"cpu_s\": %.6f, \"wall_s\": %.6f, ", Count{photons}, threads,
+              cpu_s, wall_s);
+  std::printf("\"rays\": %llu, \"hits\": %llu, \"mean_distance_m\": %.6f}\n", Count{all.rays}, Count{all.hits},
               all.distance / double(all.hits));
   rtcReleaseScene(walk.tree);
   rtcReleaseDevice(device);
@@ -188,16 +192,18 @@ int main(int argc, char** argv) {
   std::string scene;
   int frame = 10;
   unsigned threads = 2;
+  bool robust = false;
   std::uint64_t photons = 4000000;
   for (int i = 1; i < argc; ++i) {
     const bool valued = i + 1 < argc;
     if (valued && !std::strcmp(argv[i], "--frame")) frame = std::atoi(argv[++i]);
     else if (valued && !std::strcmp(argv[i], "--photons")) photons = std::strtoull(argv[++i], nullptr, 10);
-    else if (valued && !std::strcmp(argv[i], "--threads")) threads = unsigned(std::max(1, std::atoi(argv[++i])));
+    else if (valued && !std::strcmp(argv[i], "--threads")) threads = unsigned(std::atoi(argv[++i]));
+    else if (valued && !std::strcmp(argv[i], "--robust")) robust = !std::strcmp(argv[++i], "yes");
     else scene = argv[i];
   }
   try {
-    run(scene, frame, photons, threads);
+    run(scene, frame, photons, std::max(1u, threads), robust);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bare_walk: %s\n", error.what());
     return 2;

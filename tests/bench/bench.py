@@ -25,7 +25,8 @@ def options():
     parser.add_argument("--results", type=Path, default=project / "RESULTS.md", help="the page [RESULTS.md]")
     parser.add_argument("--docs", type=Path, default=project / "docs", help="folder of its figures [docs]")
     parser.add_argument("--only", default=",".join(["sweep", *FIGURES]), help="parts, by comma: [%(default)s]")
-    parser.add_argument("--reference-samples", type=int, default=4096, help="samples per pixel of the references [4096]")
+    parser.add_argument("--reference-samples", type=int, default=2048,
+                        help="per pixel, of each reference; 8192 for errors below 0.001 [2048]")
     parser.add_argument("--quick", action="store_true", help="tiny sizes: does every script still run?")
     parser.add_argument("--page", action="store_true", help="measure nothing, write the page")
     return project, parser.parse_args()

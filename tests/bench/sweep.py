@@ -70,7 +70,7 @@ def measure(bench, peers):
         for curve, values, make in curves(bench):
             print(f"  {name}: {curve}", flush=True)
             for x in values:
-                for seed in ([1] if bench.quick or x >= 3 * 10**6 or (curve == "path tracing" and x > 64) else [1, 2]):
+                for seed in ([1] if bench.quick or x >= 3 * 10**6 or (curve == "path tracing" and x > 16) else [1, 2]):
                     image, stats = make(name, x, seed)
                     for layer, title in ((None, f"{name}, {FRAMES[name]}"), ("indirect", f"{name}, indirect light alone")):
                         comparison = image.with_name(f"{image.stem}-{layer or 'all'}-error.json")
