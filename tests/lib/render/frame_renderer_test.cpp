@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/photon/photon_trace.h"
 #include "lib/render/photon_light.h"
@@ -87,6 +88,78 @@ TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
   const double rmse = std::sqrt(difference2 / 2 / double(3 * one.mean.pixels.size()));
   // 2304 pixels with heavy tails: the ratio of two such estimates scatters by 10 % or so.
   EXPECT_NEAR(one.own_rmse / rmse, 1, 0.3);
+}
+
+/// Extra samples go where neighbours are uncertain; a pixel's own luck must not decide. Direct light of the pixels
+/// that scatter most between 32 seeds, penumbrae and edges, two base samples each, against 1024 samples
+/// everywhere: 4 sigma of the mean of their errors. (Deciding by a pixel's own samples comes out 0.8 % too
+/// dark, six sigma.)
+TEST(FrameRenderer, SamplesWhereTheyAreNeededBringNoBias) {
+  const Cornell c;
+  struct NoLight : DiffuseLight {
+    Irradiance at(const SurfacePoint&, Vec3, Vec3) const override { return {}; }
+  } none;
+  FrameOptions options;
+  options.diffuse_light = &none;
+  options.samples = 1024;
+  const RenderedFrame reference = render_frame(c.render_scene(), c.view, options);
+  options.samples = 2;
+  options.pixel_error = 0.02;
+  constexpr int kSeeds = 32;
+  const std::size_t pixels = reference.mean.pixels.size();
+  std::vector<double> sum(pixels), sum2(pixels);
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    options.seed = std::uint64_t(seed) + 1;
+    const RenderedFrame frame = render_frame(c.render_scene(), c.view, options);
+    for (std::size_t p = 0; p < pixels; ++p) {
+      const double value = double(frame.mean.pixels[p][Layer::direct].g);
+      sum[p] += value;
+      sum2[p] += value * value;
+    }
+  }
+  double error = 0, variance = 0, total_light = 0;
+  int chosen = 0;
+  for (std::size_t p = 0; p < pixels; ++p) {
+    const double mean = sum[p] / kSeeds, var = std::max(0.0, sum2[p] / kSeeds - mean * mean) / (kSeeds - 1);
+    const double expected = double(reference.mean.pixels[p][Layer::direct].g);
+    if (!(std::sqrt(var * kSeeds) > 0.05 * expected) || !(expected > 0)) continue;
+    ++chosen;
+    error += mean - expected;
+    variance += var;
+    total_light += expected;
+  }
+  EXPECT_GT(chosen, 100);
+  EXPECT_NEAR(error / total_light, 0, 4 * std::sqrt(variance) / total_light + 0.0005);
+  EXPECT_LT(4 * std::sqrt(variance) / total_light, 0.006);
+}
+
+TEST(FrameRenderer, PixelsOutsideTheMaskAreTheBasesToTheBit) {
+  const Cornell c;
+  FrameOptions options;
+  options.samples = 2;
+  const RenderedFrame full = render_frame(c.render_scene(), c.view, options);
+  Image base{64, 36, {}, {}, {}, {}};
+  add_colour_channels(full.mean, {"RGBA"}, base);
+  for (float& v : base.channels[0].values) v = -0.0f;
+  options.mask.assign(64 * 36, 0);
+  for (std::size_t p = 100; p < 400; ++p) options.mask[p] = 1;
+  const RenderedFrame part = render_frame(c.render_scene(), c.view, options);
+  EXPECT_EQ(part.rays.camera, 600u);
+  Image image{64, 36, {}, {}, {}, {}};
+  add_colour_channels(part.mean, {"RGBA"}, image);
+  const Image traced = image;
+  keep_base_pixels(options.mask, base, image);
+  for (std::size_t k = 0; k < image.channels.size(); ++k)
+    for (std::size_t p = 0; p < options.mask.size(); ++p) {
+      const float expected = options.mask[p] ? traced.channels[k].values[p] : base.channels[k].values[p];
+      ASSERT_EQ(std::signbit(image.channels[k].values[p]), std::signbit(expected));
+      ASSERT_EQ(image.channels[k].values[p], expected);
+      if (options.mask[p] && k > 0) { ASSERT_EQ(image.channels[k].values[p], base.channels[k].values[p]); }
+    }
+  Image small{8, 8, {}, {}, {}, {}};
+  EXPECT_THROW(keep_base_pixels(options.mask, small, image), InputError);
+  base.channels.pop_back();
+  EXPECT_THROW(keep_base_pixels(options.mask, base, image), InputError);
 }
 
 TEST(FrameRenderer, TargetErrorIsReached) {
