@@ -1,0 +1,116 @@
+#!/usr/bin/env python3
+"""Pictures of files that have none, from what tempolux-info and scene-plan say of them, for README.md.
+
+  draw.py points POINTS.csv FRAME.json OUT.png [SIZE]    points where the frame's camera sees them, nearest on top
+  draw.py dots POINTS.csv FRAME.json FRAME.png OUT.png   as dots over the darkened frame
+  draw.py plan PLAN.json OUT.png                         a column for each frame, a row for each concern of the scene;
+                                                         equal colours in a row: equal content
+
+POINTS.csv: tempolux-info --export csv; FRAME.json: tempolux-info --json of the frame's EXR."""
+import csv
+import json
+import struct
+import sys
+import zlib
+
+
+def write_png(path, rows):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    raw = b"".join(b"\0" + bytes(v for pixel in row for v in pixel) for row in rows)
+    head = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 2, 0, 0, 0)
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b""))
+
+
+def read_png(path):
+    """Rows of a PNG of 8 bits and three channels, as tempolux-info writes them."""
+    data, at, packed = open(path, "rb").read(), 8, b""
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        if kind == b"IHDR":
+            width, height = struct.unpack_from(">II", data, at + 8)
+        elif kind == b"IDAT":
+            packed += data[at + 8:at + 8 + size]
+        at += size + 12
+    raw, stride, above, rows = zlib.decompress(packed), 3 * width, bytes(3 * width), []
+    for y in range(height):
+        code, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            a, b, c = line[i - 3] if i >= 3 else 0, above[i], above[i - 3] if i >= 3 else 0
+            paeth = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]
+            line[i] = (line[i] + (0, a, b, (a + b) // 2, paeth)[code]) & 255
+        above = bytes(line)
+        rows.append([tuple(line[i:i + 3]) for i in range(0, stride, 3)])
+    return rows
+
+
+def seen(rows, frame, width, height):
+    """(depth, x, y, row) in pixels of the points before the camera, farthest first."""
+    m, found = frame["worldToNDC"], []
+    for row in rows:
+        p = (float(row["x_m"]), float(row["y_m"]), float(row["z_m"]), 1.0)
+        x, y, w = (sum(p[i] * m[4 * i + c] for i in range(4)) for c in (0, 1, 3))
+        if w > 1e-3 and 0 <= x < w and 0 <= y < w:
+            found.append((w, int(x / w * width), int(y / w * height), row))
+    return sorted(found, key=lambda point: -point[0])
+
+
+def light_of(row):
+    """Flux of a photon, irradiance of a point or record: R, G, B."""
+    kinds = ("flux_{}_W", "irradiance_{}_W_m2", "direct_{}_W_m2", "caustic_{}_W_m2", "indirect_{}_W_m2")
+    return [sum(float(row.get(kind.format(c), 0)) for kind in kinds) for c in "rgb"]
+
+
+def colour(light, white):
+    return tuple(round(255 * min(1.0, max(0.0, x / white)) ** (1 / 2.2)) for x in light)
+
+
+def splat(rows, x, y, size, value):
+    for v in range(max(0, y), min(len(rows), y + size)):
+        for u in range(max(0, x), min(len(rows[0]), x + size)):
+            rows[v][u] = value
+
+
+def points(table, frame, out, size=2):
+    frame, rows = json.load(open(frame)), list(csv.DictReader(open(table)))
+    width, height = frame["width"], frame["height"]
+    brightness = sorted(max(light_of(row)) for row in rows)
+    white = brightness[len(brightness) * 98 // 100]
+    image = [[(0, 0, 0)] * width for _ in range(height)]
+    for _, x, y, row in seen(rows, frame, width, height):
+        splat(image, x, y, int(size), colour(light_of(row), white))
+    write_png(out, image)
+
+
+def dots(table, frame, picture, out):
+    frame, rows = json.load(open(frame)), list(csv.DictReader(open(table)))
+    image = [[tuple(v * 2 // 5 for v in pixel) for pixel in row] for row in read_png(picture)]
+    for _, x, y, row in seen(rows, frame, len(image[0]), len(image)):
+        splat(image, x, y, 1, (255, 170, 60) if row["set"] == "dynamic" else (255, 255, 255))
+    write_png(out, image)
+
+
+def plan(document, out):
+    document = json.load(open(document))
+    columns = []
+    for segment in document["segments"]:
+        for frame in segment["frames"]:
+            if frame["asked"]:
+                hashes = {**segment["hashes"], **frame["hashes"]}
+                columns.append([hashes[k] for k in ("static_geometry", "materials", "moving_geometry", "lights", "camera")])
+    step, tall, image = max(2, 320 // len(columns)), 18, []
+    for concern in range(5):
+        line = []
+        for column in columns:
+            value = tuple(60 + int(column[concern][2 * i:2 * i + 2], 16) * 3 // 4 for i in range(3))
+            line += [value] * (step - 1) + [(255, 255, 255)]
+        image += [line] * (tall - 3) + [[(255, 255, 255)] * len(line)] * 3
+    write_png(out, image)
+
+
+if __name__ == "__main__":
+    commands = {"points": points, "dots": dots, "plan": plan}
+    if len(sys.argv) < 4 or sys.argv[1] not in commands:
+        sys.exit(__doc__)
+    commands[sys.argv[1]](*sys.argv[2:])

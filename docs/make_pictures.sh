@@ -1,0 +1,51 @@
+#!/bin/sh
+# Make the pictures of README.md again, into docs/images: sh docs/make_pictures.sh [BIN]
+# Run at the top of the tree; BIN is the folder with the tools. Takes about two CPU minutes; all from the demo's scene.
+bin=${1:-build/release/bin} out=docs/images scene=pipelines/scenes/S2_cornell_moving.glb
+work=$(mktemp -d) || exit 3
+trap 'rm -rf "$work"' EXIT
+set -e
+mkdir -p $out
+info="$bin/tempolux-info" draw='python3 -B docs/draw.py'
+
+# The demo's frames, every sixth.
+for f in 0 6 12 18 24 30 36 42; do
+  "$bin/photon-trace" $scene --frame $f --photons 200k --kinds indirect -o "$work/p.photons"
+  "$bin/irradcache-build" $scene --frame $f --photons "$work/p.photons" --size 640x360 --keep-points "$work/p.irradpoints" -o "$work/c.irradcache"
+  "$bin/frame-render" $scene --frame $f --size 640x360 --irradcache "$work/c.irradcache" --points "$work/p.irradpoints" \
+    -o "$work/$(printf %04d $f).exr"
+done
+"$info" --sheet $out/demo.png --columns 4 --tile 240 "$work"/00??.exr
+
+# One frame through the chain, at 320x180.
+"$bin/scene-plan" $scene --frames 0-47 -o "$work/plan" -q
+$draw plan "$work/plan/plan.json" $out/scene-plan.png
+"$bin/photon-trace" $scene --frame 12 --photons 200k --kinds indirect -o "$work/p.photons"
+"$bin/photon-trace" $scene --frame 12 --photons 30k --kinds indirect -o "$work/few.photons"
+"$bin/irradcache-build" $scene --frame 12 --photons "$work/p.photons" --size 320x180 --keep-points "$work/p.irradpoints" -o "$work/c.irradcache"
+"$bin/frame-render" $scene --frame 12 --size 320x180 --irradcache "$work/c.irradcache" --points "$work/p.irradpoints" --channels RGBA,id \
+  -o "$work/f.exr" --stats "$work/f.json"
+"$info" --png $out/frame-render.png "$work/f.exr"
+"$info" --json "$work/f.exr" > "$work/frame.json"
+"$info" --export csv -o "$work/photons.csv" "$work/few.photons"
+"$info" --export csv -o "$work/points.csv" "$work/p.irradpoints"
+"$info" --export csv -o "$work/records.csv" "$work/c.irradcache"
+$draw points "$work/photons.csv" "$work/frame.json" $out/photon-trace.png 2
+$draw points "$work/points.csv" "$work/frame.json" $out/irradcache-build-points.png 7
+$draw dots "$work/records.csv" "$work/frame.json" $out/frame-render.png $out/irradcache-build-records.png
+
+# Its error, and error against time of path tracing.
+"$bin/frame-render" $scene --frame 12 --size 320x180 --integrator path --spp 512 --halves -o "$work/r.exr"
+compare() { "$bin/aqm-compare" "$@" --reference-halves "$work/r_a.exr" "$work/r_b.exr" -q; }
+compare "$work/f.exr" --difference "$work/wrong.png"
+"$info" --sheet $out/aqm-compare.png --columns 1 --tile 160 --exposure 0 "$work/wrong.png"
+runs=
+for spp in 1 2 4 8 16; do
+  "$bin/frame-render" $scene --frame 12 --size 320x180 --integrator path --spp $spp --seed 1 -o "$work/t.exr" --stats "$work/path$spp.json"
+  compare "$work/t.exr" --json "$work/path$spp.error"
+  runs="$runs --run scene=S2,curve=path,x=$spp $work/path$spp.json $work/path$spp.error"
+done
+"$bin/error-report" $runs -o "$work/report"
+"$info" --sheet $out/error-report.png --columns 1 --tile 320 --exposure 0 "$(ls "$work"/report/*.png | head -n 1)"
+"$info" --sheet $out/tempolux-info.png --columns 3 --tile 106 "$work"/00??.exr
+ls -l $out
