@@ -111,6 +111,16 @@ TEST(RecordStore, NoCellIsForgotten) {
   }
 }
 
+TEST(RecordStore, NoRecordIsLostWhenTheTableGrows) {
+  RecordStore store(box({0, 0, 0}, {1, 0, 1}));
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j)
+      store.add(record_at({0.01f * float(i), 0, 0.01f * float(j)}, {0, 1, 0}, 0.004f, Rgb(float(100 * i + j))));
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j)
+      ASSERT_EQ(store.interpolate({0.01f * float(i), 0, 0.01f * float(j)}, {0, 1, 0}).irradiance.r, float(100 * i + j));
+}
+
 /// E(x) = a + b . x on a plane: with exact gradients every mix of records gives it back.
 TEST(RecordStore, LinearFieldIsExact) {
   const Vec3 slope{0.3f, 0, -0.2f};
