@@ -125,7 +125,7 @@ void check(Options& options, const std::vector<int>& frames) {
   if (options.light.irradcache.empty() && !options.light.points.empty())
     throw InputError("--points: only a cache needs them, --irradcache FILE");
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
-  if (options.pixel_error < 0) options.frame.pixel_error = options.traces_paths() ? 0 : 0.005;
+  if (options.pixel_error < 0) options.frame.pixel_error = options.traces_paths() ? 0 : 0.01;
   else options.frame.pixel_error = options.pixel_error;
   const bool halves = options.frame.halves || options.frame.target_error > 0;
   if (halves && options.frame.samples % 2 != 0) throw InputError("--spp: halves need an even number of samples");
@@ -160,7 +160,7 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--spp", options.frame.samples, "samples per pixel: all, or with --pixel-error or --target-error the first")
       ->capture_default_str()->check(CLI::Range(1, 1 << 24));
   app.add_option("--pixel-error", options.pixel_error,
-                 "more samples where pixels are uncertain: n = sigma / (this x radiance); 0: none; -1: 0.005 with photons or a cache, else none")
+                 "more samples where pixels are uncertain: n = sigma / (this x radiance); 0: none; -1: 0.01 with photons or a cache, else none")
       ->capture_default_str()->check(CLI::Range(-1.0, 1.0));
   app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
       ->capture_default_str()->check(CLI::Range(1, 1 << 20));

@@ -13,7 +13,7 @@ namespace tempolux {
 
 struct GatherOptions {
   std::uint64_t seed = 0;
-  int rays = 800;                   ///< wanted; rounded to M rings x N_phi sectors with N_phi about pi M
+  int rays = 500;                   ///< wanted; rounded to M rings x N_phi sectors with N_phi about pi M
   float near_factor = 2;            ///< hits nearer than about this many estimate radii continue one bounce
 };
 
