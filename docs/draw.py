@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Pictures of files that have none, from what tempolux-info and scene-plan say of them, for README.md.
 
-  draw.py points POINTS.csv FRAME.json OUT.png [SIZE]    points where the frame's camera sees them, nearest on top
+  draw.py points POINTS.csv FRAME.json OUT.png [WIDTH]   points where the frame's camera sees them, nearest on top,
+                                                         as squares WIDTH metres wide
   draw.py dots POINTS.csv FRAME.json FRAME.png OUT.png   as dots over the darkened frame
   draw.py plan PLAN.json OUT.png                         a column for each frame, a row for each concern of the scene;
                                                          equal colours in a row: equal content
@@ -9,6 +10,7 @@
 POINTS.csv: tempolux-info --export csv; FRAME.json: tempolux-info --json of the frame's EXR."""
 import csv
 import json
+import math
 import struct
 import sys
 import zlib
@@ -46,12 +48,14 @@ def read_png(path):
 
 
 def seen(rows, frame, width, height):
-    """(depth, x, y, row) in pixels of the points before the camera, farthest first."""
-    m, found = frame["worldToNDC"], []
+    """(depth, x, y, row) in pixels of the points before the camera whose lit side is turned to it, farthest first."""
+    m, turn, found = frame["worldToNDC"], frame["worldToCamera"], []
+    eye = [-sum(turn[12 + i] * turn[4 * c + i] for i in range(3)) for c in range(3)]
     for row in rows:
         p = (float(row["x_m"]), float(row["y_m"]), float(row["z_m"]), 1.0)
         x, y, w = (sum(p[i] * m[4 * i + c] for i in range(4)) for c in (0, 1, 3))
-        if w > 1e-3 and 0 <= x < w and 0 <= y < w:
+        facing = sum((eye[c] - p[c]) * float(row[n]) for c, n in enumerate(("nx", "ny", "nz"))) > 0
+        if facing and w > 1e-3 and 0 <= x < w and 0 <= y < w:
             found.append((w, int(x / w * width), int(y / w * height), row))
     return sorted(found, key=lambda point: -point[0])
 
@@ -72,14 +76,16 @@ def splat(rows, x, y, size, value):
             rows[v][u] = value
 
 
-def points(table, frame, out, size=2):
+def points(table, frame, out, width_m=0.02):
     frame, rows = json.load(open(frame)), list(csv.DictReader(open(table)))
     width, height = frame["width"], frame["height"]
     brightness = sorted(max(light_of(row)) for row in rows)
     white = brightness[len(brightness) * 98 // 100]
     image = [[(0, 0, 0)] * width for _ in range(height)]
-    for _, x, y, row in seen(rows, frame, width, height):
-        splat(image, x, y, int(size), colour(light_of(row), white))
+    scale = float(width_m) * width * math.hypot(*frame["worldToNDC"][0:12:4])
+    for depth, x, y, row in seen(rows, frame, width, height):
+        size = 1 + round(scale / depth)
+        splat(image, x - size // 2, y - size // 2, size, colour(light_of(row), white))
     write_png(out, image)
 
 

@@ -30,8 +30,8 @@ $draw plan "$work/plan/plan.json" $out/scene-plan.png
 "$info" --export csv -o "$work/photons.csv" "$work/few.photons"
 "$info" --export csv -o "$work/points.csv" "$work/p.irradpoints"
 "$info" --export csv -o "$work/records.csv" "$work/c.irradcache"
-$draw points "$work/photons.csv" "$work/frame.json" $out/photon-trace.png 2
-$draw points "$work/points.csv" "$work/frame.json" $out/irradcache-build-points.png 7
+$draw points "$work/photons.csv" "$work/frame.json" $out/photon-trace.png 0.02
+$draw points "$work/points.csv" "$work/frame.json" $out/irradcache-build-points.png 0.08
 $draw dots "$work/records.csv" "$work/frame.json" $out/frame-render.png $out/irradcache-build-records.png
 
 # Its error, and error against time of path tracing.
