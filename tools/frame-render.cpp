@@ -195,7 +195,7 @@ int main(int argc, char** argv) {
     const std::vector<int>& frames = tool.common().frames;
     check(options, frames);
     tool.stats().phase("load");
-    tools::SceneInput input(tool, options.scene);
+    tools::SceneInput input(tool, options.scene, tools::SceneInput::a_camera);
     for (int frame : frames) render(tool, input, options, frame);
     return tools::exit_ok;
   });

@@ -178,8 +178,7 @@ int main(int argc, char** argv) {
     options.point.count = std::uint32_t(std::min<std::uint64_t>(options.point_count, 1u << 28));
     options.point.seed = options.gather.seed = tool.common().seed_for_frame(frames.front());
     tool.stats().phase("load");
-    tools::SceneInput input(tool, options.scene());
-    require_lights(input.scene());
+    tools::SceneInput input(tool, options.scene(), tools::SceneInput::light);
     if (options.mode() == "points")
       for (int frame : frames) build_points(tool, input, options, frame);
     else

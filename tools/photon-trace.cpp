@@ -83,8 +83,7 @@ int main(int argc, char** argv) {
     if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
       throw InputError("--output: several frames need a pattern, for example f.####.photons");
     tool.stats().phase("load");
-    tools::SceneInput input(tool, options.scene);
-    require_lights(input.scene());
+    tools::SceneInput input(tool, options.scene, tools::SceneInput::light);
     for (int frame : frames) trace_frame(tool, input, options, frame);
     return tools::exit_ok;
   });

@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
     tools::Output makefile(folder + "/plan.mk", false, tools::Output::Kind::text);
 
     tool.stats().phase("load");
-    const tools::SceneInput input(tool, scene_file);
+    const tools::SceneInput input(tool, scene_file, tools::SceneInput::light | tools::SceneInput::a_camera);
     const Scene& scene = input.scene();
 
     tool.stats().phase("plan");

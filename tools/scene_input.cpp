@@ -5,11 +5,13 @@
 
 namespace tempolux::tools {
 
-SceneInput::SceneInput(Tool& tool, const std::string& path) : tool_(tool) {
+SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : tool_(tool) {
   const Common& common = tool.common();
   GltfOptions options;
   options.allow_outside = common.allow_outside;
   scene_ = load_gltf(path, options);
+  if (needs & light) require_lights(scene_);
+  if (needs & a_camera) scene_.camera_node(common.camera);
   for (const std::string& warning : scene_.warnings) tool.warn(warning);
   for (const std::string& file : scene_.files) tool.depends_on(file, true);
   time_.fps = common.fps;

@@ -18,7 +18,9 @@ namespace tempolux::tools {
 /// What a segment shares (static surfaces, emission table) is made once per segment.
 class SceneInput {
  public:
-  SceneInput(Tool& tool, const std::string& path);
+  /// `needs`: what the scene must have (InputError otherwise), checked before anything else is said about it.
+  enum Needs : unsigned { nothing = 0, light = 1, a_camera = 2 };
+  SceneInput(Tool& tool, const std::string& path, unsigned needs);
 
   const Scene& scene() const { return scene_; }
   const TimeOptions& time() const { return time_; }
