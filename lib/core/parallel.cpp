@@ -29,6 +29,11 @@ int usable_processor_count() {
   return std::max(1, CPU_COUNT(&set));
 }
 
+int parallel_thread_count() {
+  const auto limit = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  return std::max(1, std::min(int(limit), tbb::this_task_arena::max_concurrency()));
+}
+
 void parallel_chunks(std::size_t count, std::size_t chunk_size,
                      const std::function<void(std::size_t, std::size_t)>& body) {
   const std::size_t chunks = (count + chunk_size - 1) / chunk_size;

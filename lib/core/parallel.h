@@ -26,6 +26,8 @@ class ThreadLimit {
 
 /// Processors this process may use (its CPU set, not the machine's count); at least 1.
 int usable_processor_count();
+/// Threads that a parallel loop started now would use; for what depends on it in memory, never in its result.
+int parallel_thread_count();
 
 /// Calls body(first, last) for each chunk [first, last) of [0, count); chunks start at multiples of
 /// chunk_size. Exceptions reach the caller. chunk_size > 0.

@@ -8,7 +8,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kBatchesInFlight = 16;   ///< about a megabyte each
+constexpr int kBatchesPerThread = 2;   ///< in flight, 100 kB each: one is traced, one waits for its turn
 
 struct EncodedBatch {
   PhotonBatch batch;
@@ -36,7 +36,7 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
 
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
   parallel_ordered(
-      tracer.batch_count(), kBatchesInFlight,
+      tracer.batch_count(), std::size_t(kBatchesPerThread * parallel_thread_count()),
       [&](std::size_t i) -> std::shared_ptr<void> {
         auto item = std::make_shared<EncodedBatch>();
         item->batch = tracer.trace(i);

@@ -55,7 +55,9 @@ class PhotonTracer {
   /// Traces batch number b < batch_count(). Thread-safe.
   PhotonBatch trace(std::size_t batch) const;
 
-  static constexpr std::uint64_t kBatch = 8192;
+  /// A block of 40 kB in the file: what is in flight stays in the processor's cache, and memory is the same for
+  /// 10^6 photons as for 10^9.
+  static constexpr std::uint64_t kBatch = 1024;
 
  private:
   void follow(std::uint64_t photon, PhotonBatch& batch) const;
