@@ -32,6 +32,14 @@ def options():
     return project, parser.parse_args()
 
 
+def draw_curves(bench, peers):
+    """The sweep; beside error-report's folder, what it was made with."""
+    load = os.getloadavg()[0]
+    print((sweep.measure(bench, peers) / "report.md").read_text())
+    made = {"machine": machine(bench.project), "load": f"{load:.1f}", "reference_samples": bench.reference_samples}
+    (bench.out / "sweep.json").write_text(json.dumps(made))
+
+
 def measure(bench, name, peers):
     """One required figure; kept as JSON."""
     load = os.getloadavg()[0]
@@ -51,7 +59,7 @@ def main():
         print(f"== {name}", flush=True)
         try:
             if name == "sweep":
-                print((sweep.measure(bench, peers["peers"]) / "report.md").read_text())
+                draw_curves(bench, peers["peers"])
             elif name in FIGURES:
                 measure(bench, name, peers["peers"])
             else:

@@ -27,8 +27,9 @@ def section(name, found, command):
 def curves(bench, docs, page, command):
     """error-report's tables, its plots copied to docs."""
     report = bench.out / "report"
-    if not (report / "report.md").exists():
+    if not (bench.out / "sweep.json").exists():
         return ""
+    made = json.loads((bench.out / "sweep.json").read_text())
     docs.mkdir(parents=True, exist_ok=True)
     for old in docs.glob("error-*.svg"):
         old.unlink()
@@ -40,11 +41,11 @@ def curves(bench, docs, page, command):
     text = re.sub(r"^### (.*)\n\n((?:\|.*\n)+)", long_tables, text, flags=re.M)
     return f"""## Error against run time
 
-`{command} --only sweep`; every run: `{bench.out.name}/report/report.csv`
+`{command} --only sweep` · {made['machine']} · load {made['load']}; every run: report/report.csv in its output folder
 
 Each scene is swept twice: over photons (photon-trace, then frame-render with the map looked up directly, 16 samples per
 pixel) and over samples per pixel (path tracing). Error: RMSE of linear radiance at 320x180 against the two halves of a
-path-traced reference of {bench.reference_samples} samples per pixel, whose noise is taken out. Cost: CPU seconds of all
+path-traced reference of {made["reference_samples"]} samples per pixel, whose noise is taken out. Cost: CPU seconds of all
 processes, loading and writing included. A Monte Carlo curve falls with slope -0.5; one that flattens has reached its bias,
 or the noise of what is not swept (the 16 samples of direct light). With k fixed more photons shrink only the blur; with k
 growing as their cube root (100 at 10^5) both noise and blur fall.

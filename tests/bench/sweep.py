@@ -9,6 +9,7 @@ import shutil
 from measure import big
 
 FRAMES = {"S1": "Cornell box", "S2": "Cornell box, frame 10", "S3": "room lit by indirect light alone"}
+LAYERS = {"S1": [None, "indirect"], "S2": [None, "indirect"], "S3": [None]}   # of S3 indirect light is all there is
 
 
 def photon_counts(bench):
@@ -72,7 +73,8 @@ def measure(bench, peers):
             for x in values:
                 for seed in ([1] if bench.quick or x >= 3 * 10**6 or (curve == "path tracing" and x > 16) else [1, 2]):
                     image, stats = make(name, x, seed)
-                    for layer, title in ((None, f"{name}, {FRAMES[name]}"), ("indirect", f"{name}, indirect light alone")):
+                    for layer in LAYERS[name]:
+                        title = f"{name}, indirect light alone" if layer else f"{name}, {FRAMES[name]}"
                         comparison = image.with_name(f"{image.stem}-{layer or 'all'}-error.json")
                         bench.compare(image, halves, comparison, layer)
                         runs.append({"scene": title, "curve": curve, "label": big(x), "x": x, "parameters": {"seed": seed},
