@@ -125,7 +125,7 @@ Imf::Header make_header(const Image& image, const ExrWriteOptions& options) {
   return header;
 }
 
-/// OpenEXR writes into memory; the placeholder of its offset table is overwritten there.
+/// OpenEXR writes into memory; the offset table it reserves first is filled in there.
 class MemoryOut : public Imf::OStream {
  public:
   MemoryOut() : OStream("memory") {}
