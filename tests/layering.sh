@@ -17,7 +17,7 @@ may() {
 }
 may core     ''
 may image    'core'
-may scene    'core'
+may scene    'core image'
 may trace    'core scene'
 may material 'core scene'
 may light    'core scene'

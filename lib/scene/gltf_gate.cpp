@@ -335,6 +335,30 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
   gated.buffers.push_back(range);
 }
 
+GatedImage approve_image(const Json& image, std::size_t index, const std::string& path,
+                         const GltfOptions& options) {
+  GatedImage approved;
+  approved.name = image.value("name", "");
+  const std::string place = "images[" + std::to_string(index) + "].uri";
+  const std::string uri = image.value("uri", "");
+  if (image.contains("bufferView")) {
+    approved.buffer_view = image["bufferView"].get<int>();
+  } else if (!image.contains("uri")) {
+    approved.refused = "has neither uri nor bufferView";
+  } else if (uri.starts_with("data:")) {
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string::npos || comma > 200 || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
+      approved.refused = "a data URI must be base64";
+    else
+      approved.base64 = uri.substr(comma + 1);
+  } else if (has_scheme(uri)) {
+    approved.refused = "\"" + uri.substr(0, 80) + "\" is not a relative path; fetch the file and name it by a relative path";
+  } else {
+    approved.path = resolved(uri, path, place, options);
+  }
+  return approved;
+}
+
 /// Buffers that name one file many times would make a small file large.
 void check_total(const std::string& path, const GltfOptions& options, const Gated& gated) {
   std::uint64_t on_disk = 0, wanted = 0;
@@ -365,11 +389,8 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
     for (std::size_t i = 0; i < document["buffers"].size(); ++i)
       approve_buffer(document["buffers"][i], i, path, container, options, gated);
   check_total(path, options, gated);
-  if (document.contains("images"))
-    for (std::size_t i = 0; i < document["images"].size(); ++i) {
-      const std::string uri = document["images"][i].value("uri", "data:");
-      if (!uri.starts_with("data:")) resolved(uri, path, "images[" + std::to_string(i) + "].uri", options);
-    }
+  for (std::size_t i = 0; i < array_of(document, "images").size(); ++i)
+    gated.images.push_back(approve_image(document["images"][i], i, path, options));
   document.erase("images");
   gated.json = document.dump();
   return gated;
@@ -378,6 +399,15 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
 std::vector<unsigned char> read_range(const ByteRange& range) {
   std::vector<unsigned char> bytes(range.length);
   File(range.path).read(range.offset, bytes.data(), range.length);
+  return bytes;
+}
+
+std::vector<unsigned char> read_whole(const std::string& path, std::uint64_t max_bytes) {
+  const File file(path);
+  if (file.size() > max_bytes)
+    fail(path, "size", std::to_string(file.size()) + " bytes; the limit is " + std::to_string(max_bytes));
+  std::vector<unsigned char> bytes(file.size());
+  file.read(0, bytes.data(), bytes.size());
   return bytes;
 }
 

@@ -21,10 +21,21 @@ struct ByteRange {
   std::uint64_t offset = 0, length = 0;
 };
 
+/// Where the bytes of an image are: in a bufferView, a data URI or a file of their own, which must lie in the scene's
+/// folder. It is not opened by the gate: only what a texture names is read.
+struct GatedImage {
+  std::string name;
+  int buffer_view = -1;
+  std::string base64;                 ///< payload of a data URI
+  std::string path;                   ///< of a file
+  std::string refused;                ///< why the image cannot be used, should a texture name it; "": it can
+};
+
 /// A file that passed.
 struct Gated {
   std::string json;                   ///< buffers are named by buffer_name(index) or are base64 data URIs
   std::vector<ByteRange> buffers;     ///< by index of the buffer; length 0: a data URI
+  std::vector<GatedImage> images;     ///< by index of the image
   std::vector<std::string> files;     ///< the scene file and every file a buffer lies in, each once
   std::uint64_t byte_count = 0;       ///< size of the JSON and of all buffers
   std::vector<std::string> warnings;  ///< what the file has and nothing here reads
@@ -41,5 +52,7 @@ Gated pass_gate(const std::string& path, const GltfOptions& options);
 
 /// Reads a range; throws InputError if the file ends first.
 std::vector<unsigned char> read_range(const ByteRange& range);
+/// Reads a whole regular file of at most `max_bytes`; InputError otherwise.
+std::vector<unsigned char> read_whole(const std::string& path, std::uint64_t max_bytes);
 
 }  // namespace tempolux::gltf

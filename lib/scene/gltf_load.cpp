@@ -82,7 +82,7 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   scene.path = path;
   scene.files = gated.files;
   scene.warnings = gated.warnings;
-  Import import{model, scene, kGrowth * gated.byte_count + kSmallScene};
+  Import import{model, scene, &gated, &options, kGrowth * gated.byte_count + kSmallScene};
   check_accessors(import);
   import_nodes(import);
   import_materials(import);

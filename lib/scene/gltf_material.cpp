@@ -64,12 +64,24 @@ struct ExtensionReader {
     return values;
   }
   void ignore_texture(const char* key) const {
-    if (object.Has(key)) import.ignore("textures (materials keep their factors)");
+    if (object.Has(key)) import.ignore(std::string(key) + " (the material keeps its factor)");
+  }
+  Texture texture(const char* key) const {
+    return object.Has(key) ? read_texture(import, object.Get(key), place + "." + key) : Texture{};
   }
 };
 
+/// Textures of the core specification.
+template <class Info>
+Texture read_texture(Import& import, const Info& info, const std::string& place) {
+  const auto transform = info.extensions.find("KHR_texture_transform");
+  return read_texture(
+      import, TextureUse{info.index, info.texCoord, transform == info.extensions.end() ? nullptr : &transform->second},
+      place);
+}
+
 void read_extension(Import& import, const std::string& name, const Value& value, const std::string& place,
-                    Material& material, double& emissive_strength) {
+                    Material& material, MaterialTextures& textures, double& emissive_strength) {
   const ExtensionReader reader{import, value, place + ".extensions." + name};
   if (!value.IsObject()) import.fail(reader.place, "is not an object");
   if (name == "KHR_materials_emissive_strength") {
@@ -85,15 +97,27 @@ void read_extension(Import& import, const std::string& name, const Value& value,
     material.ior = ior == 0 ? 0.0f : limited(import, ior, 1, kNoUpper, reader.place);
   } else if (name == "KHR_materials_transmission") {
     material.transmission = limited(import, reader.number("transmissionFactor", 0), 0, 1, reader.place);
-    reader.ignore_texture("transmissionTexture");
+    textures.transmission = reader.texture("transmissionTexture");
   } else if (name == "KHR_materials_volume") {
     material.thin_walled = !(reader.number("thicknessFactor", 0) > 0);
     if (value.Has("attenuationDistance"))
       import.ignore("KHR_materials_volume.attenuationDistance (glass absorbs nothing)");
     reader.ignore_texture("thicknessTexture");
   } else if (name == "KHR_materials_unlit") {
-    import.ignore("KHR_materials_unlit (the material is lit like any other)");
+    material.unlit = true;
   }
+}
+
+void read_alpha(Import& import, const tinygltf::Material& source, const std::string& place, Material& material) {
+  const std::vector<double>& factor = source.pbrMetallicRoughness.baseColorFactor;
+  if (source.alphaMode == "MASK")
+    material.alpha_mode = Material::Alpha::mask;
+  else if (source.alphaMode == "BLEND")
+    material.alpha_mode = Material::Alpha::blend;
+  else if (source.alphaMode != "OPAQUE")
+    import.fail(place + ".alphaMode", "\"" + one_line(source.alphaMode, 40) + "\" is not OPAQUE, MASK or BLEND");
+  if (factor.size() > 3) material.alpha = limited(import, factor[3], 0, 1, place + ".baseColorFactor");
+  material.alpha_cutoff = limited(import, source.alphaCutoff, 0, kNoUpper, place + ".alphaCutoff");
 }
 
 Material read_material(Import& import, std::size_t index) {
@@ -106,9 +130,11 @@ Material read_material(Import& import, std::size_t index) {
   material.metallic = limited(import, pbr.metallicFactor, 0, 1, place + ".metallicFactor");
   material.roughness = limited(import, pbr.roughnessFactor, 0, 1, place + ".roughnessFactor");
   material.double_sided = source.doubleSided;
+  read_alpha(import, source, place, material);
   double strength = 1;
+  MaterialTextures textures;
   for (const auto& [name, value] : source.extensions)
-    read_extension(import, name, value, place, material, strength);
+    read_extension(import, name, value, place, material, textures, strength);
   if (material.transmission > 0 && material.roughness > 0)
     import.ignore("the roughness of glass (it is drawn smooth)");
   material.emission =
@@ -116,11 +142,17 @@ Material read_material(Import& import, std::size_t index) {
   material.emission *= float(strength);
   if (!is_finite(material.emission))
     import.fail(place, "emissiveFactor times emissiveStrength is not finite");
-  for (int texture :
-       {pbr.baseColorTexture.index, pbr.metallicRoughnessTexture.index, source.normalTexture.index,
-        source.occlusionTexture.index, source.emissiveTexture.index})
-    if (texture >= 0) import.ignore("textures (materials keep their factors)");
-  if (source.alphaMode != "OPAQUE")
+  if (material.unlit) material.emission = Rgb(0.0f);  // base_color is all it shows
+  textures.base_color = read_texture(import, pbr.baseColorTexture, place + ".baseColorTexture");
+  textures.metallic_roughness = read_texture(import, pbr.metallicRoughnessTexture, place + ".metallicRoughnessTexture");
+  textures.normal = read_texture(import, source.normalTexture, place + ".normalTexture");
+  textures.normal_scale = limited(import, source.normalTexture.scale, -kNoUpper, kNoUpper, place + ".normalTexture.scale");
+  textures.emission = read_texture(import, source.emissiveTexture, place + ".emissiveTexture");
+  if (source.occlusionTexture.index >= 0) import.ignore("occlusion textures (occlusion is computed)");
+  if (textures.any()) material.textures = textures;
+  if (textures.any()) import.ignore("textures (materials keep their factors)");
+  if (material.unlit) import.ignore("KHR_materials_unlit (the material is lit like any other)");
+  if (material.alpha_mode != Material::Alpha::opaque)
     import.ignore("alphaMode " + source.alphaMode + " (the material is opaque)");
   return material;
 }

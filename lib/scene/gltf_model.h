@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/scene/gltf_load.h"
 #include "lib/scene/scene.h"
 
 namespace tempolux::gltf {
@@ -22,13 +23,18 @@ std::string one_line(std::string text, std::size_t length);
 /// A place in the file: `meshes[3]`, or `meshes[3] "Wall"` if it has a name.
 std::string place_of(const char* array, std::size_t index, const std::string& name = {});
 
+struct Gated;
+
 /// One scene on its way from tinygltf's model to ours.
 struct Import {
   const tinygltf::Model& model;
   Scene& scene;
+  const Gated* gated = nullptr;
+  const GltfOptions* options = nullptr;
   std::uint64_t geometry_budget = 0;    ///< bytes that may still be allocated for geometry
   std::vector<int> node_from_source{};  ///< node index of the file -> of the scene, -1: not in the scene
   std::vector<int> mesh_from_source{};  ///< the same for meshes; -1: not used or without triangles
+  std::vector<std::uint32_t> image_from_source{};  ///< image of the file -> of the scene, kNone: not read
   std::map<std::string, std::size_t> ignored{};  ///< what was ignored -> how often; warnings at the end
 
   [[noreturn]] void fail(const std::string& place, const std::string& what) const {
@@ -42,6 +48,16 @@ struct Import {
 
 /// Makes a quaternion x y z w unit; false if it is zero or not finite.
 bool normalize_rotation(std::array<double, 4>& rotation);
+
+/// How a material names a texture: index -1 for none.
+struct TextureUse {
+  int index = -1, uv_set = 0;
+  const tinygltf::Value* transform = nullptr;  ///< KHR_texture_transform
+};
+/// gltf_texture.cpp. Reads the image's bytes and size at its first use, refuses what cannot be decoded.
+Texture read_texture(Import& import, const TextureUse& use, const std::string& place);
+/// The same from a textureInfo inside an extension.
+Texture read_texture(Import& import, const tinygltf::Value& info, const std::string& place);
 
 // The steps of load_gltf, in this order.
 void import_nodes(Import& import);       ///< gltf_nodes.cpp: default scene's nodes, parents first

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,8 @@ namespace tempolux {
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 
-/// Metallic-roughness material of glTF 2.0 with the extensions of architecture.md 7.
-struct Material {
-  std::string name;
+/// What a material is at one point: metallic-roughness of glTF 2.0 with the extensions of architecture.md 7.
+struct MaterialValues {
   Rgb base_color{1.0f};              ///< reflectance, each channel in [0, 1]
   float metallic = 1;                ///< [0, 1]
   float roughness = 1;               ///< perceptual, [0, 1]; alpha of GGX = roughness^2
@@ -28,9 +28,57 @@ struct Material {
   float transmission = 0;            ///< KHR_materials_transmission, [0, 1]: in place of the Lambert lobe
   bool thin_walled = true;           ///< false: boundary of a solid (KHR_materials_volume), which refracts
   bool double_sided = false;
+  bool unlit = false;                ///< KHR_materials_unlit: shows base_color to eye and mirror, scatters nothing
 
   bool emissive() const { return max_component(emission) > 0; }
+  bool operator==(const MaterialValues&) const = default;
+};
+
+/// A texture as a material refers to it.
+struct Texture {
+  enum class Wrap : std::uint8_t { repeat, mirrored, clamp };
+  std::uint32_t image = kNone;       ///< index into Scene::images; kNone: no texture
+  std::uint32_t uv_set = 0;          ///< TEXCOORD_n of the primitive
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  bool nearest = false;              ///< magnified without interpolation
+  /// KHR_texture_transform: u' = m[0] u + m[1] v + m[2], v' = m[3] u + m[4] v + m[5].
+  std::array<float, 6> transform{1, 0, 0, 0, 1, 0};
+
+  explicit operator bool() const { return image != kNone; }
+  bool operator==(const Texture&) const = default;
+};
+
+/// The textures of a material; each multiplies the value of its name.
+struct MaterialTextures {
+  Texture base_color;                ///< sRGB; its A multiplies Material::alpha
+  Texture metallic_roughness;        ///< linear: B metallic, G roughness
+  Texture normal;                    ///< linear: tangent space, (2 rgb - 1) times (scale, scale, 1)
+  Texture emission;                  ///< sRGB
+  Texture transmission;              ///< linear: R
+  float normal_scale = 1;
+
+  bool any() const { return base_color || metallic_roughness || normal || emission || transmission; }
+  bool operator==(const MaterialTextures&) const = default;
+};
+
+/// A material of the scene: its factors, and the textures that multiply them.
+struct Material : MaterialValues {
+  enum class Alpha : std::uint8_t { opaque, mask, blend };
+  std::string name;
+  Alpha alpha_mode = Alpha::opaque;
+  float alpha = 1;                   ///< share of rays that meet the surface (blend)
+  float alpha_cutoff = 0.5f;         ///< below, the surface is not there (mask)
+  std::optional<MaterialTextures> textures;   ///< none for most materials: they cost one test then
+
   bool operator==(const Material&) const = default;
+};
+
+/// A picture of the scene, PNG or JPEG as in its file: decoded when it is first looked at.
+struct SceneImage {
+  std::string place;                 ///< "FILE: images[2] "Wood"", for messages
+  std::vector<unsigned char> bytes;
+  int width = 0, height = 0;         ///< px
+  std::string digest;                ///< of the bytes
 };
 
 /// Triangles of one glTF primitive in the space of its node.
@@ -100,10 +148,11 @@ struct Animation {
 /// A scene as its file describes it. Built by load_gltf.
 struct Scene {
   std::string path;                         ///< as given, for messages
-  std::vector<std::string> files;           ///< every file that was read: the scene and its buffers
+  std::vector<std::string> files;           ///< every file that was read: the scene, its buffers and images
   std::vector<Node> nodes;                  ///< parents before children; the default scene's nodes only
   std::vector<Mesh> meshes;
   std::vector<Material> materials;          ///< never empty: a primitive without one uses the last
+  std::vector<SceneImage> images;           ///< those that a material's texture names
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
   std::vector<Animation> animations;        ///< all play together

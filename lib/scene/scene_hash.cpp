@@ -31,6 +31,34 @@ void add_shape(Hasher& hasher, const Surface& surface) {
   add_values(hasher, surface.primitive->triangles);
 }
 
+/// A texture by its image's bytes and how they are laid on; nothing for a material without.
+void add_texture(Hasher& hasher, const Scene& scene, const char* name, const Texture& texture) {
+  if (!texture) return;
+  hasher.add(std::string_view(name));
+  hasher.add(std::string_view(scene.images[texture.image].digest));
+  for (const float number : texture.transform) hasher.add(number);
+  for (const std::uint32_t number : {texture.uv_set, std::uint32_t(texture.wrap_u), std::uint32_t(texture.wrap_v),
+                                     std::uint32_t(texture.nearest)})
+    hasher.add(number);
+}
+
+/// What only some materials have: the hash of the others stays what it was before there was such a thing.
+void add_optional_parts(Hasher& hasher, const Scene& scene, const Material& material) {
+  if (material.unlit) hasher.add(std::string_view("unlit"));
+  if (material.alpha_mode != Material::Alpha::opaque) {
+    hasher.add(std::string_view(material.alpha_mode == Material::Alpha::mask ? "mask" : "blend"));
+    hasher.add(material.alpha);
+    if (material.alpha_mode == Material::Alpha::mask) hasher.add(material.alpha_cutoff);
+  }
+  if (!material.textures) return;
+  const MaterialTextures& textures = *material.textures;
+  add_texture(hasher, scene, "base colour", textures.base_color);
+  add_texture(hasher, scene, "metallic roughness", textures.metallic_roughness);
+  add_texture(hasher, scene, "normal", textures.normal);
+  if (textures.normal) hasher.add(textures.normal_scale);
+  add_texture(hasher, scene, "transmission", textures.transmission);
+}
+
 }  // namespace
 
 std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surface> surfaces) {
@@ -61,6 +89,7 @@ std::string materials_hash(const Scene& scene) {
                                material->transmission, material->thin_walled ? 1.0f : 0.0f,
                                material->double_sided ? 1.0f : 0.0f})
       hasher.add(number);
+    add_optional_parts(hasher, scene, *material);
   }
   return hasher.hex();
 }
@@ -87,6 +116,10 @@ std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const Placed
     add_shape(hasher, surface);
     hasher.add(material.emission);
     hasher.add(std::uint32_t(material.double_sided));
+    if (material.textures && material.textures->emission) {
+      add_texture(hasher, scene, "emission", material.textures->emission);
+      add_values(hasher, surface.primitive->uvs);
+    }
   }
   return hasher.hex();
 }

@@ -1,0 +1,97 @@
+#include "lib/image/encoded_image.h"
+
+#include <array>
+#include <string_view>
+
+#include "formats/error.h"
+
+namespace tempolux {
+namespace {
+
+using Bytes = std::span<const unsigned char>;
+using namespace std::string_view_literals;
+
+bool starts_with(Bytes bytes, std::string_view head, std::size_t at = 0) {
+  return bytes.size() >= at + head.size() &&
+         std::string_view(reinterpret_cast<const char*>(bytes.data()) + at, head.size()) == head;
+}
+
+std::uint32_t big_endian(Bytes bytes, std::size_t at, int count) {
+  std::uint32_t value = 0;
+  for (int i = 0; i < count; ++i) value = value << 8 | bytes[at + std::size_t(i)];
+  return value;
+}
+
+/// Size in the first chunk, IHDR (PNG specification 11.2.2).
+bool png_size(Bytes bytes, ImageHeader& header) {
+  if (bytes.size() < 33 || !starts_with(bytes, "IHDR", 12)) return false;
+  header.width = int(big_endian(bytes, 16, 4) & 0x7fffffffu);
+  header.height = int(big_endian(bytes, 20, 4) & 0x7fffffffu);
+  return true;
+}
+
+/// Size in the first start-of-frame segment (ITU-T T.81, B.2.2): markers FFC0 .. FFCF but for DHT, JPG and DAC.
+bool jpeg_size(Bytes bytes, ImageHeader& header) {
+  for (std::size_t at = 2; at + 4 <= bytes.size();) {
+    if (bytes[at] != 0xff) return false;
+    const unsigned marker = bytes[at + 1];
+    if (marker == 0xff) {  // fill byte
+      ++at;
+      continue;
+    }
+    if (marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8)) {  // without a length
+      at += 2;
+      continue;
+    }
+    if (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc) {
+      if (at + 9 > bytes.size()) return false;
+      header.height = int(big_endian(bytes, at + 5, 2));
+      header.width = int(big_endian(bytes, at + 7, 2));
+      return true;
+    }
+    if (marker == 0xd9 || marker == 0xda) return false;  // end, or pixels before any frame
+    at += 2 + big_endian(bytes, at + 2, 2);
+  }
+  return false;
+}
+
+struct OtherFormat {
+  std::string_view head;
+  std::size_t at;
+  const char* name;
+};
+constexpr std::array kOtherFormats{OtherFormat{"WEBP", 8, "WebP"},
+                                   OtherFormat{"\xabKTX"sv, 0, "KTX"},
+                                   OtherFormat{"DDS ", 0, "DDS"},
+                                   OtherFormat{"GIF8", 0, "GIF"},
+                                   OtherFormat{"BM", 0, "BMP"},
+                                   OtherFormat{"II*\0"sv, 0, "TIFF"},
+                                   OtherFormat{"MM\0*"sv, 0, "TIFF"},
+                                   OtherFormat{"\x76\x2f\x31\x01"sv, 0, "OpenEXR"},
+                                   OtherFormat{"#?R", 0, "Radiance HDR"}};
+
+}  // namespace
+
+ImageHeader read_image_header(Bytes bytes, const std::string& place) {
+  const auto fail = [&](const std::string& what) { throw InputError(place + ": " + what); };
+  ImageHeader header;
+  bool found = false;
+  if (starts_with(bytes, "\x89PNG\r\n\x1a\n"sv)) {
+    header.format = ImageHeader::Format::png;
+    found = png_size(bytes, header);
+  } else if (starts_with(bytes, "\xff\xd8\xff"sv)) {
+    header.format = ImageHeader::Format::jpeg;
+    found = jpeg_size(bytes, header);
+  } else {
+    for (const OtherFormat& other : kOtherFormats)
+      if (starts_with(bytes, other.head, other.at))
+        fail(std::string("is ") + other.name + "; textures must be PNG or JPEG: convert it");
+    fail("is neither PNG nor JPEG; textures must be one of them");
+  }
+  const char* name = header.format == ImageHeader::Format::png ? "PNG" : "JPEG";
+  if (!found) fail(std::string("no size in its header; the ") + name + " is damaged or cut short");
+  if (header.width < 1 || header.height < 1) fail(std::string("a ") + name + " without pixels");
+  return header;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,167 @@
+// lib/scene/gltf_texture.cpp -- what textures refer to: images, samplers, transforms of texture coordinates.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "formats/error.h"
+#include "formats/hash.h"
+#include "lib/image/encoded_image.h"
+#include "lib/scene/gltf_gate.h"
+#include "lib/scene/gltf_model.h"
+
+namespace tempolux::gltf {
+namespace {
+
+using tinygltf::Value;
+
+/// More pixels than this are refused before they are decoded, whatever the size they are to be reduced to.
+constexpr std::uint64_t kMaxPixels = 1ull << 28;
+
+std::vector<unsigned char> from_base64(Import& import, const std::string& text, const std::string& place) {
+  std::vector<unsigned char> bytes;
+  bytes.reserve(text.size() / 4 * 3);
+  std::uint32_t group = 0, bits = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    const int digit = c >= 'A' && c <= 'Z'   ? c - 'A'
+                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
+                      : c >= '0' && c <= '9' ? c - '0' + 52
+                      : c == '+'             ? 62
+                      : c == '/'             ? 63
+                                             : -1;
+    if (digit < 0) import.fail(place, "holds characters that are not base64");
+    group = (group << 6 | std::uint32_t(digit)) & 0xffffffu;
+    if ((bits += 6) >= 8) {
+      bits -= 8;
+      bytes.push_back(static_cast<unsigned char>(group >> bits & 0xffu));
+    }
+  }
+  return bytes;
+}
+
+/// Bytes of an image; a file of its own joins Scene::files.
+std::vector<unsigned char> image_bytes(Import& import, const GatedImage& image, const std::string& place) {
+  if (!image.refused.empty()) import.fail(place, image.refused);
+  if (image.buffer_view >= 0) {
+    if (std::size_t(image.buffer_view) >= import.model.bufferViews.size())
+      import.fail(place, "bufferView " + std::to_string(image.buffer_view) + " does not exist");
+    // check_accessors has looked whether views lie inside their buffers.
+    const tinygltf::BufferView& view = import.model.bufferViews[std::size_t(image.buffer_view)];
+    const auto first = import.model.buffers[std::size_t(view.buffer)].data.begin() + std::ptrdiff_t(view.byteOffset);
+    return {first, first + std::ptrdiff_t(view.byteLength)};
+  }
+  if (image.path.empty()) return from_base64(import, image.base64, place);
+  std::vector<unsigned char> bytes = read_whole(image.path, import.options->max_file_bytes);
+  std::vector<std::string>& files = import.scene.files;
+  if (std::find(files.begin(), files.end(), image.path) == files.end()) files.push_back(image.path);
+  return bytes;
+}
+
+/// Index in the scene of an image of the file, read at its first use.
+std::uint32_t image_of(Import& import, std::size_t source) {
+  const std::vector<GatedImage>& images = import.gated->images;
+  import.image_from_source.resize(images.size(), kNone);
+  if (import.image_from_source[source] != kNone) return import.image_from_source[source];
+  const std::string place = place_of("images", source, images[source].name);
+  SceneImage image;
+  image.bytes = image_bytes(import, images[source], place);
+  image.place = images[source].path.empty() ? import.scene.path + ": " + place : images[source].path;
+  const ImageHeader header = read_image_header(image.bytes, image.place);
+  image.width = header.width;
+  image.height = header.height;
+  const std::string size = std::to_string(image.width) + "x" + std::to_string(image.height) + " pixels";
+  if (std::uint64_t(image.width) * std::uint64_t(image.height) > kMaxPixels)
+    throw InputError(image.place + ": " + size + ", over the limit of " + std::to_string(kMaxPixels) +
+                     "; make it smaller");
+  Hasher hasher;
+  hasher.add_bytes(image.bytes.data(), image.bytes.size());
+  image.digest = hasher.hex();
+  import.scene.images.push_back(std::move(image));
+  return import.image_from_source[source] = std::uint32_t(import.scene.images.size() - 1);
+}
+
+Texture::Wrap wrap_of(Import& import, int mode, const std::string& place) {
+  if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return Texture::Wrap::mirrored;
+  if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Texture::Wrap::clamp;
+  if (mode != TINYGLTF_TEXTURE_WRAP_REPEAT) import.fail(place, std::to_string(mode) + " is not one of glTF's");
+  return Texture::Wrap::repeat;
+}
+
+double number(Import& import, const Value& object, const std::string& key, double fallback, const std::string& place) {
+  if (!object.Has(key)) return fallback;
+  const Value& value = object.Get(key);
+  if (!value.IsNumber() || !std::isfinite(value.GetNumberAsDouble()))
+    import.fail(place + "." + key, "is not a finite number");
+  return value.GetNumberAsDouble();
+}
+
+std::array<double, 2> pair(Import& import, const Value& object, const std::string& key, double fallback,
+                           const std::string& place) {
+  if (!object.Has(key)) return {fallback, fallback};
+  const Value& value = object.Get(key);
+  const auto good = [&](int i) { return value.Get(i).IsNumber() && std::isfinite(value.Get(i).GetNumberAsDouble()); };
+  if (value.ArrayLen() != 2 || !good(0) || !good(1)) import.fail(place + "." + key, "must be 2 finite numbers");
+  return {value.Get(0).GetNumberAsDouble(), value.Get(1).GetNumberAsDouble()};
+}
+
+/// KHR_texture_transform as a matrix: offset + R scale uv. The specification's words and all renderers agree that
+/// the coordinates turn counter-clockwise as seen with v downwards, (1, 0) towards (0, -1); its example listing has
+/// the other sign (Khronos' issue 1563).
+void read_transform(Import& import, const Value& value, const std::string& place, Texture& texture) {
+  if (!value.IsObject()) import.fail(place, "is not an object");
+  const auto offset = pair(import, value, "offset", 0, place), scale = pair(import, value, "scale", 1, place);
+  const double angle = number(import, value, "rotation", 0, place), c = std::cos(angle), s = std::sin(angle);
+  texture.transform = {float(c * scale[0]),  float(s * scale[1]), float(offset[0]),
+                       float(-s * scale[0]), float(c * scale[1]), float(offset[1])};
+  const double uv_set = number(import, value, "texCoord", texture.uv_set, place);
+  if (!(uv_set >= 0 && uv_set < 2147483648.0 && uv_set == std::floor(uv_set)))
+    import.fail(place + ".texCoord", "must be a whole number from 0 to 2147483647");
+  texture.uv_set = std::uint32_t(uv_set);
+}
+
+}  // namespace
+
+Texture read_texture(Import& import, const TextureUse& use, const std::string& place) {
+  Texture texture;
+  if (use.index < 0) return texture;
+  if (std::size_t(use.index) >= import.model.textures.size())
+    import.fail(place + ".index", "texture " + std::to_string(use.index) + " does not exist");
+  const std::string texture_place = place_of("textures", std::size_t(use.index));
+  const tinygltf::Texture& source = import.model.textures[std::size_t(use.index)];
+  texture.uv_set = std::uint32_t(use.uv_set);
+  if (use.transform) read_transform(import, *use.transform, place + ".extensions.KHR_texture_transform", texture);
+  if (texture.uv_set > 1) {
+    import.ignore("textures on coordinates beyond TEXCOORD_1");
+    return Texture{};
+  }
+  if (source.sampler >= 0) {
+    if (std::size_t(source.sampler) >= import.model.samplers.size())
+      import.fail(texture_place + ".sampler", "sampler " + std::to_string(source.sampler) + " does not exist");
+    const tinygltf::Sampler& sampler = import.model.samplers[std::size_t(source.sampler)];
+    const std::string sampler_place = place_of("samplers", std::size_t(source.sampler));
+    texture.wrap_u = wrap_of(import, sampler.wrapS, sampler_place + ".wrapS");
+    texture.wrap_v = wrap_of(import, sampler.wrapT, sampler_place + ".wrapT");
+    texture.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+  }
+  if (source.source < 0)
+    import.fail(texture_place,
+                "names no PNG or JPEG image; convert its textures with `gltf-transform png IN.glb OUT.glb`");
+  if (std::size_t(source.source) >= import.gated->images.size())
+    import.fail(texture_place + ".source", "image " + std::to_string(source.source) + " does not exist");
+  texture.image = image_of(import, std::size_t(source.source));
+  return texture;
+}
+
+Texture read_texture(Import& import, const Value& info, const std::string& place) {
+  if (!info.IsObject()) import.fail(place, "is not an object");
+  const double index = number(import, info, "index", -1, place), uv_set = number(import, info, "texCoord", 0, place);
+  if (!(index >= 0 && index < 2147483648.0 && index == std::floor(index)) ||
+      !(uv_set >= 0 && uv_set < 2147483648.0 && uv_set == std::floor(uv_set)))
+    import.fail(place, "index and texCoord must be whole numbers from 0 to 2147483647");
+  TextureUse use{int(index), int(uv_set), nullptr};
+  if (info.Has("extensions") && info.Get("extensions").Has("KHR_texture_transform"))
+    use.transform = &info.Get("extensions").Get("KHR_texture_transform");
+  return read_texture(import, use, place);
+}
+
+}  // namespace tempolux::gltf
