@@ -13,6 +13,7 @@
 #include <set>
 
 #include "formats/error.h"
+#include "lib/scene/gltf_extensions.h"
 #include "lib/scene/gltf_json.h"
 
 namespace tempolux::gltf {
@@ -28,23 +29,7 @@ const std::set<std::string> kKnown{"KHR_lights_punctual",    "KHR_materials_emis
                                    "KHR_materials_specular", "KHR_materials_ior",
                                    "KHR_mesh_quantization",  "KHR_materials_transmission",
                                    "KHR_materials_volume",   "KHR_materials_unlit",
-                                   "KHR_texture_transform",  "KHR_draco_mesh_compression"};
-
-struct Remedy {
-  const char *extension, *what;
-};
-constexpr const char* kDracoRemedy =
-    "unpack it with `gltf-transform cp IN.glb OUT.glb`, or export without Compression";
-constexpr std::array kRemedies{
-    Remedy{"KHR_draco_mesh_compression", kDracoRemedy},
-    Remedy{"EXT_meshopt_compression",
-           "unpack it with `gltf-transform cp IN.glb OUT.glb`, or run gltfpack without -c"},
-    Remedy{"KHR_meshopt_compression",
-           "unpack it with `gltf-transform cp IN.glb OUT.glb`, or run gltfpack without -c"},
-    Remedy{"EXT_texture_webp", "convert its textures with `gltf-transform png IN.glb OUT.glb`"},
-    Remedy{"KHR_texture_basisu", "convert its textures with `gltf-transform ktxdecompress IN.glb OUT.glb`"},
-    Remedy{"EXT_mesh_gpu_instancing", "export with instances as nodes of their own"},
-    Remedy{"KHR_animation_pointer", "animate translation, rotation or scale of nodes instead"}};
+                                   "KHR_texture_transform"};
 
 [[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what) {
   throw InputError(file + ": " + place + ": " + what);
@@ -163,46 +148,26 @@ std::vector<std::string> names(const Json& document, const char* key) {
   return document.contains(key) ? document[key].get<std::vector<std::string>>() : std::vector<std::string>{};
 }
 
-const Json& array_of(const Json& document, const char* key) {
-  static const Json none = Json::array();
-  const auto found = document.find(key);
-  return found == document.end() ? none : *found;
-}
-
-/// Draco may be optional: then the accessors have data of their own. Without it nothing can be read.
-bool needs_draco(const Json& document) {
-  const Json& accessors = array_of(document, "accessors");
-  for (const Json& mesh : array_of(document, "meshes"))
-    for (const Json& primitive : mesh["primitives"]) {
-      if (!primitive.contains("extensions") ||
-          !primitive["extensions"].contains("KHR_draco_mesh_compression"))
-        continue;
-      for (const Json& index : primitive["attributes"]) {
-        const std::size_t i = index.get<std::size_t>();
-        if (i < accessors.size() && !accessors[i].contains("bufferView")) return true;
-      }
-    }
-  return false;
-}
-
 void check_extensions(Json& document, const std::string& path, Gated& gated) {
-  for (const std::string& name : names(document, "extensionsRequired")) {
-    const auto remedy = std::find_if(kRemedies.begin(), kRemedies.end(),
-                                     [&](const Remedy& r) { return name == r.extension; });
-    if (kKnown.contains(name) && (remedy == kRemedies.end() || !needs_draco(document))) continue;
-    fail(path, "extensionsRequired",
-         name.substr(0, 80) + " is not supported; " +
-             (remedy != kRemedies.end() ? remedy->what : "export without it"));
-  }
-  if (needs_draco(document))
-    fail(path, "meshes", std::string("KHR_draco_mesh_compression is not supported; ") + kDracoRemedy);
+  std::set<std::string> handled;
+  check_packing(document, path, kKnown, handled, gated.warnings);
   std::set<std::string> unknown;
   prune(document, kKnown, unknown, path);
   for (const std::string& name : names(document, "extensionsUsed"))
     if (!kKnown.contains(name)) unknown.insert(name);
   std::string ignored;
-  for (const std::string& name : unknown) ignored += (ignored.empty() ? "" : ", ") + name.substr(0, 80);
+  for (const std::string& name : unknown)
+    if (!handled.contains(name)) ignored += (ignored.empty() ? "" : ", ") + name.substr(0, 80);
   if (!ignored.empty()) gated.warnings.push_back(path + ": ignored extensions: " + ignored);
+}
+
+/// What exporters write of an object's own properties; tinygltf would make values of 200 bytes each of them.
+void keep_node_extras(const Json& document, Gated& gated) {
+  const auto nodes = document.find("nodes");
+  if (nodes == document.end()) return;
+  for (std::size_t i = 0; i < nodes->size(); ++i)
+    if (const auto extras = (*nodes)[i].find("extras"); extras != (*nodes)[i].end())
+      gated.node_extras.emplace(i, extras->dump());
 }
 
 /// tinygltf would drop these without a word.
@@ -383,6 +348,7 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
   container.json = {};
   check_types(document, path);
   check_version(document, path);
+  keep_node_extras(document, gated);
   check_extensions(document, path, gated);
   drop_pointer_channels(document, path, gated);
   if (document.contains("buffers"))

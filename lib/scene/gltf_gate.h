@@ -2,11 +2,12 @@
 //
 // tinygltf is a parser, not a validator: it recurses as deep as the JSON nests, opens any path a URI names
 // and takes wrong types for missing ones. So the JSON is parsed here first, with limits, checked, and handed
-// on rewritten: images, extras and unknown extensions gone, every buffer's URI replaced by the name of a byte
+// on rewritten: images, extras (but those of nodes, kept beside) and unknown extensions gone, every buffer's URI replaced by the name of a byte
 // range that the gate has approved.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,6 +40,7 @@ struct Gated {
   std::vector<std::string> files;     ///< the scene file and every file a buffer lies in, each once
   std::uint64_t byte_count = 0;       ///< size of the JSON and of all buffers
   std::vector<std::string> warnings;  ///< what the file has and nothing here reads
+  std::map<std::size_t, std::string> node_extras;  ///< by index of the node: its `extras` as JSON text
 };
 
 /// The name a buffer has in Gated::json.

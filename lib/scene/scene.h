@@ -127,6 +127,7 @@ struct Node {
   Affine matrix{};
   int mesh = -1, camera = -1, light = -1;      ///< -1: none
   std::uint32_t object = kNone;                ///< id.object of its mesh: 0, 1, 2 ... in node order
+  std::string extras;                          ///< its own properties as JSON text; empty: none
 };
 
 /// One animated property of a node: keys at increasing times.
