@@ -43,12 +43,6 @@ constexpr std::array kExtensions{
   throw InputError(file + ": " + place + ": " + name.substr(0, 80) + " is not supported; " + remedy);
 }
 
-const Json& array_of(const Json& document, const char* key) {
-  static const Json none = Json::array();
-  const auto found = document.find(key);
-  return found == document.end() ? none : *found;
-}
-
 std::string numbered(const char* array, std::size_t index) {
   return std::string(array) + "[" + std::to_string(index) + "]";
 }

@@ -345,6 +345,12 @@ Json parse_json(std::string_view text, const std::string& file) {
   return document;
 }
 
+const Json& array_of(const Json& document, const char* key) {
+  static const Json none = Json::array();
+  const auto found = document.find(key);
+  return found == document.end() ? none : *found;
+}
+
 void check_types(Json& document, const std::string& file) { check_object(document, kRoot, "", file); }
 
 void prune(Json& document, const std::set<std::string>& known, std::set<std::string>& unknown,

@@ -14,6 +14,9 @@ using Json = nlohmann::json;
 /// stack nor memory depend on what a hostile file asks for. Throws InputError with the line.
 Json parse_json(std::string_view text, const std::string& file);
 
+/// A property of the document that is an array; an empty one if it is not there.
+const Json& array_of(const Json& document, const char* key);
+
 /// Checks that every property of glTF 2.0 that is read later has its type, and that required ones are
 /// there; whole numbers written with a fraction (3.0) become integers. Throws InputError naming the place.
 void check_types(Json& document, const std::string& file);
