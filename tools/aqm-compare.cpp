@@ -23,7 +23,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string test, reference, layer, mask, json, difference, metric = "error";
+  std::string test, reference, layer, mask, smooth, json, difference, metric = "error";
   std::vector<std::string> halves;
   bool own_halves = false, perceptual = false, allow_stale = false;
   double fail_above = -1, difference_scale = 0;
@@ -49,6 +49,9 @@ void declare(tools::Tool& tool, Options& o) {
   app.add_option("--layer", o.layer, "layer or channel, such as indirect, N, Z; RGB without")
       ->type_name("NAME");
   app.add_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count")
+      ->type_name("FILE");
+  app.add_option("--relative-to", o.smooth,
+                 "EXR; stands for the reference in relMSE's denominator, where the reference's noise would count")
       ->type_name("FILE");
   app.add_option("--metric", o.metric, "error: RMSE, relMSE, bias, PSNR, flicker")->type_name("NAME")
       ->capture_default_str();
@@ -111,6 +114,7 @@ Comparison description(const tools::Tool& tool, const Options& o) {
   comparison.command.pop_back();  // LF
   comparison.test = o.test;
   comparison.references = o.references();
+  comparison.relative_to = o.smooth;
   comparison.layer = o.layer_or_rgb();
   comparison.mode = !o.halves.empty() ? ComparisonMode::reference_halves
                     : o.own_halves    ? ComparisonMode::own_halves
@@ -132,7 +136,7 @@ int compare(tools::Tool& tool, const Options& o, bool frames_given) {
 
   ComparisonBuilder builder(description(tool, o), o.min_object_pixels);
   tools::IdentityGuard identities(tool, o.allow_stale);
-  const tools::ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb()};
+  const tools::ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb(), o.smooth};
   double scale = o.difference_scale;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     tool.stats().phase("load");

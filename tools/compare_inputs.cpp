@@ -18,6 +18,7 @@ LoadedFrame::LoadedFrame(Tool& tool, const ComparedFiles& files, std::optional<i
   inputs_.test = load(files.test, test_);
   inputs_.reference = load(files.references.at(0), reference_);
   if (files.references.size() > 1) inputs_.second = load(files.references[1], second_);
+  if (!files.smooth.empty()) inputs_.smooth = load(files.smooth, smooth_);
   if (!files.mask.empty()) inputs_.mask = load(files.mask, mask_);
 }
 
@@ -28,7 +29,7 @@ int LoadedFrame::frame_number() const {
 }
 
 void IdentityGuard::check(const ComparedInputs& inputs) {
-  for (const NamedImage* reference : {&inputs.reference, &inputs.second}) {
+  for (const NamedImage* reference : {&inputs.reference, &inputs.second, &inputs.smooth}) {
     if (!reference->image) continue;
     const IdentityMatch match = match_identities(*inputs.test.image, *reference->image);
     const std::string pair = inputs.test.name + " and " + reference->name;

@@ -95,8 +95,8 @@ LayerPlanes layer_planes(const NamedImage& image, const std::string& layer) {
 }
 
 Compared compare_layers(const ComparedInputs& inputs) {
-  const auto& [test, reference, second, mask, layer] = inputs;
-  for (const NamedImage* other : {&reference, &second, &mask})
+  const auto& [test, reference, second, mask, layer, smooth] = inputs;
+  for (const NamedImage* other : {&reference, &second, &mask, &smooth})
     if (other->image) check_size(*other, test);
 
   Compared pair;
@@ -107,6 +107,7 @@ Compared compare_layers(const ComparedInputs& inputs) {
   pair.test = std::move(planes.planes);
   pair.reference = planes_like(reference, layer, pair.channels);
   if (second.image) pair.second = planes_like(second, layer, pair.channels);
+  if (smooth.image) pair.smooth = planes_like(smooth, layer, pair.channels);
   if (mask.image) pair.counted = pixels_of_mask(mask);
   for (const NamedImage* from : {&test, &reference}) {
     const Channel* ids = from->image->find("id.object");
@@ -115,6 +116,7 @@ Compared compare_layers(const ComparedInputs& inputs) {
   check_finite(pair, pair.test, test.name, layer);
   check_finite(pair, pair.reference, reference.name, layer);
   check_finite(pair, pair.second, second.name, layer);
+  check_finite(pair, pair.smooth, smooth.name, layer);
   return pair;
 }
 

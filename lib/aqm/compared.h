@@ -32,6 +32,7 @@ struct Compared {
   std::vector<std::string> channels;                  ///< suffixes of the planes
   std::vector<const std::vector<float>*> test, reference;
   std::vector<const std::vector<float>*> second;  ///< the other half of the reference; empty: one reference
+  std::vector<const std::vector<float>*> smooth;  ///< stands for r in relMSE's denominator; empty: r itself
   const std::vector<std::uint32_t>* objects = nullptr;  ///< id.object of x, else of r; nullptr: unknown
   std::vector<std::uint8_t> counted;                  ///< per pixel; empty: all count
 
@@ -42,12 +43,17 @@ struct Compared {
     const double first = (*reference[channel])[pixel];
     return halves() ? 0.5 * (first + double((*second[channel])[pixel])) : first;
   }
+  /// What r is taken for in relMSE's denominator.
+  double scale_at(std::size_t channel, std::size_t pixel) const {
+    return smooth.empty() ? reference_at(channel, pixel) : double((*smooth[channel])[pixel]);
+  }
 };
 
-/// The inputs of one comparison; second and mask may be absent (image == nullptr).
+/// The inputs of one comparison; second, smooth and mask may be absent (image == nullptr).
 struct ComparedInputs {
   NamedImage test, reference, second, mask;
   std::string layer;
+  NamedImage smooth = {};
 };
 
 /// Lays a frame beside its reference. Pixels where all channels of `mask` are 0 do not count. Throws

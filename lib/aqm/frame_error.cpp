@@ -11,7 +11,7 @@ namespace {
 
 /// One pixel's contribution, each a mean over channels.
 struct PixelError {
-  double squared = 0, difference = 0, reference = 0, reference_squared = 0, half_difference_squared = 0;
+  double squared = 0, difference = 0, reference = 0, scale_squared = 0, half_difference_squared = 0;
 };
 
 PixelError pixel_error(const Compared& pair, std::size_t i) {
@@ -19,16 +19,16 @@ PixelError pixel_error(const Compared& pair, std::size_t i) {
   for (std::size_t c = 0; c < pair.test.size(); ++c) {
     const double x = (*pair.test[c])[i], r1 = (*pair.reference[c])[i];
     const double r2 = pair.halves() ? double((*pair.second[c])[i]) : r1;
-    const double r = 0.5 * (r1 + r2), half = 0.5 * (r1 - r2);
+    const double r = 0.5 * (r1 + r2), half = 0.5 * (r1 - r2), scale = pair.scale_at(c, i);
     sum.squared += (x - r1) * (x - r2);
     sum.difference += x - r;
     sum.reference += r;
-    sum.reference_squared += r * r;
+    sum.scale_squared += scale * scale;
     sum.half_difference_squared += half * half;
   }
-  const double scale = 1.0 / double(pair.test.size());
-  return {sum.squared * scale, sum.difference * scale, sum.reference * scale, sum.reference_squared * scale,
-          sum.half_difference_squared * scale};
+  const double each = 1.0 / double(pair.test.size());
+  return {sum.squared * each, sum.difference * each, sum.reference * each, sum.scale_squared * each,
+          sum.half_difference_squared * each};
 }
 
 /// Mean of r over the pixels that count, added block by block as the other sums are.
@@ -124,7 +124,7 @@ ErrorSums sum_errors(const Compared& pair, int frame) {
       const PixelError error = pixel_error(pair, i);
       ErrorSums::Block pixel{1, error.squared, 0, error.difference, error.reference};
       if (sums.relative_known)
-        pixel.relative = error.squared / (error.reference_squared + softening * softening);
+        pixel.relative = error.squared / (error.scale_squared + softening * softening);
       const std::size_t block = sums.grid.block_of(x, y);
       add_block(sums.blocks[block], pixel);
       if (pair.objects) add_block(sums.objects[(*pair.objects)[i]][block], pixel);

@@ -51,7 +51,9 @@ struct FrameError {
   bool halves = false;
   SquaredFigure squared_error;                        ///< mean over pixels and channels of (x-r)^2
   /// Mean over pixels of |x-r|^2 / (|r|^2 + (0.1 mean r)^2), |.|^2 the mean over channels, mean r that of the
-  /// frame; r in the denominator is the mean of the halves. Nothing if mean r is 0 (black reference).
+  /// frame. r in the denominator is the mean of the halves, whose noise moves the figure by up to 6 s^4 where s is the
+  /// noise in it over sqrt(r^2 + (0.1 mean r)^2): give Compared::smooth where that counts. Nothing if mean r is
+  /// 0 (black reference).
   std::optional<Estimate> relative_squared_error;
   std::optional<Estimate> bias;                       ///< mean(x-r)/mean(r); nothing if mean r is 0
   std::optional<double> psnr_db;                      ///< 10 log10(peak^2 / mean square), peak the largest r;

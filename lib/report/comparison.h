@@ -22,6 +22,7 @@ struct Comparison {
   std::string command;                                ///< the tool's line of history
   std::string test;                                   ///< file or pattern, as given
   std::vector<std::string> references;                ///< one or two
+  std::string relative_to;                            ///< file or pattern in relMSE's denominator; "": reference
   ComparisonMode mode = ComparisonMode::one_reference;
   std::string layer;                                  ///< "" is RGB
   std::vector<std::string> channels;

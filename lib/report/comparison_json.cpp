@@ -79,6 +79,7 @@ std::string comparison_json(const Comparison& comparison) {
                {"channels", comparison.channels},
                {"width", comparison.width},
                {"height", comparison.height}};
+  if (!comparison.relative_to.empty()) json["relative_to"] = comparison.relative_to;
   json["total"] = error_json(comparison.total, comparison.mode);
   if (comparison.flicker) put_squared(json["total"], "flicker", "flicker_squared", *comparison.flicker);
   json["frames"] = Json::array();

@@ -17,6 +17,9 @@ exr hole.exr 32x16 'R=nan|1.5' G=1.5 B=1.5 $scene
 try x.exr r.exr
 try x.exr --reference-halves a.exr r.exr
 try a.exr r.exr --halves
+# relMSE relative to a frame of 1 instead of r = .5, whose mean still softens: (1/16) / (1 + .0025); small.exr does not fit
+try x.exr r.exr --relative-to ones.exr --json out.json --quiet; sed -n '/"relmse":/{p;q}' out.json; grep relative_to out.json
+try x.exr r.exr --relative-to small.exr
 # a whole image without bias, and two objects with 3 %
 try walls.exr ones.exr
 try hole.exr ones.exr --mask right.exr
