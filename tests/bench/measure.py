@@ -33,7 +33,7 @@ class Bench:
     def scene(self, name):
         """(file, frame) of a scene by its short name."""
         files = {"S1": ("S1_cornell.glb", 0), "S2": ("S2_cornell_moving.glb", 10), "S3": ("S3_indirect_room.glb", 1),
-                 "S4": ("S4_atrium.glb", 10)}
+                 "S4": ("S4_atrium.glb", 10), "PC": ("cornell_classic.gltf", 0)}
         file, frame = files[name]
         for folder in (self.project / "pipelines" / "scenes", self.shared and self.shared / "made"):
             if folder and (folder / file).exists():
@@ -71,21 +71,21 @@ class Bench:
 
     # ---- frames that several measurements look at
 
-    def cached(self, folder, stem, inputs, suffixes, make):
+    def cached(self, folder, stem, inputs, suffixes, make, fresh=False):
         """Files folder/stem-KEY+suffix, made once per content of `inputs` (files and option strings)."""
         digest = hashlib.sha256()
         for part in inputs:
             digest.update(part.read_bytes() if isinstance(part, Path) else str(part).encode())
         name = f"{stem}-{digest.hexdigest()[:10]}"
         files = [self.out / folder / (name + suffix) for suffix in suffixes]
-        if not all(file.exists() for file in files):
+        if fresh or not all(file.exists() for file in files):
             make(name)
         return files
 
-    def path_frame(self, name, samples, seed):
+    def path_frame(self, name, samples, seed, size=None):
         """(frame, statistics file) of a path-traced frame with layers and ids."""
         scene, frame = self.scene(name)
-        options = ["--frame", frame, "--size", self.size, "--integrator", "path", "--spp", samples, "--seed", seed,
+        options = ["--frame", frame, "--size", size or self.size, "--integrator", "path", "--spp", samples, "--seed", seed,
                    "--channels", "RGBA,layers,id"]
 
         def make(stem):
@@ -94,22 +94,28 @@ class Bench:
         return self.cached("frames", f"{name}-path-{samples}-{seed}", [scene, self.bin / "frame-render", *options],
                            [".exr", ".json"], make)
 
-    def reference_halves(self, name):
+    def reference_halves(self, name, size=None, samples=None):
         """Our own reference, two files. Kept when tools change: unbiased is unbiased; remove the folder to renew it."""
         scene, frame = self.scene(name)
-        options = ["--frame", frame, "--size", self.size, "--integrator", "path", "--halves", "--spp",
-                   self.reference_samples, "--seed", 1000003, "--channels", "RGBA,layers,id"]
+        samples = 16 if self.quick else samples or self.reference_samples
+        options = ["--frame", frame, "--size", size or self.size, "--integrator", "path", "--halves", "--spp",
+                   samples, "--seed", 1000003, "--channels", "RGBA,layers,id"]
 
         def make(stem):
-            print(f"  reference of {name}, {self.reference_samples} samples per pixel ...", flush=True)
+            print(f"  reference of {name}, {samples} samples per pixel ...", flush=True)
             self.run([self.bin / "frame-render", scene, *options, "-q", "-o", self.out / "reference" / f"{stem}.exr"])
         return self.cached("reference", name, [scene, *options], ["_a.exr", "_b.exr"], make)
 
-    def compare(self, frame, halves, output, layer=None):
+    def compare(self, frame, halves, output, layer=None, *options):
         """aqm-compare against reference halves; its JSON, kept in `output`."""
         self.run([self.bin / "aqm-compare", frame, "--reference-halves", *halves, "--json", output, "-q",
-                  *(["--layer", layer] if layer else [])])
+                  *(["--layer", layer] if layer else []), *options])
         return json.loads(Path(output).read_text())
+
+
+def figure(title, asked, header, rows, met, notes=()):
+    """What a function of required.py or gathering.py returns."""
+    return {"title": title, "asked": asked, "header": header, "rows": rows, "met": met, "notes": list(notes)}
 
 
 def median(values):

@@ -6,11 +6,8 @@ Ratios are of CPU seconds within one run, the sides alternating, medians of the 
 import math
 import os
 
-from measure import Missing, big, median, percent, quantity, timed, wait_for_quiet
-
-
-def figure(title, asked, header, rows, met, notes=()):
-    return {"title": title, "asked": asked, "header": header, "rows": rows, "met": met, "notes": list(notes)}
+import gathering
+from measure import Missing, big, figure, median, percent, quantity, timed, wait_for_quiet
 
 
 def path_tracer(bench, peers):
@@ -139,10 +136,15 @@ def threads(bench, _):
     load = os.getloadavg()[0]
     scene, frame = bench.scene("S2")
     output = bench.memory / f"tempolux-bench-{os.getpid()}"
-    photon_map, image = f"{output}.photons", f"{output}.exr"
+    photon_map, points, cache, image = (f"{output}.{end}" for end in ("photons", "irradpoints", "irradcache", "exr"))
     photons = 20000 if bench.quick else 2 * 10**6
     render = ["frame-render", scene, "--frame", frame, "--size", bench.size, "-o", image]
     tools = {"photon-trace": ["photon-trace", scene, "--frame", frame, "--photons", photons, "-o", photon_map],
+             "irradcache-build points": ["irradcache-build", "points", scene, "--frame", frame, "--photons", photon_map,
+                                         *(["--point-count", "2k"] if bench.quick else []), "-o", points],
+             "irradcache-build records": ["irradcache-build", "records", scene, "--frame", frame, "--points", points, "--size",
+                                          bench.size, "-o", cache],
+             "frame-render, cache": [*render, "--irradcache", cache, "--points", points],
              "frame-render, photons": [*render, "--photons", photon_map, "--spp", 16],
              "frame-render, path": [*render, "--integrator", "path", "--spp", 16]}
     rows, met = [], True
@@ -162,7 +164,7 @@ def threads(bench, _):
             rows.append([title, quantity(median(seconds[1])), quantity(median(seconds[2])), quantity(median(speed)),
                          f"{median(work):.3f}"])
     finally:
-        for file in (photon_map, image):
+        for file in (photon_map, points, cache, image):
             if os.path.exists(file):
                 os.remove(file)
     notes = [f"Load average before: {load:.1f}."]
@@ -234,4 +236,4 @@ def object_table(objects):
 
 
 FIGURES = {"path-tracer": path_tracer, "photon-rate": photon_rate, "photon-growth": photon_growth, "nearest": nearest,
-           "threads": threads, "start": start, "reading": reading, "references": references}
+           "threads": threads, "start": start, "reading": reading, "references": references} | gathering.FIGURES

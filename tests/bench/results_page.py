@@ -43,8 +43,10 @@ def curves(bench, docs, page, command):
 
 `{command} --only sweep` · {made['machine']} · load {made['load']}; every run: report/report.csv in its output folder
 
-Each scene is swept twice: over photons (photon-trace, then frame-render with the map looked up directly, 16 samples per
-pixel) and over samples per pixel (path tracing). Error: RMSE of linear radiance at 320x180 against the two halves of a
+Each scene is swept over samples per pixel (path tracing), over photons that are looked up directly (photon-trace, then
+frame-render with 16 samples per pixel), and over the parameters of final gathering with the irradiance cache
+(photon-trace, irradcache-build, frame-render --irradcache): photons, gather rays, error bound of the cache, each alone
+with the others as by default and `--pixel-error 0.005`, and all together in six steps, pixel samples with them. Error: RMSE of linear radiance at 320x180 against the two halves of a
 path-traced reference of {made["reference_samples"]} samples per pixel, whose noise is taken out. Cost: CPU seconds of all
 processes, loading and writing included. A Monte Carlo curve falls with slope -0.5; one that flattens has reached its bias,
 or the noise of what is not swept (the 16 samples of direct light). With k fixed more photons shrink only the blur; with k

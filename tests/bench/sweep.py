@@ -1,11 +1,13 @@
-"""Error against time: curves over photons and samples, drawn by error-report.
+"""Error against time: curves over photons, samples, gather rays and the cache's accuracy, drawn by error-report.
 
-A curve is one entry of `curves`; later methods (final gathering, caches, filters) are further entries. Each
+A curve is one entry of `curves`; later methods (splits, filters) are further entries. Each
 point costs the CPU seconds of all processes that lead to the frame.
 """
 import json
 import shutil
 
+import chain
+from chain import Settings
 from measure import big
 
 FRAMES = {"S1": "Cornell box", "S2": "Cornell box, frame 10", "S3": "room lit by indirect light alone"}
@@ -17,7 +19,7 @@ def photon_counts(bench):
 
 
 def sample_counts(bench):
-    return [1, 4] if bench.quick else [1, 2, 4, 8, 16, 32, 64, 128, 256]
+    return [1, 4] if bench.quick else [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024]
 
 
 def growing_neighbours(photons):
@@ -53,6 +55,34 @@ def path_run(bench, name, samples, seed):
     return image, [stats]
 
 
+def together(step):
+    """Photons, points, rays, accuracy, pixel samples: each step costs about twice the one before."""
+    photons, points, rays, bound, samples, pixel_error = [
+        (20000, "4k", 100, 0.4, 4, 0.05), (50000, "8k", 200, 0.3, 4, 0.025), (100000, "12k", 300, 0.25, 4, 0.015),
+        (200000, "20k", 500, 0.2, 8, 0.01), (400000, "30k", 1000, 0.15, 8, 0.005), (1000000, "60k", 2000, 0.1, 8, 0.0025)][step]
+    return Settings(photons, ("--point-count", points), ("--rays", rays, "--error-bound", bound),
+                    ("--spp", samples, "--pixel-error", pixel_error))
+
+
+PIXELS = ("--spp", 8, "--pixel-error", 0.005)    # of the curves that sweep one parameter: direct light out of the way
+
+
+def gathering_curves(bench):
+    """Final gathering and the irradiance cache: all parameters swept together, then each alone, the others as by default."""
+    def run(settings_of):
+        return lambda name, x, seed: chain.frame(bench, name, seed, settings_of(x))
+    short = bench.quick
+    return [
+        ("gathering, all together", [0, 1] if short else range(6), run(together)),
+        ("gathering, photons", [10**4, 2 * 10**4] if short else [10**4, 3 * 10**4, 10**5, 3 * 10**5, 10**6],
+         run(lambda x: Settings(x, pixels=PIXELS))),
+        ("gathering, rays", [50, 100] if short else [50, 100, 200, 500, 1000, 2000],
+         run(lambda x: Settings(records=("--rays", x), pixels=PIXELS))),
+        ("gathering, error bound", [0.5, 0.4] if short else [0.5, 0.35, 0.25, 0.18, 0.12, 0.08],
+         run(lambda x: Settings(records=("--error-bound", x), pixels=PIXELS))),
+    ]
+
+
 def curves(bench):
     """(curve, swept values, what one value and seed make: frame and statistics files)."""
     return [
@@ -60,6 +90,7 @@ def curves(bench):
         ("photon map, k = 50", photon_counts(bench), lambda name, x, seed: photon_run(bench, name, x, 50, seed)),
         ("photon map, k grows", photon_counts(bench),
          lambda name, x, seed: photon_run(bench, name, x, growing_neighbours(x), seed)),
+        *gathering_curves(bench),
     ]
 
 
@@ -77,7 +108,7 @@ def measure(bench, peers):
                         title = f"{name}, indirect light alone" if layer else f"{name}, {FRAMES[name]}"
                         comparison = image.with_name(f"{image.stem}-{layer or 'all'}-error.json")
                         bench.compare(image, halves, comparison, layer)
-                        runs.append({"scene": title, "curve": curve, "label": big(x), "x": x, "parameters": {"seed": seed},
+                        runs.append({"scene": title, "curve": curve, "label": big(x) if isinstance(x, int) else str(x), "x": x, "parameters": {"seed": seed},
                                      "stats": [str(s) for s in stats], "comparison": str(comparison)})
         for peer, rows in peers.items():
             points += [{"scene": f"{name}, {FRAMES[name]}", "label": f"{peer}, {row['samples']} samples",

@@ -1,0 +1,79 @@
+"""The gathering chain as the figures and curves run it: photon-trace, irradcache-build, frame-render --irradcache.
+
+Every process is counted: each writes its statistics, which load, read, write and all else are part of.
+"""
+import dataclasses
+import json
+import re
+
+
+@dataclasses.dataclass(frozen=True)
+class Settings:
+    """Options of the stages; what is not named stays at the tools' defaults."""
+    photons: int = 200000
+    points: tuple = ()        # options of irradcache-build that make the points
+    records: tuple = ()       # ... that place the records
+    pixels: tuple = ()        # of frame-render
+    steps: bool = False       # points and records by two processes, as Makefile.example does; else by one
+
+    def text(self):
+        return " ".join(map(str, ("photons", self.photons, *self.points, *self.records, *self.pixels)))
+
+
+def final(project):
+    """Those of Makefile.example with QUALITY=final."""
+    text = (project / "Makefile.example").read_text()
+    block = re.search(r"^else\n((?:[A-Z]+ *=.*\n)+)endif", text, re.M).group(1)
+    values = dict(re.findall(r"^([A-Z]+) *= *([^#\n]*?) *(?:#.*)?$", block, re.M))
+    count = values["PHOTONS"]
+    photons = int(count.rstrip("kM")) * {"k": 10**3, "M": 10**6}.get(count[-1], 1)
+    return Settings(photons, *(tuple(values.get(name, "").split()) for name in ("POINTS", "CACHE", "PIXELS")), steps=True)
+
+
+def light(bench, name, stem, seed, settings, size, keep):
+    """photon-trace and irradcache-build; statistics files. `keep`: (photons, points, cache) to be written."""
+    scene, frame = bench.scene(name)
+    stats = [bench.out / "frames" / f"{stem}-{stage}.json" for stage in ("photons", "points", "cache")]
+    common = [scene, "--frame", frame, "--seed", seed, "-q"]
+    photons, points, cache = keep
+    bench.run([bench.bin / "photon-trace", *common, "--photons", settings.photons, "--kinds", "caustic,indirect",
+               "-o", photons, "--stats", stats[0]])
+    build, gather = bench.bin / "irradcache-build", ["--size", size, *settings.records, "-o", cache]
+    if settings.steps:
+        bench.run([build, "points", *common, "--photons", photons, *settings.points, "-o", points, "--stats", stats[1]])
+        bench.run([build, "records", *common, "--points", points, *gather, "--stats", stats[2]])
+        return stats
+    bench.run([build, *common, "--photons", photons, *settings.points, *gather, "--stats", stats[2]])
+    return [stats[0], stats[2]]
+
+
+def frame(bench, name, seed, settings, size=None, fresh=False):
+    """(frame with layers and ids, statistics files of all processes), made once for each program and setting; `fresh`:
+    made and timed again in any case."""
+    size = size or bench.size
+    if bench.quick:
+        settings = dataclasses.replace(settings, photons=settings.photons // 20, points=("--point-count", "1k"))
+    scene, number = bench.scene(name)
+    tools = [bench.bin / tool for tool in ("photon-trace", "irradcache-build", "frame-render")]
+    suffixes = [".exr", "-photons.json", *(["-points.json"] if settings.steps else []), "-cache.json", ".json"]
+
+    def make(stem):
+        keep = [bench.memory / f"tempolux-bench-{stem}.{end}" for end in ("photons", "irradpoints", "irradcache")]
+        files = bench.out / "frames" / stem
+        try:
+            light(bench, name, stem, seed, settings, size, keep)
+            spare = ["--points", keep[1]] if settings.steps else ["--photons", keep[0]]
+            bench.run([tools[2], scene, "--frame", number, "--irradcache", keep[2], *spare, "--seed", seed, "--size", size,
+                       *settings.pixels, "--channels", "RGBA,layers,id", "-q", "-o", f"{files}.exr",
+                       "--stats", f"{files}.json"])
+        finally:
+            for file in keep:
+                file.unlink(missing_ok=True)
+    image, *stats = bench.cached("frames", f"{name}-chain-{settings.photons}-{seed}",
+                                 [scene, *tools, number, seed, size, settings.steps, settings.text()], suffixes, make, fresh)
+    return image, stats
+
+
+def cost(stats):
+    """CPU seconds of all processes."""
+    return sum(json.loads(file.read_text())["cpu_s"] for file in stats)
