@@ -4,7 +4,7 @@ add_library(tempolux_options INTERFACE)
 target_include_directories(tempolux_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(tempolux_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion
-  -Wno-restrict                # false alarms of GCC 12 on std::string (bug 105651)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>   # false alarms of GCC 12 on std::string (bug 105651)
   -ffp-contract=off            # the same bits on every machine of one instruction set
   -fno-math-errno -fno-trapping-math
   $<IF:$<BOOL:${TEMPOLUX_NATIVE}>,-march=native,-march=x86-64-v3>
@@ -14,6 +14,9 @@ if(TEMPOLUX_SANITIZE)
   target_compile_options(tempolux_options INTERFACE -fsanitize=${TEMPOLUX_SANITIZE}
     -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(tempolux_options INTERFACE -fsanitize=${TEMPOLUX_SANITIZE})
+endif()
+if(TEMPOLUX_FUZZ)
+  target_compile_options(tempolux_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 set(CMAKE_EXE_LINKER_FLAGS "${CMAKE_EXE_LINKER_FLAGS} -Wl,--as-needed")
 

@@ -19,6 +19,7 @@
 #include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
+#include "tools/manual.h"
 #include "tools/temporaries.h"
 #include "tools/tool_state.h"
 
@@ -144,6 +145,15 @@ void Tool::State::parse() {
   if (common.threads == 0) common.threads = usable_processor_count();
 }
 
+/// For the build: cmake/install.cmake. True if that was all that was asked for.
+bool Tool::State::print_manual() const {
+  const std::string wish = argc == 2 ? argv[1] : "";
+  if (wish == "--help-man") std::cout << man_page(app);
+  else if (wish == "--help-completion") std::cout << bash_completion(app);
+  else return false;
+  return true;
+}
+
 void Tool::State::apply_limits() const {
   if (common.max_memory_bytes == 0) return;
   mallopt(M_ARENA_MAX, 2);  // each arena reserves 64 MiB of the address space that is counted
@@ -190,6 +200,7 @@ int Tool::run(const std::function<int()>& body) {
   try {
     int code = exit_ok;
     try {
+      if (state.print_manual()) return flush_stdout(), code;
       state.parse();
       code = state.run(body, *this);
     } catch (const CLI::CallForHelp&) {

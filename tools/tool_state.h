@@ -35,6 +35,7 @@ struct Tool::State {
   State(std::string tool, std::string what, int count, char** values)
       : name(std::move(tool)), argc(count), argv(values), app(std::move(what), name) {}
 
+  bool print_manual() const;
   void parse();
   void apply_limits() const;
   int run(const std::function<int()>& body, const Tool& tool);

@@ -84,6 +84,8 @@ Place open_document(const std::string& path, const std::string& schema, Json& ke
     keep = Json::parse(file);
   } catch (const Json::parse_error& bad) {
     throw InputError(path + ": byte " + std::to_string(bad.byte) + ": not JSON");
+  } catch (const Json::out_of_range&) {
+    throw InputError(path + ": a number is too large for 64 bits of floating point");
   }
   const Place top{keep, path + ": "};
   if (!keep.is_object() || string_of(top, "schema") != schema)
