@@ -35,6 +35,9 @@ add_test(NAME pipelines.drop_kind COMMAND sh tests/pipelines/drop_kind.sh $<TARG
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.scenes COMMAND sh tests/pipelines/scenes.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAKE_BINARY_DIR}
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.installed PROPERTIES TIMEOUT 300 RUN_SERIAL ON)
 set_tests_properties(pipelines.rerun pipelines.plan_example pipelines.plan_refuses pipelines.drop_kind pipelines.scenes
                      PROPERTIES TIMEOUT 300)
 

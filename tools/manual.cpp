@@ -121,7 +121,10 @@ std::string man_page(const CLI::App& app) {
   std::string page = ".TH " + name + " 1 \"\" \"tempolux " TEMPOLUX_VERSION "\" \"tempolux\"\n.SH NAME\n" + roff(name) +
                      " \\- " + roff(as_part_of_a_line(app.get_description())) + "\n.SH SYNOPSIS\n\\fB" + roff(name) +
                      "\\fR [\\fIOPTIONS\\fR]";
-  for (const CLI::Option* option : options_of(app, true)) page += " \\fI" + roff(option->get_name(true)) + "\\fR";
+  for (const CLI::Option* option : options_of(app, true)) {
+    const std::string word = "\\fI" + roff(option->get_name(true)) + "\\fR";
+    page += option->get_required() ? " " + word : " [" + word + "]";
+  }
   page += "\n.SH DESCRIPTION\n" + paragraphs(text.description) + ".SH OPTIONS\n";
   for (const bool positional : {true, false})
     for (const CLI::Option* option : options_of(app, positional)) page += entry(*option);

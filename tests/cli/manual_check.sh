@@ -19,7 +19,7 @@ for path in "$BUILD"/bin/*; do
     grep -q -e "[ ']$option[ ']" completion || bad "$option is not in the completion"
   done <options
   # A default is shown in the page as it is in --help.
-  "$path" --help | grep -o '\[[0-9a-z.,]*\]' | sort -u >defaults
+  "$path" --help | sed -n '/^Options:/,$p' | grep -o '\[[0-9a-z.,]*\]' | sort -u >defaults
   while read -r default; do grep -qF "$default" plain || bad "default $default is not in the man page"; done <defaults
   if command -v groff >/dev/null; then
     groff -man -ww -z page.1 >warnings 2>&1

@@ -1,0 +1,21 @@
+#!/bin/sh
+# What cmake --install puts in place is enough: the pipeline runs with it on two frames.
+#
+#     sh tests/pipelines/installed.sh BUILD          from the top of the tree
+build=$(cd "$1" && pwd)
+scratch=$(mktemp -d) || exit 1
+trap 'rm -rf "$scratch"' EXIT
+bad() { echo "$*"; exit 1; }
+cmake --build "$build" --target manual > "$scratch/log" 2>&1 || bad "$(tail -3 "$scratch/log")"
+cmake --install "$build" --prefix "$scratch/usr" > "$scratch/log" 2>&1 || bad "$(tail -3 "$scratch/log")"
+for path in "$build"/bin/*; do
+  tool=$(basename "$path")
+  [ -x "$scratch/usr/bin/$tool" ] || bad "$tool is not installed"
+  [ -s "$scratch/usr/share/man/man1/$tool.1" ] || bad "$tool has no man page"
+  [ -s "$scratch/usr/share/bash-completion/completions/$tool" ] || bad "$tool has no completion"
+done
+[ -s "$scratch/usr/share/doc/tempolux/formats/photons/photons.md" ] || bad 'the format pages are not installed'
+make -s -f Makefile.example demo BIN="$scratch/usr/bin" OUT="$scratch/out" FRAMES=0,40 SIZE=32x18 QUALITY=draft PHOTONS=2k \
+  POINTS='--point-count 500' > "$scratch/log" 2>&1 || bad "$(tail -5 "$scratch/log")"
+[ -s "$scratch/out/sheet.png" ] && [ -s "$scratch/out/frames/0040.exr" ] || bad 'no frames were made'
+echo 'installed, and rendered two frames'
