@@ -24,18 +24,28 @@ std::uint64_t key_of(Vec3 p, Vec3 n, std::uint64_t seed) {
 /// Integral of tan over a ring's share of the projected hemisphere: asin sqrt s - sqrt(s (1 - s)).
 double ring_integral(double s) { return std::asin(std::sqrt(s)) - std::sqrt(s * (1 - s)); }
 
-/// The lit side of a hit as seen along wo.
+constexpr std::size_t kAtOnce = 32;  ///< rays whose answers are fetched together
+constexpr int kTile = 4;             ///< sectors followed side by side: two rings of them are a packet of rays
+
+/// Cells of M rings x N sectors, some sectors wide, ring by ring.
+std::vector<std::uint32_t> tiled_order(int rings, int sectors) {
+  std::vector<std::uint32_t> order;
+  for (int first = 0; first < sectors; first += kTile)
+    for (int j = 0; j < rings; ++j)
+      for (int k = first; k < std::min(first + kTile, sectors); ++k)
+        order.push_back(std::uint32_t(j * sectors + k));
+  return order;
+}
+
+/// Normals on the lit side and the direction back along the ray in the shading normal's frame.
 struct Side {
-  Vec3 geometric, shading;
+  Vec3 shading;
   Frame frame;
   Vec3 wo_local;
-  Bsdf bsdf;
-  Side(const SurfacePoint& p, Vec3 wo, const Material& material)
-      : geometric(dot(p.normal_geometric, wo) < 0 ? -p.normal_geometric : p.normal_geometric),
-        shading(viewed(dot(p.normal, geometric) < 0 ? -p.normal : p.normal, geometric, wo)),
+  Side(const SurfacePoint& p, Vec3 geometric, Vec3 wo)
+      : shading(viewed(dot(p.normal, geometric) < 0 ? -p.normal : p.normal, geometric, wo)),
         frame(shading),
-        wo_local(frame.to_local(wo)),
-        bsdf(material, dot(p.normal_geometric, wo) > 0) {}
+        wo_local(frame.to_local(wo)) {}
   static Vec3 viewed(Vec3 n, Vec3 geometric, Vec3 wo) { return dot(n, wo) > 1e-4f ? n : geometric; }
 };
 
@@ -51,71 +61,120 @@ FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const Point
   gather_strata(options.rays, rings_, sectors_);
   for (int j = 0; j < rings_; ++j)
     ring_tangent_.push_back(float(rings_ * (ring_integral(double(j + 1) / rings_) - ring_integral(double(j) / rings_))));
+  cell_order_ = tiled_order(rings_, sectors_);
+  for (const Material& material : tracer.frame().materials)
+    bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
 }
 
-Rgb FinalGather::radiance(const Ray& start, std::uint64_t key, float& distance, GatherCounts& counts) const {
-  distance = INFINITY;
-  ++counts.rays;
-  Hit hit;
-  if (!tracer_.intersect(start, hit)) return Rgb(0.0f);
-  const SurfacePoint point = tracer_.surface_point(hit);
-  distance = length(point.position - start.origin);
-  return reflected(point, -start.direction, distance, key, 0, counts);
+/// A surface at a ray's end.
+struct FinalGather::Met {
+  SurfacePoint hit;
+  Vec3 wo, geometric;           ///< geometric: the normal on the side of wo
+  float distance = INFINITY;    ///< m, along the path since the gather ray's start
+  const Bsdf* bsdf = nullptr;   ///< null: nothing was met
+};
+
+FinalGather::Met FinalGather::meet(const SurfacePoint& hit, Vec3 wo, float distance) const {
+  const bool front = dot(hit.normal_geometric, wo) > 0;
+  return {hit, wo, dot(hit.normal_geometric, wo) < 0 ? -hit.normal_geometric : hit.normal_geometric, distance,
+          &bsdfs_[hit.material][front]};
+}
+
+void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint64_t> keys,
+                           std::span<Rgb> radiance, std::span<float> distance, GatherCounts& counts) const {
+  std::array<Hit, kAtOnce> hits;
+  std::array<Met, kAtOnce> met;
+  std::array<PointLookup::Question, kAtOnce> questions;
+  std::array<PointLookup::Answer, kAtOnce> answers;
+  for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, rays.size() - first);
+    tracer_.intersect(rays.subspan(first, count), std::span(hits).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      met[i].bsdf = nullptr;
+      if (hits[i].surface == kNone) continue;
+      const Ray& ray = rays[first + i];
+      const SurfacePoint hit = tracer_.surface_point(hits[i]);
+      met[i] = meet(hit, -ray.direction, length(hit.position - ray.origin));
+      if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(hit.position, met[i].geometric, hit.object);
+    }
+    const auto reads_point = [&](std::size_t i) { return met[i].bsdf && met[i].bsdf->has_diffuse(); };
+    for (std::size_t i = 0; i < count; ++i)
+      if (reads_point(i)) answers[i] = points_.answer(questions[i]);
+    for (std::size_t i = 0; i < count; ++i) {
+      const PointLight* point = reads_point(i) ? points_.read(questions[i], answers[i]) : nullptr;
+      distance[first + i] = met[i].bsdf ? met[i].distance : INFINITY;
+      radiance[first + i] = met[i].bsdf ? reflected(met[i], point, keys[first + i], 0, counts) : Rgb(0.0f);
+    }
+  }
+  counts.rays += rays.size();
 }
 
 /// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to
 /// read there (or one more bounce if the hit is near), its other lobes by following one of them.
-Rgb FinalGather::reflected(const SurfacePoint& hit, Vec3 wo, float distance, std::uint64_t key, int depth,
+Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth,
                            GatherCounts& counts) const {
-  const Side side(hit, wo, tracer_.frame().materials[hit.material]);
-  Rgb result{0.0f};
+  const Bsdf& bsdf = *met.bsdf;
+  const bool specular = bsdf.has_specular();
   const PathRandom random(key, std::uint64_t(depth));
-  if (side.bsdf.has_diffuse()) {
-    const Rgb rho = side.bsdf.diffuse_reflectance(side.wo_local.z);
-    const PointLight* point = points_.find(hit.position, side.geometric, hit.object);
+  Rgb result{0.0f};
+  if (bsdf.has_diffuse()) {
     if (!point) {
       ++counts.unanswered;
     } else {
       ++counts.points_read;
-      // A random threshold between one and two times the near distance: no seam where it begins.
-      const float limit = options_.near_factor * point->radius * (0.5f + random.get1(0, Purpose::gather));
-      if (depth > 0 || distance >= limit) {
-        result += rho * kInvPi * point->total();
-      } else {
-        ++counts.near_hits;
-        Rgb irradiance = point->caustic;
-        LightSample light;
-        if (!lights_.empty() && lights_.sample(hit.position, side.shading, random.get1(1, Purpose::light_choice), random.get2(1, Purpose::light_point), light)) {
-          const float cosine = dot(light.wi, side.shading);
-          if (cosine > 0 && dot(light.wi, side.geometric) > 0 &&
-              !tracer_.occluded(spawn_shadow_ray(hit, light.position, light.position_offset)))
-            irradiance += light.radiance * cosine;
-        }
-        const Vec3 travel = side.frame.to_world(sample_hemisphere_cos(random.get2(1, Purpose::scatter)));
-        Hit next;
-        ++counts.rays;
-        if (dot(travel, side.geometric) > 0 && tracer_.intersect(spawn_ray(hit, travel), next)) {
-          const SurfacePoint there = tracer_.surface_point(next);
-          irradiance += kPi * reflected(there, -travel, length(there.position - hit.position), mix64(key + 1), depth + 1, counts);
-        }
-        result += rho * kInvPi * irradiance;
-      }
+      const Rgb rho = bsdf.diffuse_reflectance(specular ? Side(met.hit, met.geometric, met.wo).wo_local.z : 1);
+      // A random threshold between half and one and a half times the near distance: no seam where it begins.
+      const float near = options_.near_factor * point->radius;
+      const bool is_near = depth == 0 && met.distance < 1.5f * near &&
+                           met.distance < near * (0.5f + random.get1(0, Purpose::gather));
+      result = rho * kInvPi * (is_near ? near_irradiance(met, *point, random, key, depth, counts) : point->total());
     }
   }
-  if (!side.bsdf.has_specular() || depth >= kDeepestSpecular) return result;
+  if (!specular || depth >= kDeepestSpecular) return result;
   // Other lobes: one sampled direction, by roulette on its weight; the Lambert lobe was read above.
-  const auto next = side.bsdf.sample(side.wo_local, random.get1(2, Purpose::lobe), random.get2(2, Purpose::scatter));
+  const Side side(met.hit, met.geometric, met.wo);
+  const auto next = bsdf.sample(side.wo_local, random.get1(2, Purpose::lobe), random.get2(2, Purpose::scatter));
   if (next.diffuse || is_black(next.weight)) return result;
   const Vec3 travel = side.frame.to_world(next.wi);
-  if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, side.geometric) <= 0) return result;
+  if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, met.geometric) <= 0) return result;
   const float survival = std::min(0.95f, max_component(next.weight));
   if (!(random.get1(2, Purpose::roulette) < survival)) return result;
-  Hit hit2;
-  ++counts.rays;
-  if (!tracer_.intersect(spawn_ray(hit, travel), hit2)) return result;
-  const SurfacePoint there = tracer_.surface_point(hit2);
   return result + next.weight * (1 / survival) *
-                      reflected(there, -travel, distance + length(there.position - hit.position), mix64(key + 2), depth + 1, counts);
+                      reflected_beyond(met.hit, travel, met.distance, mix64(key + 2), depth + 1, counts);
+}
+
+/// Radiance along a ray that goes on from `from`, `distance` on the way already.
+Rgb FinalGather::reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key,
+                                  int depth, GatherCounts& counts) const {
+  Hit hit;
+  ++counts.rays;
+  if (!tracer_.intersect(spawn_ray(from, travel), hit)) return Rgb(0.0f);
+  const SurfacePoint there = tracer_.surface_point(hit);
+  const Met met = meet(there, -travel, distance + length(there.position - from.position));
+  const PointLight* point =
+      met.bsdf->has_diffuse() ? points_.find(there.position, met.geometric, there.object) : nullptr;
+  return reflected(met, point, key, depth, counts);
+}
+
+/// Irradiance at a hit too near for its point to be read: caustic light is the point's all the same, direct light
+/// by light sampling, the rest by one ray more.
+Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, const PathRandom& random,
+                                 std::uint64_t key, int depth, GatherCounts& counts) const {
+  ++counts.near_hits;
+  const Side side(met.hit, met.geometric, met.wo);
+  Rgb irradiance = point.caustic;
+  LightSample light;
+  if (!lights_.empty() && lights_.sample(met.hit.position, side.shading, random.get1(1, Purpose::light_choice),
+                                         random.get2(1, Purpose::light_point), light)) {
+    const float cosine = dot(light.wi, side.shading);
+    if (cosine > 0 && dot(light.wi, met.geometric) > 0 &&
+        !tracer_.occluded(spawn_shadow_ray(met.hit, light.position, light.position_offset)))
+      irradiance += light.radiance * cosine;
+  }
+  const Vec3 travel = side.frame.to_world(sample_hemisphere_cos(random.get2(1, Purpose::scatter)));
+  if (dot(travel, met.geometric) > 0)
+    irradiance += kPi * reflected_beyond(met.hit, travel, 0, mix64(key + 1), depth + 1, counts);
+  return irradiance;
 }
 
 IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {
@@ -130,18 +189,33 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   const Vec3 geometric = dot(from.normal_geometric, normal) < 0 ? -from.normal_geometric : from.normal_geometric;
   const std::uint64_t key = key_of(from.position, normal, options_.seed);
   const float closest = std::max(4 * from.offset, 1e-30f);
-  for (int j = 0; j < M; ++j)
-    for (int k = 0; k < N; ++k) {
-      const PathRandom random(key, cell(j, k));
-      const Vec2 u = random.get2(0, Purpose::gather);
-      const float sin2 = (float(j) + u.x) / float(M), phi = 2 * kPi * (float(k) + u.y) / float(N);
-      const float sine = std::sqrt(sin2), cosine = std::sqrt(std::max(1e-6f, 1 - sin2));
-      const Vec3 travel = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
-      if (!(dot(travel, geometric) > 0)) continue;
-      float distance;
-      radiance_of[cell(j, k)] = radiance(spawn_ray(from, travel), random.bits(1, Purpose::gather), distance, counts);
-      inverse_distance[cell(j, k)] = 1 / std::max(distance, closest);   // 0 for a miss
-    }
+  thread_local std::vector<Ray> rays;
+  thread_local std::vector<std::uint64_t> keys;
+  thread_local std::vector<std::uint32_t> cells;
+  rays.clear();
+  keys.clear();
+  cells.clear();
+  for (const std::uint32_t c : cell_order_) {
+    const PathRandom random(key, c);
+    const Vec2 u = random.get2(0, Purpose::gather);
+    const float sin2 = (float(c / std::uint32_t(N)) + u.x) / float(M);
+    const float phi = 2 * kPi * (float(c % std::uint32_t(N)) + u.y) / float(N);
+    const float sine = std::sqrt(sin2), cosine = std::sqrt(std::max(1e-6f, 1 - sin2));
+    const Vec3 travel = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
+    if (!(dot(travel, geometric) > 0)) continue;
+    rays.push_back(spawn_ray(from, travel));
+    keys.push_back(random.bits(1, Purpose::gather));
+    cells.push_back(c);
+  }
+  thread_local std::vector<Rgb> found;
+  thread_local std::vector<float> distance;
+  found.resize(rays.size());
+  distance.resize(rays.size());
+  radiance(rays, keys, found, distance, counts);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    radiance_of[cells[i]] = found[i];
+    inverse_distance[cells[i]] = 1 / std::max(distance[i], closest);   // 0 for a miss
+  }
 
   IrradianceRecord record;
   record.position = from.position;

@@ -3,10 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
+#include <vector>
 
+#include "lib/core/random.h"
 #include "lib/irradcache/points.h"
 #include "lib/irradcache/records.h"
 #include "lib/light/lights.h"
+#include "lib/material/bsdf.h"
 #include "lib/trace/trace.h"
 
 namespace tempolux {
@@ -47,12 +51,23 @@ class FinalGather {
   /// not depend on which records were made before.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
 
-  /// Radiance arriving along one ray that counts as indirect at its start, and the distance of its first hit
-  /// (infinity: none).
-  Rgb radiance(const Ray& ray, std::uint64_t key, float& distance, GatherCounts& counts) const;
+  /// Radiance arriving along rays that counts as indirect at their starts, and the distance to what each meets
+  /// first (infinity: nothing). keys: random numbers, one for each ray. Fastest if rays that follow one another
+  /// leave one place into like directions. All spans are of one length.
+  void radiance(std::span<const Ray> rays, std::span<const std::uint64_t> keys, std::span<Rgb> radiance,
+                std::span<float> distance, GatherCounts& counts) const;
+  /// The order in which gather() follows the cells (numbers j N_phi + k): neighbours in it are neighbours on the
+  /// hemisphere.
+  std::span<const std::uint32_t> cell_order() const { return cell_order_; }
 
  private:
-  Rgb reflected(const SurfacePoint& hit, Vec3 wo, float distance, std::uint64_t key, int depth, GatherCounts& counts) const;
+  struct Met;
+  Met meet(const SurfacePoint& hit, Vec3 wo, float distance) const;
+  Rgb reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts) const;
+  Rgb reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key, int depth,
+                       GatherCounts& counts) const;
+  Rgb near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key,
+                      int depth, GatherCounts& counts) const;
 
   const Tracer& tracer_;
   const Lights& lights_;
@@ -60,6 +75,8 @@ class FinalGather {
   GatherOptions options_;
   int rings_ = 0, sectors_ = 0;
   std::vector<float> ring_tangent_;   ///< T_j
+  std::vector<std::uint32_t> cell_order_;
+  std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: seen from behind, from in front
 };
 
 }  // namespace tempolux

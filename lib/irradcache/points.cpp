@@ -20,7 +20,7 @@ constexpr float kCellsPerSpacing = 1.4f;
 constexpr float kMostCells = 1 << 20;     ///< per axis: more than coordinates can tell apart
 constexpr float kNeighbourhood = 2.5f;    ///< spacings: how far the neighbours are that a point must reach
 constexpr float kCellDiagonal = 1.4142f;  ///< of a cell's section along a surface
-constexpr std::uint32_t kSeparated = 1;   ///< of an answer, else 2 x (0: none; point + 1)
+constexpr std::uint32_t kSeparated = 1;   ///< of an answer: its hits are answered one by one
 
 /// 3 bits of each octahedral coordinate; n need not be encoded to the last bit for that.
 std::uint32_t normal_bin(Vec3 n) {
@@ -51,6 +51,17 @@ Vec3 bin_direction(std::uint32_t bin) {
 
 }  // namespace
 
+/// The points nearest to the middle of a cell: among them its hits look for one that they can reach. Not
+/// initialised: the memory of crowds that no hit asks for is never touched.
+struct PointCrowd {
+  static constexpr int kMost = 10;
+  int count, same;  ///< the first `same` of `count` are of the cell's object
+  float x[kMost], y[kMost], z[kMost];
+  std::uint32_t point[kMost];
+};
+
+PointLookup::~PointLookup() = default;
+
 PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing,
                          ReachTest reach)
     : points_(points),
@@ -62,13 +73,14 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
     const IrradiancePoint& p = points[i];
     as_photons[i].position = {p.position.x, p.position.y, p.position.z};
     as_photons[i].normal = formats::encode_normal({p.normal.x, p.normal.y, p.normal.z});
+    as_photons[i].object = std::uint16_t(p.object);  // its lower half will do to prefer a point
   }
   index_ = PhotonIndex(as_photons);
   for (std::size_t i = 0; i < points.size(); ++i) {
     lights_.push_back({points[i].total(), points[i].radius, points[i].caustic, std::uint32_t(i)});
     objects_ = std::max(objects_, points[i].object + 2);  // one more for all objects without points
   }
-  value_bits_ = int(std::bit_width(2 * (points.size() + 1)));
+  value_bits_ = int(std::bit_width(2 * (points.size() + 1)));  // a point + 1 or a crowd + 1, and kSeparated
   const Vec3 extent = bounds.empty() ? Vec3{1, 1, 1} : bounds.upper - bounds.lower;
   cell_ = std::max(spacing / kCellsPerSpacing, max_component(extent) / kMostCells);
   for (double keys = INFINITY; !(keys < std::ldexp(1.0, 63 - value_bits_)); cell_ *= 1.1f) {
@@ -83,7 +95,9 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
   const std::size_t capacity = std::bit_ceil(std::max<std::size_t>(1 << 12, 4 * points.size()));
   mask_ = capacity - 1;
   entries_ = std::make_unique<std::atomic<std::uint64_t>[]>(capacity);
-  if (reach_) separated_ = std::make_unique<std::atomic<std::uint8_t>[]>(points.size());
+  if (!reach_) return;
+  separated_ = std::make_unique<std::atomic<std::uint8_t>[]>(points.size());
+  crowds_ = std::make_unique_for_overwrite<PointCrowd[]>(points.size());
 }
 
 /// The nearest point of the object among the nearest few, else the nearest of all.
@@ -93,19 +107,25 @@ std::uint32_t PointLookup::search(Vec3 position, Vec3 normal, std::uint32_t obje
   query.point = position;
   query.normal = normal;
   query.min_cos = kSameSide;
-  index_.find_nearest(query, kCandidates, found);
+  const auto same = [&](std::uint32_t i) { return index_.object(i) == std::uint16_t(object); };
+  index_.find_nearest(query, 1, found);
   if (found.count() == 0) return 0;
+  const std::uint32_t nearest = found.photons()[0];
+  if (same(nearest)) return index_.source(nearest) + 1;
+  index_.find_nearest(query, kCandidates, found);
   found.sort_by_distance();
   for (std::uint32_t i : found.photons())
-    if (points_[index_.source(i)].object == object) return index_.source(i) + 1;
-  return index_.source(found.photons()[0]) + 1;
+    if (same(i)) return index_.source(i) + 1;
+  return index_.source(nearest) + 1;
 }
 
-/// The answer of a cell: 0 or point + 1, doubled, and kSeparated if its hits are to be answered one by one.
+/// The answer of a cell, doubled: 0 or point + 1; or with kSeparated, if its hits are to be answered one by one,
+/// 0 or crowd + 1.
 std::uint32_t PointLookup::search_cell(Vec3 middle, std::uint32_t bin, std::uint32_t object) const {
-  const std::uint32_t found = search(middle, bin_direction(bin), object);
-  const bool one_by_one = reach_ && found && separated(found - 1) && cut(middle, found - 1);
-  return 2 * found + (one_by_one ? kSeparated : 0);
+  const Vec3 direction = bin_direction(bin);
+  const std::uint32_t found = search(middle, direction, object);
+  if (!reach_ || !found || !separated(found - 1) || !cut(middle, found - 1)) return 2 * found;
+  return 2 * remember_crowd(middle, direction, object) + kSeparated;
 }
 
 /// Is there a point that may be the nearest to some place of a cell, and `nearest` cannot reach it?
@@ -118,10 +138,10 @@ bool PointLookup::cut(Vec3 middle, std::uint32_t nearest) const {
   query.min_cos = kSameSide;
   query.max_radius = length(point.position - middle) + kCellDiagonal * cell_;
   index_.find_within(query, found);
-  for (std::uint32_t i : found.photons()) {
-    const IrradiancePoint& other = points_[index_.source(i)];
-    if (&other != &point && !reach_(point.position, point.normal, other.position, other.normal)) return true;
-  }
+  for (std::uint32_t i : found.photons())
+    if (!(index_.position(i) == point.position) &&
+        !reach_(point.position, point.normal, index_.position(i), normalize(index_.normal(i))))
+      return true;
   return false;
 }
 
@@ -138,20 +158,69 @@ bool PointLookup::separated(std::uint32_t i) const {
   index_.find_within(query, found);
   bool all = true;
   for (std::size_t n = 0; all && n < found.count(); ++n) {
-    const IrradiancePoint& other = points_[index_.source(found.photons()[n])];
-    all = &other == &point || reach_(point.position, point.normal, other.position, other.normal);
+    const std::uint32_t other = found.photons()[n];  // from the index: in order, the points are not
+    all = index_.position(other) == point.position ||
+          reach_(point.position, point.normal, index_.position(other), normalize(index_.normal(other)));
   }
   separated_[i].store(all ? 1 : 2, std::memory_order_relaxed);
   return !all;
 }
 
-/// The nearest point that can be reached from the hit, one of the same object first; if there is none, as
-/// search().
-std::uint32_t PointLookup::search_reachable(Vec3 position, Vec3 normal, std::uint32_t object) const {
+/// The points near the middle of a cell, nearest first, those of the object before the others; 0 or crowd + 1.
+std::uint32_t PointLookup::remember_crowd(Vec3 middle, Vec3 normal, std::uint32_t object) const {
+  if (crowd_count_.load(std::memory_order_relaxed) >= points_.size()) return 0;
+  const std::uint32_t number = crowd_count_.fetch_add(1, std::memory_order_relaxed);
+  if (number >= points_.size()) return 0;
   thread_local NeighbourList found;
   PhotonQuery query;
-  query.point = position;
+  query.point = middle;
   query.normal = normal;
+  query.min_cos = kSameSide;
+  index_.find_nearest(query, PointCrowd::kMost, found);
+  found.sort_by_distance();
+  PointCrowd& crowd = crowds_[number];
+  crowd = {};
+  for (bool same : {true, false})
+    for (std::uint32_t i : found.photons()) {
+      const IrradiancePoint& point = points_[index_.source(i)];
+      if ((point.object == object) != same) continue;
+      const int n = crowd.count++;
+      crowd.x[n] = point.position.x;
+      crowd.y[n] = point.position.y;
+      crowd.z[n] = point.position.z;
+      crowd.point[n] = index_.source(i);
+      crowd.same += same;
+    }
+  return number + 1;
+}
+
+/// The nearest that can be reached from the hit, one of the same object first; 0 or point + 1.
+std::uint32_t PointLookup::reachable_in(const PointCrowd& crowd, const Question& q) const {
+  float distance2[PointCrowd::kMost];
+  for (int i = 0; i < PointCrowd::kMost; ++i)
+    distance2[i] = length2(Vec3{crowd.x[i], crowd.y[i], crowd.z[i]} - q.position);
+  for (const auto& [first, last] : {std::pair{0, crowd.same}, std::pair{crowd.same, crowd.count}})
+    for (int tries = first; tries < last; ++tries) {
+      int nearest = first;
+      float least = distance2[first];
+      for (int i = first + 1; i < last; ++i) {
+        const bool nearer = distance2[i] < least;
+        least = nearer ? distance2[i] : least;
+        nearest = nearer ? i : nearest;
+      }
+      const IrradiancePoint& point = points_[crowd.point[nearest]];
+      if (reach_(q.position, q.normal, point.position, point.normal)) return crowd.point[nearest] + 1;
+      distance2[nearest] = INFINITY;
+    }
+  return 0;
+}
+
+/// The same without a crowd, or where none of it can be reached; in the end as search().
+std::uint32_t PointLookup::search_reachable(const Question& q) const {
+  thread_local NeighbourList found;
+  PhotonQuery query;
+  query.point = q.position;
+  query.normal = q.normal;
   query.min_cos = kSameSide;
   for (int candidates : {kCandidates, kMoreCandidates}) {
     index_.find_nearest(query, candidates, found);
@@ -159,42 +228,59 @@ std::uint32_t PointLookup::search_reachable(Vec3 position, Vec3 normal, std::uin
     for (bool same : {true, false})
       for (std::uint32_t i : found.photons()) {
         const IrradiancePoint& point = points_[index_.source(i)];
-        if ((point.object == object) == same && reach_(position, normal, point.position, point.normal))
+        if ((point.object == q.object) == same && reach_(q.position, q.normal, point.position, point.normal))
           return index_.source(i) + 1;
       }
   }
-  return search(position, normal, object);
+  return search(q.position, q.normal, q.object);
 }
 
-const PointLight* PointLookup::find(Vec3 position, Vec3 normal, std::uint32_t object) const {
+PointLookup::Question PointLookup::ask(Vec3 position, Vec3 normal, std::uint32_t object) const {
   const Vec3 local = (position - lower_) * inverse_cell_;
   const auto coordinate = [this](float x, std::size_t axis) {
     return x > 0 ? std::min(size_[axis] - 1, std::uint32_t(std::min(x, 2 * kMostCells))) : 0u;  // NaN: 0
   };
-  const std::uint32_t x = coordinate(local.x, 0), y = coordinate(local.y, 1), z = coordinate(local.z, 2);
-  const std::uint32_t bin = normal_bin(normal);
-  const std::uint64_t cell = (std::uint64_t(z) * size_[1] + y) * size_[0] + x;
-  const std::uint64_t key =
-      (cell * objects_ + std::min(object, objects_ - 1)) * (kNormalBins * kNormalBins) + bin + 1;
-  const auto answer = [&](std::uint32_t value) -> const PointLight* {
-    const std::uint32_t found = value & kSeparated ? search_reachable(position, normal, object) : value / 2;
-    return found ? &lights_[found - 1] : nullptr;
+  Question q{position, normal, object, normal_bin(normal), {coordinate(local.x, 0), coordinate(local.y, 1), coordinate(local.z, 2)}, 0};
+  const std::uint64_t cell = (std::uint64_t(q.cell[2]) * size_[1] + q.cell[1]) * size_[0] + q.cell[0];
+  q.key = (cell * objects_ + std::min(object, objects_ - 1)) * (kNormalBins * kNormalBins) + q.bin + 1;
+  __builtin_prefetch(&entries_[mix64(q.key) & mask_]);
+  return q;
+}
+
+const PointLight* PointLookup::read(const Question& q, Answer answer) const {
+  std::uint32_t found = answer.value / 2;
+  if (answer.value & kSeparated) {
+    found = found ? reachable_in(crowds_[found - 1], q) : 0;
+    if (!found) found = search_reachable(q);
+  }
+  return found ? &lights_[found - 1] : nullptr;
+}
+
+PointLookup::Answer PointLookup::answer(const Question& q) const {
+  const auto fetched = [&](std::uint32_t value) {
+    if (value & kSeparated && value / 2) {
+      const char* crowd = reinterpret_cast<const char*>(&crowds_[value / 2 - 1]);
+      for (std::size_t line = 0; line < sizeof(PointCrowd); line += 64) __builtin_prefetch(crowd + line);
+    } else if (value / 2) {
+      __builtin_prefetch(&lights_[value / 2 - 1]);
+    }
+    return Answer{value};
   };
 
   const std::uint64_t value_mask = (std::uint64_t(1) << value_bits_) - 1;
-  std::size_t slot = mix64(key) & mask_;
+  std::size_t slot = mix64(q.key) & mask_;
   std::atomic<std::uint64_t>* empty = nullptr;
   for (int probe = 0; probe < kMaxProbes && !empty; ++probe, slot = (slot + 1) & mask_) {
-    const std::uint64_t there = entries_[slot].load(std::memory_order_relaxed);
-    if (there >> value_bits_ == key) return answer(std::uint32_t(there & value_mask));
+    const std::uint64_t there = entries_[slot].load(std::memory_order_acquire);
+    if (there >> value_bits_ == q.key) return fetched(std::uint32_t(there & value_mask));
     if (there == 0) empty = &entries_[slot];
   }
-  const Vec3 middle = lower_ + Vec3{float(x) + 0.5f, float(y) + 0.5f, float(z) + 0.5f} * cell_;
-  const std::uint32_t value = search_cell(middle, bin, object);
+  const Vec3 middle = lower_ + Vec3{float(q.cell[0]) + 0.5f, float(q.cell[1]) + 0.5f, float(q.cell[2]) + 0.5f} * cell_;
+  const std::uint32_t value = search_cell(middle, q.bin, q.object);
   // Another thread may have taken the place meanwhile: then this cell is looked up again next time.
   std::uint64_t none = 0;
-  if (empty) empty->compare_exchange_strong(none, key << value_bits_ | value, std::memory_order_relaxed);
-  return answer(value);
+  if (empty) empty->compare_exchange_strong(none, q.key << value_bits_ | value, std::memory_order_release);
+  return fetched(value);
 }
 
 }  // namespace tempolux

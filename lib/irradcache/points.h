@@ -53,15 +53,37 @@ class PointLookup {
   /// Cells are larger where more than 2^63 numbers of cells, directions and objects would be needed.
   PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing,
               ReachTest reach = {});
+  ~PointLookup();
 
-  /// nullptr if no point faces this way. normal: unit, on the lit side. Thread-safe.
-  const PointLight* find(Vec3 position, Vec3 normal, std::uint32_t object) const;
+  /// A look-up in three steps. Memory is slow: ask for several places, then take the answers, then read them;
+  /// each step fetches what the next needs.
+  struct Question {
+    Vec3 position, normal;
+    std::uint32_t object = 0, bin = 0;
+    std::array<std::uint32_t, 3> cell{};
+    std::uint64_t key = 0;
+  };
+  struct Answer {
+    std::uint32_t value = 0;
+  };
+  /// normal: unit, on the lit side. All thread-safe.
+  Question ask(Vec3 position, Vec3 normal, std::uint32_t object) const;
+  Answer answer(const Question& question) const;
+  /// nullptr if no point faces this way.
+  const PointLight* read(const Question& question, Answer answer) const;
+  /// The three at once.
+  const PointLight* find(Vec3 position, Vec3 normal, std::uint32_t object) const {
+    const Question question = ask(position, normal, object);
+    return read(question, answer(question));
+  }
   std::size_t size() const { return points_.size(); }
 
  private:
   std::uint32_t search(Vec3 position, Vec3 normal, std::uint32_t object) const;
   std::uint32_t search_cell(Vec3 middle, std::uint32_t bin, std::uint32_t object) const;
-  std::uint32_t search_reachable(Vec3 position, Vec3 normal, std::uint32_t object) const;
+  std::uint32_t search_reachable(const Question& question) const;
+  std::uint32_t remember_crowd(Vec3 middle, Vec3 normal, std::uint32_t object) const;
+  std::uint32_t reachable_in(const struct PointCrowd& crowd, const Question& question) const;
   bool separated(std::uint32_t point) const;
   bool cut(Vec3 middle, std::uint32_t nearest) const;
 
@@ -76,6 +98,9 @@ class PointLookup {
   int value_bits_ = 0;
   /// Number of cell, direction and object + 1, above value_bits_ bits of answer; 0: empty.
   mutable std::unique_ptr<std::atomic<std::uint64_t>[]> entries_;
+  /// Of cells whose hits are answered one by one: the points near by.
+  std::unique_ptr<struct PointCrowd[]> crowds_;
+  mutable std::atomic<std::uint32_t> crowd_count_{0};
   std::vector<PointLight> lights_;                                  ///< by point
   mutable std::unique_ptr<std::atomic<std::uint8_t>[]> separated_;  ///< by point: 0 not known, 1 no, 2 yes
 };

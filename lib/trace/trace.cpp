@@ -41,8 +41,10 @@ struct Tree {
   /// within 3 ulp and the box is 2^-18 larger than its content; 0 x infinity (a ray in a face's plane) is NaN, which
   /// min and max drop as their second argument.
   bool may_hit(const RTCRay& ray) const {
-    const Vec3 origin{ray.org_x, ray.org_y, ray.org_z}, inverse{1 / ray.dir_x, 1 / ray.dir_y, 1 / ray.dir_z};
-    float enter = ray.tnear, leave = ray.tfar;
+    return may_hit({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z}, ray.tnear, ray.tfar);
+  }
+  bool may_hit(Vec3 origin, Vec3 direction, float enter, float leave) const {
+    const Vec3 inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
     for (int axis = 0; axis < 3; ++axis) {
       const float a = (bounds.lower[axis] - origin[axis]) * inverse[axis];
       const float b = (bounds.upper[axis] - origin[axis]) * inverse[axis];
@@ -89,6 +91,63 @@ bool intersect_tree(const Tree& tree, RTCRayHit& query, Hit& hit) {
   hit = {query.ray.tfar, tree.first_surface + query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
   return true;
 }
+
+constexpr std::size_t kPacket = 8;
+
+/// Eight rays as Embree takes them. Left out (valid 0) are those beyond the end of a list and unusable ones, whose
+/// numbers must not come near Embree.
+struct Packet {
+  RTCRayHit8 query;
+  alignas(32) int valid[kPacket];
+
+  bool may_hit(const Tree& tree, std::size_t i) const {
+    return query.ray.tfar[i] > query.ray.tnear[i] &&
+           tree.may_hit({query.ray.org_x[i], query.ray.org_y[i], query.ray.org_z[i]},
+                        {query.ray.dir_x[i], query.ray.dir_y[i], query.ray.dir_z[i]}, query.ray.tnear[i],
+                        query.ray.tfar[i]);
+  }
+
+  void set(std::size_t i, const Ray& ray, bool use) {
+    query.ray.org_x[i] = use ? ray.origin.x : 0;
+    query.ray.org_y[i] = use ? ray.origin.y : 0;
+    query.ray.org_z[i] = use ? ray.origin.z : 0;
+    query.ray.dir_x[i] = use ? ray.direction.x : 0;
+    query.ray.dir_y[i] = use ? ray.direction.y : 0;
+    query.ray.dir_z[i] = use ? ray.direction.z : 1;
+    query.ray.tnear[i] = use ? ray.t_min : 0;
+    query.ray.tfar[i] = use ? ray.t_max : 0;
+    query.ray.time[i] = 0;
+    query.ray.mask[i] = 0xffffffffu;
+    query.ray.id[i] = query.ray.flags[i] = 0;
+    valid[i] = use ? -1 : 0;
+  }
+
+  /// Hits with this tree that are nearer than those found before; the rays are shortened to them. everywhere:
+  /// the tree fills the scene, so that asking whether a ray may hit it would be a waste.
+  void intersect(const Tree& tree, bool everywhere, Hit* hits) {
+    bool any = false;
+    alignas(32) int active[kPacket];
+    float limit[kPacket];
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      limit[i] = query.ray.tfar[i];
+      active[i] = valid[i] && (everywhere || may_hit(tree, i)) ? -1 : 0;
+      any |= active[i] != 0;
+      query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    if (!any) return;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect8(active, tree.scene, &context, &query);
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      if (!active[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      if (hits[i].surface != kNone && !(query.ray.tfar[i] < limit[i])) continue;
+      hits[i] = {query.ray.tfar[i], tree.first_surface + query.hit.geomID[i], query.hit.primID[i],
+                 query.hit.u[i], query.hit.v[i]};
+    }
+  }
+};
 
 }  // namespace
 
@@ -183,6 +242,23 @@ bool Tracer::intersect(const Ray& ray, Hit& hit) const {
     }
   }
   return found;
+}
+
+void Tracer::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+  TEMPOLUX_CHECK(rays.size() == hits.size());
+  for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+    const std::size_t count = std::min(kPacket, rays.size() - first);
+    Packet packet;
+    for (std::size_t i = 0; i < kPacket; ++i) {
+      const bool use = i < count && usable(rays[first + i]);
+      packet.set(i, rays[first + (i < count ? i : 0)], use);
+      if (i < count && !use) impl_->refused.fetch_add(1, std::memory_order_relaxed);
+    }
+    Hit found[kPacket];
+    if (impl_->fixed.exists()) packet.intersect(impl_->fixed, true, found);
+    if (impl_->moving.exists()) packet.intersect(impl_->moving, false, found);
+    std::copy(found, found + count, hits.begin() + std::ptrdiff_t(first));
+  }
 }
 
 bool Tracer::occluded(const Ray& ray) const {

@@ -1,5 +1,9 @@
-// Gather rays with their look-ups against bare rtcIntersect1 on the same rays: how much of the time of final
-// gathering is Embree's. The sides alternate; medians. JSON on stdout.
+// Gather rays with their look-ups against bare rtcIntersect1: how much of the time of final gathering is Embree's.
+//
+// The bare side traces the same rays from the records; and for each hit that FinalGather finds too near to read a point,
+// as it does, one more ray from there and one shadow ray (rtcOccluded1). "bare_over_gather" compares the whole,
+// "first_over_gather" leaves those further rays out of the bare side alone. Rays that ask whether a point can be
+// reached count as look-up. The sides alternate; medians. JSON on stdout.
 //
 //     gather_rays SCENE.glb [--frame F] [--photons N] [--records N] [--rays N]
 #include <embree3/rtcore.h>
@@ -9,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,8 +30,8 @@ namespace {
 
 struct Options {
   std::string scene;
-  int frame = 10, records = 2000, rays = 800;
-  std::uint64_t photons = 100000;
+  int frame = 10, records = 3000, rays = 500;
+  std::uint64_t photons = 200000;
 };
 
 double cpu_seconds() {
@@ -38,6 +43,19 @@ double cpu_seconds() {
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
+}
+
+RTCRay to_embree(const Ray& ray) {
+  RTCRay query{};
+  query.org_x = ray.origin.x;
+  query.org_y = ray.origin.y;
+  query.org_z = ray.origin.z;
+  query.dir_x = ray.direction.x;
+  query.dir_y = ray.direction.y;
+  query.dir_z = ray.direction.z;
+  query.tfar = ray.t_max;
+  query.mask = 0xffffffffu;
+  return query;
 }
 
 /// All triangles in one tree, as robust as Tracer's.
@@ -60,22 +78,28 @@ RTCScene bare_tree(const SceneFrame& frame, RTCDevice device) {
   return tree;
 }
 
-/// Cosine rays from points of the lit sides, those of one place one after the other.
+/// Stratified cosine rays from points of the lit sides, those of one place one after the other, in the order in which
+/// FinalGather follows them.
 std::vector<Ray> gather_rays(const Tracer& tracer, const std::vector<IrradiancePoint>& points,
-                             const Options& options) {
+                             const FinalGather& gather, const Options& options) {
   std::vector<Ray> rays;
   std::vector<const IrradiancePoint*> lit;
   for (const IrradiancePoint& point : points)
     if (max_component(point.total()) > 0) lit.push_back(&point);
   const float offset = Reach(tracer).offset();
+  int rings, sectors;
+  gather_strata(options.rays, rings, sectors);
   for (int r = 0; r < options.records && !lit.empty(); ++r) {
     const IrradiancePoint& from = *lit[std::size_t(r) * lit.size() / std::size_t(options.records)];
     const Frame frame(from.normal);
     const PathRandom random(1, std::uint64_t(r));
-    for (int i = 0; i < options.rays; ++i)
-      rays.push_back({from.position + from.normal * offset,
-                      frame.to_world(sample_hemisphere_cos(random.get2(std::uint32_t(i), Purpose::test))), 0,
-                      INFINITY});
+    for (const std::uint32_t cell : gather.cell_order()) {
+      const Vec2 u = random.get2(cell, Purpose::test);
+      const float sin2 = (float(int(cell) / sectors) + u.x) / float(rings);
+      const float phi = 2 * kPi * (float(int(cell) % sectors) + u.y) / float(sectors);
+      const Vec3 local{std::sqrt(sin2) * std::cos(phi), std::sqrt(sin2) * std::sin(phi), std::sqrt(1 - sin2)};
+      rays.push_back({from.position + from.normal * offset, frame.to_world(local), 0, INFINITY});
+    }
   }
   return rays;
 }
@@ -83,15 +107,7 @@ std::vector<Ray> gather_rays(const Tracer& tracer, const std::vector<IrradianceP
 double time_bare(RTCScene tree, const std::vector<Ray>& rays, double& distance) {
   const double start = cpu_seconds();
   for (const Ray& ray : rays) {
-    RTCRayHit query{};
-    query.ray.org_x = ray.origin.x;
-    query.ray.org_y = ray.origin.y;
-    query.ray.org_z = ray.origin.z;
-    query.ray.dir_x = ray.direction.x;
-    query.ray.dir_y = ray.direction.y;
-    query.ray.dir_z = ray.direction.z;
-    query.ray.tfar = INFINITY;
-    query.ray.mask = 0xffffffffu;
+    RTCRayHit query{to_embree(ray), {}};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -101,12 +117,51 @@ double time_bare(RTCScene tree, const std::vector<Ray>& rays, double& distance) 
   return cpu_seconds() - start;
 }
 
+double time_bare_shadow(RTCScene tree, const std::vector<Ray>& rays, double& distance) {
+  const double start = cpu_seconds();
+  for (const Ray& ray : rays) {
+    RTCRay query = to_embree(ray);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(tree, &context, &query);
+    distance += query.tfar < 0;
+  }
+  return cpu_seconds() - start;
+}
+
+/// What follows at near hits: cosine rays and shadow rays from the hits of every n-th ray.
+struct FurtherRays {
+  std::vector<Ray> cosine, shadow;
+
+  FurtherRays(const Tracer& tracer, const Lights& lights, const std::vector<Ray>& rays, double share) {
+    for (double next = 0; share > 0 && next < double(rays.size()); next += 1 / share) {
+      const std::size_t i = std::size_t(next);
+      Hit hit;
+      if (!tracer.intersect(rays[i], hit)) continue;
+      const SurfacePoint point = tracer.surface_point(hit);
+      const Vec3 normal = dot(point.normal_geometric, rays[i].direction) > 0 ? -point.normal_geometric
+                                                                            : point.normal_geometric;
+      const PathRandom random(2, i);
+      cosine.push_back(spawn_ray(point, Frame(normal).to_world(sample_hemisphere_cos(random.get2(0, Purpose::test)))));
+      LightSample light;
+      if (lights.sample(point.position, normal, random.get2(1, Purpose::test), light) && dot(light.wi, normal) > 0)
+        shadow.push_back(spawn_shadow_ray(point, light.position, light.position_offset));
+    }
+  }
+};
+
 double time_gather(const FinalGather& gather, const std::vector<Ray>& rays, GatherCounts& counts,
                    double& sum) {
+  std::vector<std::uint64_t> keys(rays.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = mix64(i);
+  const std::size_t each = gather.cell_order().size();
+  std::vector<Rgb> radiance(each);
+  std::vector<float> distance(each);
   const double start = cpu_seconds();
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    float distance;
-    sum += double(gather.radiance(rays[i], i, distance, counts).g);
+  for (std::size_t first = 0; first < rays.size(); first += each) {
+    gather.radiance(std::span(rays).subspan(first, each), std::span(keys).subspan(first, each), radiance, distance,
+                    counts);
+    for (const Rgb& l : radiance) sum += double(l.g);
   }
   return cpu_seconds() - start;
 }
@@ -136,27 +191,34 @@ void run(const Options& options) {
 
   RTCDevice device = rtcNewDevice(nullptr);
   RTCScene tree = bare_tree(frame, device);
-  const std::vector<Ray> rays = gather_rays(tracer, points, options);
-  std::vector<double> bare, with_lookup, first, ratio;
+  GatherOptions gather_options;
+  gather_options.rays = options.rays;
+  const PointLookup first_lookup(points, frame.bounds, point_spacing(frame, point_options), point_reach(tracer));
+  const std::vector<Ray> rays =
+      gather_rays(tracer, points, FinalGather(tracer, lights, first_lookup, gather_options), options);
   double distance = 0, sum = 0;
   GatherCounts counts;
+  time_gather(FinalGather(tracer, lights, first_lookup, gather_options), rays, counts, sum);
+  const double per_ray = double(counts.rays) / double(rays.size());
+  const FurtherRays further(tracer, lights, rays, double(counts.near_hits) / double(rays.size()));
+  std::vector<double> bare, bare_first, with_lookup, filling, ratio, ratio_first;
   for (int repeat = 0; repeat < 5; ++repeat) {
     const PointLookup lookup(points, frame.bounds, point_spacing(frame, point_options), point_reach(tracer));
-    const FinalGather gather(tracer, lights, lookup, {});
-    bare.push_back(time_bare(tree, rays, distance));
-    first.push_back(time_gather(gather, rays, counts, sum));  // fills the look-up's table
-    counts = {};
+    const FinalGather gather(tracer, lights, lookup, gather_options);
+    bare_first.push_back(time_bare(tree, rays, distance));
+    bare.push_back(bare_first.back() + time_bare(tree, further.cosine, distance) +
+                   time_bare_shadow(tree, further.shadow, distance));
+    filling.push_back(time_gather(gather, rays, counts, sum));  // fills the look-up's table
     with_lookup.push_back(time_gather(gather, rays, counts, sum));
-    ratio.push_back(bare.back() / first.back());
+    ratio.push_back(bare.back() / filling.back());
+    ratio_first.push_back(bare_first.back() / filling.back());
   }
   std::printf(
-      "{\"rays\": %zu, \"points\": %zu, \"photons\": %zu, \"estimate_points_cpu_s\": %.4f, \"bare_cpu_s\": "
-      "%.4f, "
-      "\"gather_cpu_s\": %.4f, \"gather_again_cpu_s\": %.4f, \"bare_over_gather\": %.3f, "
-      "\"rays_per_gather_ray\": %.3f, \"mean_distance_m\": %.3f, \"mean_radiance\": %.5f}\n",
-      rays.size(), points.size(), photons.size(), estimate, median(bare), median(first), median(with_lookup),
-      median(ratio), double(counts.rays) / double(rays.size()), distance / double(5 * rays.size()),
-      sum / double(10 * rays.size()));
+      "{\"rays\": %zu, \"points\": %zu, \"photons\": %zu, \"estimate_points_cpu_s\": %.4f, \"bare_cpu_s\": %.4f, "
+      "\"bare_first_cpu_s\": %.4f, \"gather_cpu_s\": %.4f, \"gather_again_cpu_s\": %.4f, \"bare_over_gather\": %.3f, "
+      "\"first_over_gather\": %.3f, \"rays_per_gather_ray\": %.3f, \"mean_distance_m\": %.3f}\n",
+      rays.size(), points.size(), photons.size(), estimate, median(bare), median(bare_first), median(filling),
+      median(with_lookup), median(ratio), median(ratio_first), per_ray, distance / double(5 * rays.size()));
   rtcReleaseScene(tree);
   rtcReleaseDevice(device);
 }

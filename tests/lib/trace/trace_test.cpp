@@ -58,6 +58,38 @@ TEST(Tracer, NearestHitOfBothTreesAgreesWithBruteForce) {
   EXPECT_LE(differing, 2);
 }
 
+TEST(Tracer, ManyRaysAtOnceMeetWhatEachMeetsAlone) {
+  HandMadeScene scene;
+  for (std::uint32_t i = 0; i < 60; ++i)
+    scene.add({random_point(i, 0, 4), random_point(i, 1, 4), random_point(i, 2, 4)}, {{0, 1, 2}}, matte(Rgb(0.5f)), i % 2 == 1);
+  const Tracer tracer(scene.frame());
+  std::vector<Ray> rays;
+  for (std::uint32_t i = 0; i < 5003; ++i)  // no multiple of a packet
+    rays.push_back({random_point(i / 50, 5, 6), normalize(random_point(i, 6, 1)), 0, i % 7 ? INFINITY : 1.5f});
+  for (std::uint32_t i = 3; i < 5003; i += 100) rays[i].direction.y = NAN;
+  std::vector<Hit> hits(rays.size());
+  const std::uint64_t refused = tracer.refused_ray_count();
+  tracer.intersect(rays, hits);
+  EXPECT_EQ(tracer.refused_ray_count() - refused, 50u);
+  int found = 0, differing = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Hit alone;
+    tracer.intersect(rays[i], alone);
+    if (hits[i].surface != alone.surface) {  // an edge: rounding decides
+      ++differing;
+      continue;
+    }
+    if (alone.surface == kNone) continue;
+    ++found;
+    EXPECT_EQ(hits[i].triangle, alone.triangle);
+    EXPECT_NEAR(hits[i].t, alone.t, 1e-5f * (1 + alone.t));
+    EXPECT_NEAR(hits[i].u, alone.u, 1e-4f);
+    EXPECT_NEAR(hits[i].v, alone.v, 1e-4f);
+  }
+  EXPECT_GT(found, 1000);
+  EXPECT_LE(differing, 2);
+}
+
 TEST(Tracer, TheStaticSurfaceWinsATie) {
   HandMadeScene scene;
   scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.1f)), true);
@@ -66,6 +98,10 @@ TEST(Tracer, TheStaticSurfaceWinsATie) {
   Hit hit;
   ASSERT_TRUE(tracer.intersect({{0.25f, 1, 0.125f}, {0, -1, 0}, 0, INFINITY}, hit));
   EXPECT_EQ(tracer.surface_point(hit).object, 1u);
+  const Ray rays[2] = {{{0.25f, 1, 0.125f}, {0, -1, 0}}, {{-0.25f, 1, 0.25f}, {0, -1, 0}}};
+  Hit hits[2];
+  tracer.intersect(rays, hits);
+  for (const Hit& one : hits) EXPECT_EQ(tracer.surface_point(one).object, 1u);
 }
 
 TEST(Tracer, RaysThatAreNotFiniteAreMissesAndCounted) {
