@@ -139,6 +139,9 @@ void Tool::common_options(unsigned flags) {
         ->type_name("FRAMES")
         ->capture_default_str()
         ->check(number_between(1, 1e6, "from 1 to 1000000"));
+    app.add_option("--animation", common.animation,
+                   "play only this animation of the scene; all play together if not given")
+        ->type_name("NAME");
     app.add_option("--light-units", common.light_units,
                    "raw: lights as they stand; spec: point, spot and sun lights divided by 683 lm/W")
         ->type_name("UNITS")

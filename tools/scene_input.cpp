@@ -9,6 +9,7 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   const Common& common = tool.common();
   GltfOptions options;
   options.allow_outside = common.allow_outside;
+  options.animation = common.animation;
   scene_ = load_gltf(path, options);
   if (needs & light) require_lights(scene_);
   if (needs & a_camera) scene_.camera_node(common.camera);
@@ -17,7 +18,8 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   time_.fps = common.fps;
   time_.segment_length = common.segment_length;
   time_.light_units = common.light_units;
-  if (common.light_units == "spec") tool.say(path + ": punctual lights divided by 683");
+  tool.say(path + ": light units " + common.light_units + ": punctual lights " +
+           (common.light_units == "spec" ? "divided by 683" : "as they stand, factor 1"));
 }
 
 void SceneInput::enter_segment(int frame) {

@@ -38,7 +38,7 @@ enum ExitCode {
 };
 
 enum CommonOptions : unsigned {
-  uses_scene = 1,   ///< --fps --segment --light-units --state --allow-stale --allow-outside
+  uses_scene = 1,   ///< --fps --segment --animation --light-units --state --allow-stale --allow-outside
   uses_seed = 2,    ///< --seed --seed-mode
   uses_camera = 4,  ///< --camera
   uses_frames = 8,  ///< --frame N or --frames SPEC, into Common::frames
@@ -54,6 +54,7 @@ struct Common {
   double fps = 24;
   int segment_length = 24;
   std::string light_units = "raw";
+  std::string animation;  ///< name of the one to play; "": all
   std::string stats_file, dep_file;      ///< "": none
   std::vector<std::string> state_files;  ///< listed in the depfile instead of the scene's files
   std::uint64_t max_memory_bytes = 0;    ///< 0: no limit

@@ -41,51 +41,65 @@ Value slerp(const Value& a, Value b, double s) {
 }
 
 /// Cubic Hermite spline of glTF appendix C, written so that equal values without tangents stay exact.
-Value spline(const AnimationTrack& track, std::size_t key, double s, double dt_s) {
-  const Value &v0 = track.values[3 * key + 1], &out0 = track.values[3 * key + 2];
-  const Value &in1 = track.values[3 * key + 3], &v1 = track.values[3 * key + 4];
+void spline(const AnimationTrack& track, std::size_t key, double s, double dt_s, std::span<double> out) {
+  const std::size_t n = track.components;
+  const double* v0 = &track.values[(3 * key + 1) * n];
+  const double *out0 = v0 + n, *in1 = v0 + 2 * n, *v1 = v0 + 3 * n;
   const double s2 = s * s, s3 = s2 * s;
-  Value v;
-  for (std::size_t c = 0; c < 4; ++c)
-    v[c] = v0[c] + (v1[c] - v0[c]) * (3 * s2 - 2 * s3) +
-           dt_s * ((s3 - 2 * s2 + s) * out0[c] + (s3 - s2) * in1[c]);
-  return v;
+  for (std::size_t c = 0; c < n; ++c)
+    out[c] = v0[c] + (v1[c] - v0[c]) * (3 * s2 - 2 * s3) +
+             dt_s * ((s3 - 2 * s2 + s) * out0[c] + (s3 - s2) * in1[c]);
 }
+
+void set_rotation(std::span<double> out, const Value& q) { std::copy(q.begin(), q.end(), out.begin()); }
 
 bool same_time(double a, double b) { return float(a) == float(b); }
 
 bool has_two_values(const AnimationTrack& track) {
-  return std::any_of(track.values.begin(), track.values.end(),
-                     [&](const Value& v) { return v != track.values.front(); });
+  for (std::size_t i = track.components; i < track.values.size(); ++i)
+    if (track.values[i] != track.values[i - track.components]) return true;
+  return false;
 }
 
 }  // namespace
 
-Value evaluate(const AnimationTrack& track, double time_s) {
+void evaluate(const AnimationTrack& track, double time_s, std::span<double> out) {
   const std::vector<double>& times = track.times_s;
-  const auto value = [&](std::size_t key) {
-    return track.values[track.interpolation == Interpolation::cubic_spline ? 3 * key + 1 : key];
-  };
+  const std::size_t n = track.components;
+  const bool is_spline = track.interpolation == Interpolation::cubic_spline;
+  const auto value = [&](std::size_t key) { return &track.values[(is_spline ? 3 * key + 1 : key) * n]; };
+  const auto hold = [&](std::size_t key) { std::copy_n(value(key), n, out.begin()); };
   const std::size_t next = std::size_t(std::upper_bound(times.begin(), times.end(), time_s) - times.begin());
-  if (next < times.size() && same_time(times[next], time_s)) return value(next);
-  if (next == 0) return value(0);
+  if (next < times.size() && same_time(times[next], time_s)) return hold(next);
+  if (next == 0) return hold(0);
   const std::size_t key = next - 1;
   if (next == times.size() || same_time(times[key], time_s) || track.interpolation == Interpolation::step)
-    return value(key);
+    return hold(key);
   const double dt_s = times[next] - times[key], s = (time_s - times[key]) / dt_s;
+  const double *a = value(key), *b = value(next);
   const bool rotation = track.path == Path::rotation;
-  if (track.interpolation == Interpolation::linear)
-    return rotation ? slerp(value(key), value(next), s) : lerp(value(key), value(next), s);
-  const Value v = spline(track, key, s, dt_s);
-  return rotation ? unit(v) : v;
+  if (is_spline) {
+    spline(track, key, s, dt_s, out);
+    if (rotation) set_rotation(out, unit({out[0], out[1], out[2], out[3]}));
+  } else if (rotation) {
+    set_rotation(out, slerp({a[0], a[1], a[2], a[3]}, {b[0], b[1], b[2], b[3]}, s));
+  } else {
+    for (std::size_t c = 0; c < n; ++c) out[c] = a[c] + (b[c] - a[c]) * s;
+  }
+}
+
+Value evaluate(const AnimationTrack& track, double time_s) {
+  Value value{};
+  evaluate(track, time_s, value);
+  return value;
 }
 
 Animator::Animator(const Scene& scene)
     : scene_(&scene), tracks_(scene.nodes.size()), animated_(scene.nodes.size(), false) {
   for (const Animation& animation : scene.animations)
     for (const AnimationTrack& track : animation.tracks) {
-      tracks_[std::size_t(track.node)].push_back(&track);
-      if (has_two_values(track)) animated_[std::size_t(track.node)] = true;
+      tracks_[std::size_t(track.target)].push_back(&track);
+      if (has_two_values(track)) animated_[std::size_t(track.target)] = true;
     }
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
     const int parent = scene.nodes[n].parent;
@@ -99,6 +113,7 @@ Affine Animator::local(std::size_t n, double time_s) const {
   Vec3d translation = node.translation, scale = node.scale;
   std::array<double, 4> rotation = node.rotation;
   for (const AnimationTrack* track : tracks_[n]) {
+    if (track->path == Path::weights) continue;
     const Value v = evaluate(*track, time_s);
     if (track->path == Path::rotation)
       rotation = v;

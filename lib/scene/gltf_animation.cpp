@@ -1,4 +1,6 @@
-// lib/scene/gltf_animation.cpp -- animations as tracks: translation, rotation and scale of nodes.
+// lib/scene/gltf_animation.cpp -- animations as tracks: translation, rotation, scale and morph weights of nodes.
+#include <algorithm>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,21 +20,17 @@ Interpolation interpolation_of(const Import& import, const std::string& name, co
   import.fail(place + ".interpolation", "\"" + name + "\" is not LINEAR, STEP or CUBICSPLINE");
 }
 
-/// True and the path if the channel is one we play; what we do not play is noted.
-bool wanted(Import& import, const tinygltf::AnimationChannel& channel, const std::string& place, Path& path) {
+/// True and the path if the channel is of a node of the scene.
+bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, const std::string& place, Path& path) {
+  static const std::map<std::string, Path> paths{{"translation", Path::translation},
+                                                 {"rotation", Path::rotation},
+                                                 {"scale", Path::scale},
+                                                 {"weights", Path::weights}};
   const std::string& name = channel.target_path;
-  if (name == "weights") {
-    import.ignore("morph target animation");
-    return false;
-  }
-  if (name == "translation")
-    path = Path::translation;
-  else if (name == "rotation")
-    path = Path::rotation;
-  else if (name == "scale")
-    path = Path::scale;
-  else
+  const auto found = paths.find(name);
+  if (found == paths.end())
     import.fail(place + ".target.path", "\"" + name + "\" is not translation, rotation, scale or weights");
+  path = found->second;
   if (channel.target_node == -1) return false;
   if (channel.target_node < 0 || std::size_t(channel.target_node) >= import.model.nodes.size())
     import.fail(place + ".target.node", "node " + std::to_string(channel.target_node) + " does not exist");
@@ -40,25 +38,34 @@ bool wanted(Import& import, const tinygltf::AnimationChannel& channel, const std
          -1;  // else in another scene of the file
 }
 
+/// Numbers per value: one per morph target of the node's mesh for weights.
+std::size_t components_of(const Import& import, Path path, int source_node, const std::string& place) {
+  if (path != Path::weights) return path == Path::rotation ? 4 : 3;
+  const int mesh = import.model.nodes[std::size_t(source_node)].mesh;
+  const std::size_t count = mesh < 0 || std::size_t(mesh) >= import.model.meshes.size()
+                                ? 0
+                                : target_count(import.model.meshes[std::size_t(mesh)]);
+  if (count == 0) import.fail(place, "animates morph weights of a node whose mesh has no morph targets");
+  return count;
+}
+
 void read_values(Import& import, const tinygltf::AnimationSampler& sampler, const std::string& place,
                  AnimationTrack& track) {
-  const int components = track.path == Path::rotation ? 4 : 3;
   const bool spline = track.interpolation == Interpolation::cubic_spline;
-  const std::vector<double> numbers = read_numbers(import, sampler.output, components, place + ".output");
-  const std::size_t per_key = spline ? 3 : 1, count = numbers.size() / std::size_t(components);
-  if (count != track.times_s.size() * per_key)
-    import.fail(place + ".output", std::to_string(count) + " values for " +
-                                       std::to_string(track.times_s.size()) + " keys" +
-                                       (spline ? " (a spline needs three each)" : ""));
-  import.take_memory(count * sizeof(std::array<double, 4>), place);
-  track.values.assign(count, {});
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t c = 0; c < std::size_t(components); ++c)
-      track.values[i][c] = numbers[i * std::size_t(components) + c];
-    const bool is_tangent = spline && i % 3 != 1;
-    if (components == 4 && !is_tangent && !normalize_rotation(track.values[i]))
-      import.fail(place + ".output",
-                  "key " + std::to_string(i / per_key) + " is a quaternion of zero length");
+  const bool weights = track.path == Path::weights;
+  track.values = read_numbers(import, sampler.output, weights ? 1 : int(track.components), place + ".output");
+  const std::size_t keys = track.times_s.size(), per_key = spline ? 3 : 1, n = track.components;
+  if (track.values.size() != keys * per_key * n)
+    import.fail(place + ".output", std::to_string(track.values.size() / n) + " values for " + std::to_string(keys) +
+                                       " keys" + (spline ? " (a spline needs three each)" : "") +
+                                       (weights ? " of " + std::to_string(n) + " morph targets" : ""));
+  if (track.path != Path::rotation) return;
+  for (std::size_t i = spline ? 1 : 0; i < keys * per_key; i += per_key) {  // tangents are no rotations
+    std::array<double, 4> rotation;
+    std::copy_n(&track.values[i * 4], 4, rotation.begin());
+    if (!normalize_rotation(rotation))
+      import.fail(place + ".output", "key " + std::to_string(i / per_key) + " is a quaternion of zero length");
+    std::copy_n(rotation.begin(), 4, &track.values[i * 4]);
   }
 }
 
@@ -68,8 +75,9 @@ AnimationTrack read_track(Import& import, const tinygltf::Animation& source,
     import.fail(place + ".sampler", "sampler " + std::to_string(channel.sampler) + " does not exist");
   const tinygltf::AnimationSampler& sampler = source.samplers[std::size_t(channel.sampler)];
   AnimationTrack track;
-  track.node = import.node_from_source[std::size_t(channel.target_node)];
+  track.target = import.node_from_source[std::size_t(channel.target_node)];
   track.path = path;
+  track.components = components_of(import, path, channel.target_node, place);
   track.interpolation = interpolation_of(import, sampler.interpolation, place);
   track.times_s = read_numbers(import, sampler.input, 1, place + ".input");
   for (std::size_t i = 1; i < track.times_s.size(); ++i)
@@ -77,19 +85,41 @@ AnimationTrack read_track(Import& import, const tinygltf::Animation& source,
       import.fail(place + ".input",
                   "times must increase from key to key; key " + std::to_string(i) + " does not");
   if (track.times_s.front() < 0) import.fail(place + ".input", "the first time is negative");
-  if (import.scene.nodes[std::size_t(track.node)].has_matrix)
+  if (path != Path::weights && import.scene.nodes[std::size_t(track.target)].has_matrix)
     import.fail(place,
                 "animates a node that is given by a matrix; export it as translation, rotation, scale");
   read_values(import, sampler, place, track);
   return track;
 }
 
+std::string name_of(const tinygltf::Animation& source, std::size_t index) {
+  return source.name.empty() ? "animation " + std::to_string(index) : source.name;
+}
+
+/// Throws if a name was asked for and no animation has it.
+void check_name(const Import& import, const std::string& asked) {
+  std::string names;
+  for (std::size_t a = 0; a < import.model.animations.size(); ++a) {
+    const std::string name = name_of(import.model.animations[a], a);
+    if (asked == name) return;
+    names += (names.empty() ? "" : ", ") + one_line(name, 60);
+  }
+  import.fail("animations", "none is named \"" + one_line(asked, 60) + "\"; there is " +
+                                (names.empty() ? "none at all" : names));
+}
+
 }  // namespace
 
-void import_animations(Import& import) {
+std::size_t target_count(const tinygltf::Mesh& mesh) {
+  return mesh.primitives.empty() ? 0 : mesh.primitives.front().targets.size();
+}
+
+void import_animations(Import& import, const std::string& only) {
+  if (!only.empty()) check_name(import, only);
   std::set<std::pair<int, Path>> animated;
   for (std::size_t a = 0; a < import.model.animations.size(); ++a) {
     const tinygltf::Animation& source = import.model.animations[a];
+    if (!only.empty() && name_of(source, a) != only) continue;
     Animation animation;
     animation.name = source.name;
     for (std::size_t c = 0; c < source.channels.size(); ++c) {
@@ -98,8 +128,9 @@ void import_animations(Import& import) {
       Path path{};
       if (!wanted(import, source.channels[c], place, path)) continue;
       AnimationTrack track = read_track(import, source, source.channels[c], path, place);
-      if (!animated.insert({track.node, path}).second) {
-        import.ignore("further animation of a property that an earlier animation moves already");
+      if (!animated.insert({track.target, path}).second) {
+        import.ignore("further animation of a property that an earlier animation moves already "
+                      "(--animation NAME chooses one)");
         continue;
       }
       import.scene.duration_s = std::max(import.scene.duration_s, track.times_s.back());

@@ -91,7 +91,7 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   import_lights(import);
   import_cameras(import);
   import_meshes(import);
-  import_animations(import);
+  import_animations(import, options.animation);
   for (const auto& [what, count] : import.ignored)
     scene.warnings.push_back(path + ": ignored: " + what +
                              (count > 1 ? ", " + std::to_string(count) + " times" : ""));

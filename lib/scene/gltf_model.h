@@ -59,12 +59,16 @@ Texture read_texture(Import& import, const TextureUse& use, const std::string& p
 /// The same from a textureInfo inside an extension.
 Texture read_texture(Import& import, const tinygltf::Value& info, const std::string& place);
 
+/// Morph targets of a mesh: glTF demands the same number of all its primitives.
+std::size_t target_count(const tinygltf::Mesh& mesh);
+
 // The steps of load_gltf, in this order.
 void import_nodes(Import& import);       ///< gltf_nodes.cpp: default scene's nodes, parents first
 void import_materials(Import& import);   ///< gltf_material.cpp
 void import_lights(Import& import);      ///< gltf_material.cpp: KHR_lights_punctual
 void import_cameras(Import& import);     ///< gltf_material.cpp
 void import_meshes(Import& import);      ///< gltf_geometry.cpp: those that nodes use
-void import_animations(Import& import);  ///< gltf_animation.cpp
+/// gltf_animation.cpp. `only`: the animation of this name (an unnamed one is "animation INDEX"); empty: all.
+void import_animations(Import& import, const std::string& only);
 
 }  // namespace tempolux::gltf

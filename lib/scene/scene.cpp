@@ -13,7 +13,8 @@ int Scene::camera_node(const std::string& name) const {
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const Node& node = nodes[n];
     if (node.camera < 0) continue;
-    const std::string& camera_name = cameras[std::size_t(node.camera)].name;
+    const std::string& own_name = cameras[std::size_t(node.camera)].name;
+    const std::string camera_name = own_name.empty() ? "camera " + std::to_string(node.camera) : own_name;
     if (name != "auto" && (name == node.name || name == camera_name)) return int(n);
     if (first < 0 || node.source_index < nodes[std::size_t(first)].source_index) first = int(n);
     names += (names.empty() ? "" : ", ") + (node.name.empty() ? camera_name : node.name);

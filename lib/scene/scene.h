@@ -130,15 +130,16 @@ struct Node {
   std::string extras;                          ///< its own properties as JSON text; empty: none
 };
 
-/// One animated property of a node: keys at increasing times.
+/// One animated property: keys at increasing times.
 struct AnimationTrack {
-  enum class Path { translation, rotation, scale };
+  enum class Path { translation, rotation, scale, weights };
   enum class Interpolation { linear, step, cubic_spline };
-  int node = 0;
+  int target = 0;                           ///< index of the node
   Path path = Path::translation;
   Interpolation interpolation = Interpolation::linear;
+  std::size_t components = 3;               ///< numbers per value: 4 of a rotation, one per morph target
   std::vector<double> times_s;              ///< strictly increasing
-  std::vector<std::array<double, 4>> values;  ///< xyz or xyzw per key; spline: in-tangent, value, out-tangent
+  std::vector<double> values;               ///< value after value; spline: in-tangent, value, out-tangent of each key
 };
 
 struct Animation {
@@ -156,12 +157,13 @@ struct Scene {
   std::vector<SceneImage> images;           ///< those that a material's texture names
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
-  std::vector<Animation> animations;        ///< all play together
+  std::vector<Animation> animations;        ///< all play together (GltfOptions::animation chose them)
   std::vector<std::string> object_names;    ///< by object id
   double duration_s = 0;                    ///< last key of all animations
   std::vector<std::string> warnings;        ///< what was ignored, one line each
 
-  /// Index into nodes of the camera to use, by camera or node name; "auto" is the first in the file.
+  /// Index into nodes of the camera to use, by camera or node name (an unnamed one is "camera INDEX"); "auto" is the
+  /// first in the file.
   /// Throws InputError that lists the names, or says how to export cameras.
   int camera_node(const std::string& name) const;
 };

@@ -35,7 +35,12 @@ void set_borders(const Scene& scene, int frame, const TimeOptions& options, Segm
 }
 
 const char* path_word(Path path) {
-  return path == Path::translation ? "translation" : path == Path::rotation ? "rotation" : "scale";
+  switch (path) {
+    case Path::translation: return "translation";
+    case Path::rotation: return "rotation";
+    case Path::scale: return "scale";
+    default: return "weights";
+  }
 }
 
 /// Which of the node's own properties differ between two frames, else that its parent moves.
@@ -43,12 +48,14 @@ std::string reason(const Scene& scene, const Animator& animator, const Segment& 
                    double fps) {
   std::string properties;
   for (const AnimationTrack* track : animator.tracks(n)) {
-    const auto first = evaluate(*track, segment.first / fps);
-    for (int f = segment.first + 1; f <= segment.last; ++f)
-      if (evaluate(*track, f / fps) != first) {
-        properties += (properties.empty() ? "" : ", ") + std::string(path_word(track->path));
-        break;
-      }
+    std::vector<double> first(track->components), now(track->components);
+    evaluate(*track, segment.first / fps, first);
+    for (int f = segment.first + 1; f <= segment.last; ++f) {
+      evaluate(*track, f / fps, now);
+      if (now == first) continue;
+      properties += (properties.empty() ? "" : ", ") + std::string(path_word(track->path));
+      break;
+    }
   }
   const Node& node = scene.nodes[n];
   const auto name = [&](const Node& of) {

@@ -208,10 +208,10 @@ TEST(Emission, TableKnowsTheLargestSizeOfAnAnimatedEmitter) {
     scene.object_names.push_back("lamp");
   }
   AnimationTrack grow;
-  grow.node = 0;
+  grow.target = 0;
   grow.path = AnimationTrack::Path::scale;
   grow.times_s = {0, 1};
-  grow.values = {{1, 1, 1, 0}, {3, 3, 3, 0}};
+  grow.values = {1, 1, 1, 3, 3, 3};
   scene.animations.push_back({"grow", {grow}});
   scene.duration_s = 1;
   const TimeOptions options;

@@ -59,11 +59,11 @@ Scene still_room() {
 /// Puts `node` at x = places[f] at frame f, 24 frames per second.
 void slide(Scene& scene, int node, const std::vector<double>& places) {
   AnimationTrack track;
-  track.node = node;
+  track.target = node;
   const Vec3d rest = scene.nodes[std::size_t(node)].translation;
   for (std::size_t f = 0; f < places.size(); ++f) {
     track.times_s.push_back(double(f) / 24);
-    track.values.push_back({places[f], rest.y, rest.z, 0});
+    track.values.insert(track.values.end(), {places[f], rest.y, rest.z});
   }
   scene.animations.push_back({"slide", {track}});
   scene.duration_s = std::max(scene.duration_s, track.times_s.back());

@@ -385,6 +385,9 @@ TEST(GltfLoad, CamerasAreFoundByNameAndTheirAbsenceSaysWhatToTick) {
   } catch (const InputError& error) {
     EXPECT_CONTAINS(error.what(), "First, Second");
   }
+  maker.add_camera(Json::object());
+  const Scene with_unnamed = maker.load();
+  EXPECT_EQ(with_unnamed.camera_node("camera 2"), 3);
 }
 
 TEST(GltfLoad, ASceneWithoutLightSaysWhatToTick) {

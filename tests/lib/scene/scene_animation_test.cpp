@@ -108,7 +108,7 @@ TEST(SceneAnimation, AKeyAtAFrameIsMetExactlyThoughItsTimeIsRounded) {
   AnimationTrack track;
   for (int k = 0; k <= 48; ++k) {
     track.times_s.push_back(double(float(k / 24.0)));
-    track.values.push_back({double(k % 2) * 1000, 0, 0, 0});
+    track.values.insert(track.values.end(), {double(k % 2) * 1000, 0, 0});
   }
   for (int k = 0; k <= 48; ++k) EXPECT_EQ(evaluate(track, k / 24.0)[0], double(k % 2) * 1000) << k;
 }
@@ -118,12 +118,14 @@ TEST(SceneAnimation, BetweenEqualKeysTheValueIsExact) {
   track.path = AnimationTrack::Path::rotation;
   const double third = std::sqrt(1 / 3.0);
   track.times_s = {0, 1};
-  track.values = {{third, third, 0, third}, {third, third, 0, third}};
-  for (const double t : {0.1, 0.3, 0.7}) EXPECT_EQ(evaluate(track, t), track.values[0]);
+  track.components = 4;
+  track.values = {third, third, 0, third, third, third, 0, third};
+  for (const double t : {0.1, 0.3, 0.7}) EXPECT_EQ(evaluate(track, t), (std::array{third, third, 0.0, third}));
   track.path = AnimationTrack::Path::translation;
   track.interpolation = AnimationTrack::Interpolation::cubic_spline;
-  track.values = {{}, {0.1, 0.2, 0.3, 0}, {}, {}, {0.1, 0.2, 0.3, 0}, {}};
-  for (const double t : {0.1, 0.3, 0.7}) EXPECT_EQ(evaluate(track, t), track.values[1]);
+  track.components = 3;
+  track.values = {0, 0, 0, 0.1, 0.2, 0.3, 0, 0, 0, 0, 0, 0, 0.1, 0.2, 0.3, 0, 0, 0};
+  for (const double t : {0.1, 0.3, 0.7}) EXPECT_EQ(evaluate(track, t), (std::array{0.1, 0.2, 0.3, 0.0}));
 }
 
 TEST(SceneAnimation, AllAnimationsPlayTogether) {
@@ -142,6 +144,42 @@ TEST(SceneAnimation, AllAnimationsPlayTogether) {
   EXPECT_EQ(world[0].translation.x, 0.5);
   EXPECT_EQ(world[1].translation.x, 1.0);
   EXPECT_EQ(scene.duration_s, 1);
+}
+
+/// Two animations of one node: "Left" for one second, and one without a name for two.
+GltfMaker two_animations() {
+  GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}});
+  maker.animate(0, "translation", {0, 1}, {0, 0, 0, -1, 0, 0});
+  Json left = maker.json["animations"][0];
+  maker.json.erase("animations");
+  maker.animate(0, "translation", {0, 2}, {0, 0, 0, 5, 0, 0});
+  left["name"] = "Left";
+  maker.json["animations"] = {left, maker.json["animations"][0]};
+  return maker;
+}
+
+TEST(SceneAnimation, OneAnimationCanBeChosenByName) {
+  const std::string path = write_file("two.gltf", two_animations().text());
+  const Scene left = load_gltf(path, {.animation = "Left"}), other = load_gltf(path, {.animation = "animation 1"});
+  EXPECT_EQ(world_from_node(left, 24, {})[0].translation.x, -1);
+  EXPECT_EQ(left.duration_s, 1);
+  EXPECT_EQ(world_from_node(other, 24, {})[0].translation.x, 2.5);
+  EXPECT_EQ(other.duration_s, 2);
+  EXPECT_TRUE(left.warnings.empty());
+  // All together: both want the same node, the first in the file has it, and it is said.
+  const Scene both = load_gltf(path);
+  EXPECT_EQ(world_from_node(both, 24, {})[0].translation.x, -1);
+  EXPECT_TRUE(has_warning(both, "--animation NAME chooses one"));
+}
+
+TEST(SceneAnimation, AnAnimationThatDoesNotExistListsThoseThatDo) {
+  const std::string path = write_file("two.gltf", two_animations().text());
+  EXPECT_CONTAINS(load_error(path, {.animation = "Right"}),
+                  "animations: none is named \"Right\"; there is Left, animation 1");
+  GltfMaker still;
+  still.add_node({{"mesh", still.add_triangle()}});
+  EXPECT_CONTAINS(load_error(write_file("still.gltf", still.text()), {.animation = "Right"}), "there is none at all");
 }
 
 TEST(SceneAnimation, TheMovingBoxOfTheCornellScene) {
