@@ -3,22 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/material/cubic_weights.h"
+
 namespace tempolux {
 namespace {
 
 using namespace albedo_table;
-
-/// First of four neighbours among `count` at position in [0, 1], and Lagrange's weights of the four.
-int cubic_weights(float position, int count, float weight[4]) {
-  const float at = position * float(count - 1);
-  const int first = std::clamp(int(at) - 1, 0, count - 4);
-  const float s = at - float(first), s1 = s - 1, s2 = s - 2, s3 = s - 3;
-  weight[0] = s1 * s2 * s3 * (-1.0f / 6);
-  weight[1] = s * s2 * s3 * 0.5f;
-  weight[2] = s * s1 * s3 * -0.5f;
-  weight[3] = s * s1 * s2 * (1.0f / 6);
-  return first;
-}
 
 constexpr float kFirstRoot = 0.14142136f;  // kMinAlpha^(1/4)
 

@@ -45,6 +45,11 @@ Bsdf::Bsdf(const Material& material, bool front) {
     transmission_tint_ = material.base_color;
     eta_reflected_ = material.thin_walled || front ? 1 / ior : ior;
     eta_ = material.thin_walled ? 1 : eta_reflected_;
+    // Index 1 refracts nothing: rough or not, light goes straight through.
+    if (material.roughness >= kMirrorRoughness && (material.thin_walled || ior > 1.001f)) {
+      rough_.emplace(ior, material.roughness * material.roughness, material.thin_walled, front);
+      light_share_beyond_ = material.thin_walled ? 0.5f : front ? 0.0f : 1.0f;
+    }
     if (transmission_ >= 1) return;
   }
   rho_ = material.base_color * (1 - metallic);
@@ -134,9 +139,19 @@ Rgb Bsdf::specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const {
   return fresnel(f0_, f90_, dot(wo, h)) * d + multiple_ * (kInvPi * lost_i * lost_o);
 }
 
-Rgb Bsdf::eval_specular(Vec3 wi, Vec3 wo) const {
+Rgb Bsdf::eval_opaque(Vec3 wi, Vec3 wo) const {
   if (!specular_ || delta_ || !(wi.z > 0) || !(wo.z > 0)) return Rgb(0.0f);
   return specular(wi, wo, reflection(wi.z).lost, reflection(wo.z).lost) * (1 - transmission_);
+}
+
+Rgb Bsdf::eval_rough(Vec3 wi, Vec3 wo) const {
+  if (wi.z == 0 || !(wo.z > 0)) return Rgb(0.0f);
+  const float f = transmission_ * rough_->eval(wi, wo);
+  return wi.z < 0 ? transmission_tint_ * f : Rgb(f);
+}
+
+Rgb Bsdf::eval_specular(Vec3 wi, Vec3 wo) const {
+  return rough_ ? eval_opaque(wi, wo) + eval_rough(wi, wo) : eval_opaque(wi, wo);
 }
 
 float Bsdf::pdf_diffuse(Vec3 wi, Vec3 wo) const {
@@ -159,9 +174,10 @@ float Bsdf::specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const {
 }
 
 float Bsdf::pdf_specular(Vec3 wi, Vec3 wo) const {
-  if (!specular_ || delta_ || !(wi.z > 0) || !(wo.z > 0)) return 0;
+  float density = rough_ && wi.z != 0 && wo.z > 0 ? transmission_ * rough_->pdf(wi, wo) : 0;
+  if (!specular_ || delta_ || !(wi.z > 0) || !(wo.z > 0)) return density;
   const Reflection r = reflection(wo.z);
-  return (1 - diffuse_probability(r)) * specular_density(wi, wo, r) * (1 - transmission_);
+  return density + (1 - diffuse_probability(r)) * specular_density(wi, wo, r) * (1 - transmission_);
 }
 
 void Bsdf::sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const {
@@ -213,16 +229,37 @@ void Bsdf::sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const {
   s.pdf_solid_angle = transmission_ * (1 - reflectance);
 }
 
+void Bsdf::sample_rough(Vec3 wo, float u_lobe, Vec2 u, Sample& s) const {
+  s.wi = rough_->sample(wo, u_lobe, u);
+  if (s.wi.z == 0) return;   // lost at the wrong side of the surface
+  s.transmitted = s.wi.z < 0;
+  const float density = pdf_specular(s.wi, wo);
+  if (!(density > 0)) return;
+  s.weight = eval_specular(s.wi, wo) * (std::abs(s.wi.z) / density);
+  s.pdf_solid_angle = density + pdf_diffuse(s.wi, wo);
+}
+
 Bsdf::Sample Bsdf::sample(Vec3 wo, float u_lobe, Vec2 u) const {
   if (!(transmission_ > 0)) return sample_opaque(wo, u_lobe, u);
   Sample s;
   if (!(wo.z > 0)) return s;
   if (u_lobe < transmission_) {
+    if (rough_) {
+      sample_rough(wo, u_lobe / transmission_, u, s);
+      return s;
+    }
     sample_dielectric(wo, u_lobe / transmission_, s);
     return s;
   }
   s = sample_opaque(wo, std::min(kOneMinusEpsilon, (u_lobe - transmission_) / (1 - transmission_)), u);
   s.pdf_solid_angle *= 1 - transmission_;
+  if (rough_ && !s.diffuse && s.pdf_solid_angle > 0) {   // the lobes of event S overlap
+    const float density = pdf_specular(s.wi, wo);
+    s.weight = density > 0 ? eval_specular(s.wi, wo) * (s.wi.z / density) : Rgb(0.0f);
+    s.pdf_solid_angle = density + pdf_diffuse(s.wi, wo);
+  } else if (rough_ && s.diffuse) {
+    s.pdf_solid_angle += transmission_ * rough_->pdf(s.wi, wo);
+  }
   return s;
 }
 

@@ -1,8 +1,11 @@
 // lib/material/bsdf.h -- scattering at a surface: a Lambert lobe (event D) and other lobes (event S).
 #pragma once
 
+#include <optional>
+
 #include "lib/core/vec.h"
 #include "lib/material/albedo.h"
+#include "lib/material/rough_glass.h"
 #include "lib/scene/scene.h"
 
 namespace tempolux {
@@ -10,7 +13,7 @@ namespace tempolux {
 /// Scattering of one material at one point, in the local frame of the shading normal (z = normal).
 ///
 /// f = f_D + f_S [1/sr]. wi and wo are unit vectors away from the surface, both on the side z > 0, else f = 0
-/// (but for the delta lobe of glass, which is sampled only).
+/// (but for glass: a rough one scatters to wi.z < 0 too; delta lobes are sampled only).
 ///
 /// f_S is GGX (ggx.h) with Schlick's Fresnel term F = F0 + (F90 - F0) (1 - wo h)^5, or below a roughness of
 /// kMirrorRoughness a delta mirror with the same F. From glTF 2.0 and KHR_materials_specular, _ior:
@@ -33,10 +36,12 @@ namespace tempolux {
 /// the Lambert lobe gets what is not reflected, and D + S returns A + rho (1 - A) <= 1 from either side. For
 /// a matte material (F0 = F90 = 0) there is no f_S and c is 1 exactly.
 ///
-/// Glass (KHR_materials_transmission) takes its share, transmission (1 - metallic), of all this: a smooth
-/// boundary that reflects by the exact Fresnel equations and lets the rest through, tinted by base_color at
-/// each boundary; refracted at a solid (index ior inside), straight through a thin wall. Radiance is not
-/// scaled by the index squared inside a solid: what enters leaves, and nothing scatters inside.
+/// Glass (KHR_materials_transmission) takes its share, transmission (1 - metallic), of all this: a boundary that
+/// reflects by the exact Fresnel equations and lets the rest through, tinted by base_color at each boundary;
+/// refracted at a solid (index ior inside), straight through a thin wall; smooth below kMirrorRoughness, else
+/// rough_glass.h. Radiance is not scaled by the index squared inside a solid (what is carried is L / n^2): what
+/// enters leaves, and what a Lambert lobe inside returns is what it returns outside. sample() serves photons, which
+/// carry watts, as it stands; their density inside is n^2 times too high for that scale (photon_trace.h).
 class Bsdf {
  public:
   /// front: wo is on the front side of the triangle, outside a solid of glass.
@@ -46,7 +51,10 @@ class Bsdf {
   bool has_lambert() const { return lambert_; }
   bool has_diffuse() const { return diffuse_; }  ///< a Lambert lobe that reflects
   bool has_specular() const { return specular_ || transmission_ > 0; }
-  bool specular_is_delta() const { return delta_ || !specular_; }
+  bool specular_is_delta() const { return !rough_ && (delta_ || !specular_); }   ///< all S lobes
+  /// Which light eval_specular passes on: share of light samples to be aimed at the side z < 0. 1 inside a solid
+  /// of rough glass, where the light is outside; 0 outside of one, where what is beyond meets its other side.
+  float light_share_beyond() const { return light_share_beyond_; }
   /// rho of the Lambert lobe, before coupling.
   Rgb diffuse_albedo() const { return rho_; }
   /// c(w) above, 1 for a matte material; cos_theta > 0.
@@ -92,6 +100,9 @@ class Bsdf {
   Rgb specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const;
   float specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const;
   void sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const;
+  void sample_rough(Vec3 wo, float u_lobe, Vec2 u, Sample& s) const;
+  Rgb eval_opaque(Vec3 wi, Vec3 wo) const;
+  Rgb eval_rough(Vec3 wi, Vec3 wo) const;
   Sample sample_opaque(Vec3 wo, float u_lobe, Vec2 u) const;
   void sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const;
   void sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, Sample& s) const;
@@ -105,9 +116,11 @@ class Bsdf {
   float mean_albedo_ = 0;     ///< A_mean of the channel with the largest F0
   float coupling_scale_ = 1;  ///< 1 / sqrt(1 - A_mean)
   Rgb transmission_tint_{0.0f};
-  float transmission_ = 0;   ///< share of smooth glass, event S; the rest scatters as described above
+  float transmission_ = 0;   ///< share of glass, event S; the rest scatters as described above
   float eta_ = 1;            ///< index on wo's side / index beyond; 1 for a thin wall's way through
   float eta_reflected_ = 1;  ///< the same for its Fresnel term
+  float light_share_beyond_ = 0;
+  std::optional<RoughGlass> rough_;   ///< empty: the glass is smooth, or there is none
   bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
 };
 

@@ -18,6 +18,8 @@ constexpr double kNoUpper = std::numeric_limits<float>::max();
 /// Blender writes inner = outer for a spot without a soft edge, which glTF forbids: the edge gets a width.
 constexpr double kSharpestCone = 0.9999;
 
+constexpr double kLeastDistance = 1e-12;  ///< m, for an attenuationDistance of 0, which glTF forbids
+
 /// A number brought into [lower, upper], with a warning if it was outside; fails if it is not finite.
 float limited(Import& import, double value, double lower, double upper, const std::string& place) {
   if (!std::isfinite(value)) import.fail(place, "is not finite");
@@ -100,8 +102,11 @@ void read_extension(Import& import, const std::string& name, const Value& value,
     textures.transmission = reader.texture("transmissionTexture");
   } else if (name == "KHR_materials_volume") {
     material.thin_walled = !(reader.number("thicknessFactor", 0) > 0);
+    material.attenuation_color =
+        limited_colour(import, reader.numbers("attenuationColor"), Rgb{1.0f}, 1, reader.place);
     if (value.Has("attenuationDistance"))
-      import.ignore("KHR_materials_volume.attenuationDistance (glass absorbs nothing)");
+      material.attenuation_distance =
+          limited(import, reader.number("attenuationDistance", 1), kLeastDistance, kNoUpper, reader.place);
     reader.ignore_texture("thicknessTexture");
   } else if (name == "KHR_materials_unlit") {
     material.unlit = true;
@@ -135,8 +140,6 @@ Material read_material(Import& import, std::size_t index) {
   MaterialTextures textures;
   for (const auto& [name, value] : source.extensions)
     read_extension(import, name, value, place, material, textures, strength);
-  if (material.transmission > 0 && material.roughness > 0)
-    import.ignore("the roughness of glass (it is drawn smooth)");
   material.emission =
       limited_colour(import, source.emissiveFactor, Rgb{0.0f}, kNoUpper, place + ".emissiveFactor");
   material.emission *= float(strength);

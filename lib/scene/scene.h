@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,8 @@ struct MaterialValues {
   float ior = 1.5f;                  ///< >= 1, or 0
   float transmission = 0;            ///< KHR_materials_transmission, [0, 1]: in place of the Lambert lobe
   bool thin_walled = true;           ///< false: boundary of a solid (KHR_materials_volume), which refracts
+  Rgb attenuation_color{1.0f};       ///< KHR_materials_volume: share of white light left inside a solid ...
+  float attenuation_distance = std::numeric_limits<float>::infinity();   ///< ... after this way, m, > 0
   bool double_sided = false;
   bool unlit = false;                ///< KHR_materials_unlit: shows base_color to eye and mirror, scatters nothing
 

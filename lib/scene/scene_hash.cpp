@@ -89,6 +89,10 @@ std::string materials_hash(const Scene& scene) {
                                material->transmission, material->thin_walled ? 1.0f : 0.0f,
                                material->double_sided ? 1.0f : 0.0f})
       hasher.add(number);
+    if (material->attenuation_distance < std::numeric_limits<float>::infinity()) {
+      hasher.add(material->attenuation_color);
+      hasher.add(material->attenuation_distance);
+    }
     add_optional_parts(hasher, scene, *material);
   }
   return hasher.hex();

@@ -1,0 +1,55 @@
+// lib/material/glass_albedo.h -- what a rough boundary of glass loses when each ray meets one microfacet only.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace tempolux {
+
+/// 1 - E for the lobe of rough_glass.h: E = what is reflected and let through of uniform light, for one alpha
+/// and index, seen from outside or inside. Cubic in a table (glass_albedo_table.cpp) over sqrt(1 - 1/index),
+/// sqrt(alpha) and a column: within 2e-3 of the integrals (tested). The column is the square root of
+/// x = cos (1 + alpha) / (cos + alpha) outside; inside the critical angle, where the loss bends, lies in the
+/// middle and the columns close up towards it.
+class GlassLoss {
+ public:
+  /// index >= 1 and alpha are held within the table's range. Sides: 0 outside, 1 inside.
+  GlassLoss(float index, float alpha);
+  /// Towards cos_theta in (0, 1]; at least 0.
+  float at(int side, float cos_theta) const;
+  /// Cosine-weighted mean over the hemisphere: 2 integral_0^1 at(mu) mu dmu; at least 1e-7.
+  float mean(int side) const;
+
+ private:
+  float column(int side, float cos_theta) const;
+
+  float alpha_;
+  float critical_;       ///< cos of the critical angle
+  int first_[2];         ///< of four planes and four rows in use
+  float weight_[2][4];   ///< of each
+};
+
+namespace glass_table {
+inline constexpr int kPlanes = 11, kRows = 15, kColumns = 24;
+extern const float kLoss[2][kPlanes][kRows][kColumns];
+extern const float kMean[2][kPlanes][kRows];
+
+/// Where planes, rows and columns lie: position 0 is the first, 1 the last.
+inline double index_of_plane(double position) { return position < 1 ? 1 / (1 - position * position) : 1e4; }
+inline double alpha_of_row(double position) { return position * position > 4e-4 ? position * position : 4e-4; }
+inline double cos_of_column(int side, double index, double position, double alpha) {
+  const auto cos_of = [&](double root) { return alpha * root * root / (1 + alpha - root * root); };
+  double cos = 0;
+  if (side == 0) {
+    cos = cos_of(position);
+  } else {
+    const double critical = std::sqrt(1 - 1 / (index * index));
+    const double root = std::sqrt(critical * (1 + alpha) / (critical + alpha));
+    const double s = 2 * position;
+    cos = s <= 1 ? cos_of(s * (2 - s) * root) : critical + (s - 1) * (s - 1) * (1 - critical);
+  }
+  return std::max(cos, 1e-6 * alpha);
+}
+}  // namespace glass_table
+
+}  // namespace tempolux
