@@ -45,9 +45,10 @@ Bsdf::Bsdf(const Material& material, bool front) {
     transmission_tint_ = material.base_color;
     eta_reflected_ = material.thin_walled || front ? 1 / ior : ior;
     eta_ = material.thin_walled ? 1 : eta_reflected_;
-    // Index 1 refracts nothing: rough or not, light goes straight through.
-    if (material.roughness >= kMirrorRoughness && (material.thin_walled || ior > 1.001f)) {
-      rough_.emplace(ior, material.roughness * material.roughness, material.thin_walled, front);
+    // An index next to 1 hardly refracts: a lobe narrower than float32 can tell goes straight through.
+    const float alpha = material.roughness * material.roughness;
+    if (material.roughness >= kMirrorRoughness && (material.thin_walled || alpha * (ior - 1) > 2e-5f)) {
+      rough_.emplace(ior, alpha, material.thin_walled, front);
       light_share_beyond_ = material.thin_walled ? 0.5f : front ? 0.0f : 1.0f;
     }
     if (transmission_ >= 1) return;

@@ -8,7 +8,7 @@ namespace tempolux {
 
 /// 1 - E for the lobe of rough_glass.h: E = what is reflected and let through of uniform light, for one alpha
 /// and index, seen from outside or inside. Cubic in a table (glass_albedo_table.cpp) over sqrt(1 - 1/index),
-/// sqrt(alpha) and a column: within 2e-3 of the integrals (tested). The column is the square root of
+/// sqrt(alpha) and a column: within 3e-3 of the integrals (tested). The column is the square root of
 /// x = cos (1 + alpha) / (cos + alpha) outside; inside the critical angle, where the loss bends, lies in the
 /// middle and the columns close up towards it.
 class GlassLoss {

@@ -16,7 +16,8 @@ float mean_fresnel(float n) { return (n - 1) / (4.08567f + 1.00071f * n); }
 }  // namespace
 
 RoughGlass::RoughGlass(float index, float alpha, bool thin, bool outside)
-    : loss_(thin ? 1e4f : index, alpha),
+    : loss_(index, alpha),
+      wall_(alpha),
       alpha_(alpha),
       alpha2_(alpha * alpha),
       eta_(thin || outside ? 1 / index : index),
@@ -37,7 +38,15 @@ RoughGlass::RoughGlass(float index, float alpha, bool thin, bool outside)
 
 /// 1 - E towards cos_theta on wo's side or beyond.
 float RoughGlass::loss(bool beyond, float cos_theta) const {
-  return loss_.at(thin_ || !beyond ? side_ : 1 - side_, cos_theta);
+  if (!thin_) return loss_.at(beyond ? 1 - side_ : side_, cos_theta);
+  const AlbedoPair e = wall_.at(cos_theta);
+  return std::max(0.0f, 1 - (e.a + e.b));
+}
+
+float RoughGlass::mean_loss(bool beyond) const {
+  if (!thin_) return loss_.mean(beyond ? 1 - side_ : side_);
+  const AlbedoPair e = wall_.mean();
+  return std::max(1e-7f, 1 - (e.a + e.b));
 }
 
 /// Density [1/sr] of cos = sqrt(spread^2 ((1 + 1/spread^2)^u - 1)), any azimuth, on one side.
@@ -70,10 +79,9 @@ RoughGlass::Pair RoughGlass::single(Vec3 wi, Vec3 wo) const {
 
 float RoughGlass::eval(Vec3 wi, Vec3 wo) const {
   const bool beyond = wi.z < 0;
-  const int side = thin_ || !beyond ? side_ : 1 - side_;
   const float share = beyond ? share_beyond_ : 1 - share_beyond_;
   return single(wi, wo).f +
-         share * kInvPi * loss(beyond, std::abs(wi.z)) * loss(false, wo.z) / loss_.mean(side);
+         share * kInvPi * loss(beyond, std::abs(wi.z)) * loss(false, wo.z) / mean_loss(beyond);
 }
 
 float RoughGlass::pdf(Vec3 wi, Vec3 wo) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lib/core/vec.h"
+#include "lib/material/albedo.h"
 #include "lib/material/glass_albedo.h"
 
 namespace tempolux {
@@ -38,10 +39,11 @@ class RoughGlass {
   };
   Pair single(Vec3 wi, Vec3 wo) const;
   float loss(bool beyond, float cos_theta) const;
+  float mean_loss(bool beyond) const;
   float multiple_density(float cos_i) const;
-  float beyond_share() const { return share_beyond_; }
 
-  GlassLoss loss_;
+  GlassLoss loss_;        ///< of a solid
+  GgxAlbedo wall_;        ///< of a thin wall: that of a mirror
   float alpha_, alpha2_;
   float eta_;             ///< index on wo's side / beyond, of the Fresnel term
   bool thin_;

@@ -6,6 +6,7 @@
 #include "formats/error.h"
 #include "lib/core/frame.h"
 #include "lib/core/random.h"
+#include "lib/material/inside.h"
 
 namespace tempolux {
 namespace {
@@ -84,8 +85,10 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
   group_count_ = options.group_count ? options.group_count : automatic_group_count(options.photon_count);
   members_ = (options.photon_count + group_count_ - 1) / group_count_;
   batches_per_group_ = (members_ + kBatch - 1) / kBatch;
-  for (const Material& material : tracer.frame().materials)
+  for (const Material& material : tracer.frame().materials) {
+    solid_.push_back(is_solid_glass(material));
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
+  }
 }
 
 PhotonBatch PhotonTracer::trace(std::size_t number) const {
@@ -110,6 +113,7 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
 
   Ray ray{start.origin + start.normal * start.origin_offset, start.travel, 0, INFINITY};
   bool diffuse_seen = false, specular_seen = false;
+  Inside inside;
   for (std::uint32_t bounce = 0;; ++bounce) {
     ++batch.ray_count;
     Hit hit;
@@ -119,14 +123,22 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
     }
     const SurfacePoint point = tracer_.surface_point(hit);
     const Arrival at(point, ray.direction);
-    const Bsdf& bsdf = bsdfs_[point.material][dot(point.normal_geometric, at.wi) > 0];
+    const bool front = dot(point.normal_geometric, at.wi) > 0;
+    const Bsdf& bsdf = bsdfs_[point.material][front];
+    const bool solid = solid_[point.material];
+    if (inside.any() || (solid && !front)) {
+      const Rgb sent = flux;
+      flux *= inside.transmittance_to(tracer_.frame().materials, point.material, front, hit.t);
+      batch.absorbed += Rgbd(sent) - Rgbd(flux);
+    }
 
     // Record.
     const PathKind kind = kind_after(diffuse_seen, specular_seen);
     const bool wanted = kind == PathKind::direct ? options_.store_direct
                         : kind == PathKind::caustic ? options_.store_caustic : options_.store_indirect;
     if (wanted && bsdf.has_lambert() && at.shading_correction > 0) {
-      const Rgb stored = flux * (bsdf.arrival_weight(at.wi_local.z) * at.shading_correction);
+      Rgb stored = flux * (bsdf.arrival_weight(at.wi_local.z) * at.shading_correction);
+      if (inside.any()) stored *= 1 / inside.index_squared(tracer_.frame().materials);
       record(stored, point, at.normal_geometric, kind, bounce, batch.block.photons);
     }
 
@@ -138,7 +150,7 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
     const Rgb before = flux;
     flux *= next.weight;
     if (!at.flat && !next.delta)
-      flux *= at.shading_correction * std::max(0.0f, cos_geometric) / std::max(1e-6f, next.wi.z);
+      flux *= at.shading_correction * std::max(0.0f, cos_geometric) / std::max(1e-6f, side * next.wi.z);
     const float survival = std::min(kLargestSurvival, max_component(flux) / std::max(max_component(before), 1e-37f));
     if (!(cos_geometric > 0) || !(random.get1(bounce, Purpose::roulette) < survival)) {
       batch.absorbed += Rgbd(before);
@@ -147,6 +159,7 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
     flux *= 1 / survival;
     batch.absorbed += Rgbd(before) - Rgbd(flux);
     (next.diffuse ? diffuse_seen : specular_seen) = true;
+    if (solid && !next.diffuse) inside.scatter(point.material, front, next.transmitted);
     ray = spawn_ray(point, travel);
   }
 }

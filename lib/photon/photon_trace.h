@@ -42,7 +42,8 @@ struct PhotonBatch {
 /// A photon is recorded at every surface that has a Lambert lobe, before it is scattered, with
 ///     flux x arrival_weight(wi) x |wi.n_s| / |wi.n_g|     [W]
 /// so that  rho/pi x density  is what the Lambert lobe reflects, shading normals included [Veach 1997, 5.3];
-/// for a matte flat surface that is the flux that arrives. Roulette keeps the flux of a path about constant
+/// for a matte flat surface that is the flux that arrives. Inside solids of glass it is divided by the index
+/// squared (bsdf.h). What solids absorb on the way counts as absorbed. Roulette keeps the flux of a path about constant
 /// and its expectation exact.
 class PhotonTracer {
  public:
@@ -66,6 +67,7 @@ class PhotonTracer {
   const Lights& lights_;
   PhotonOptions options_;
   PhotonHalton halton_;
+  std::vector<char> solid_;   ///< by material: boundary of a solid of glass
   std::vector<std::array<Bsdf, 2>> bsdfs_;   ///< by material: seen from the back, from the front
   std::uint64_t group_count_, members_, batches_per_group_;
 };

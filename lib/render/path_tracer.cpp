@@ -1,6 +1,7 @@
 #include "lib/render/path_tracer.h"
 
 #include "lib/core/sampling.h"
+#include "lib/material/inside.h"
 #include "lib/render/shading.h"
 
 namespace tempolux {
@@ -12,30 +13,37 @@ constexpr float kLargestSurvival = 0.998f;     ///< so that paths in a lossless 
 /// The last scattering: what a hit on a light must know to weigh itself against light sampling.
 struct LastScatter {
   bool weighed = false;                        ///< false: camera ray or delta lobe, light sampling could not find it
-  Vec3 position, normal;
+  Vec3 position, normal;                       ///< normal on the side that was scattered to
   float pdf_solid_angle = 0;
+  float light_share = 1;                       ///< of light samples that were aimed at that side
 };
 
 /// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)]
 void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, const Rgb& throughput, const EyePath& path,
-                       const PixelRandom& random, std::uint32_t bounce, bool weigh_diffuse, Layers& result,
-                       RayCounts& counts) {
+                       const Inside& inside, const PixelRandom& random, std::uint32_t bounce, bool weigh_diffuse,
+                       Layers& result, RayCounts& counts) {
   const bool specular = x.bsdf.has_specular() && !x.bsdf.specular_is_delta();
   if (!x.bsdf.has_diffuse() && !specular) return;
+  // Rough glass passes on light from behind: the side is drawn, the other's light is left to other samples.
+  const float share_beyond = x.bsdf.light_share_beyond();
+  const bool beyond = share_beyond > 0 && random.get1(bounce, Purpose::light_choice) < share_beyond;
+  const float share = beyond ? share_beyond : 1 - share_beyond;
   LightSample light;
-  if (!scene.lights.sample(x.surface.position, x.normal, random.get2(bounce, Purpose::light_point), light)) return;
-  if (!x.sees(light.wi)) return;
+  if (!scene.lights.sample(x.surface.position, beyond ? -x.normal : x.normal, random.get2(bounce, Purpose::light_point), light)) return;
+  if (beyond ? !x.sees_beyond(light.wi) : !x.sees(light.wi)) return;
   const Vec3 wi = x.frame.to_local(light.wi);
   Rgb diffuse = x.bsdf.has_diffuse() ? x.bsdf.eval_diffuse(wi, x.wo_local) : Rgb(0.0f);
   Rgb glossy = specular ? x.bsdf.eval_specular(wi, x.wo_local) : Rgb(0.0f);
   if (!light.delta) {
-    if (weigh_diffuse) diffuse *= mis_power(light.pdf_solid_angle, x.bsdf.pdf_diffuse(wi, x.wo_local));
-    if (specular) glossy *= mis_power(light.pdf_solid_angle, x.bsdf.pdf_specular(wi, x.wo_local));
+    const float pdf = light.pdf_solid_angle * share;
+    if (weigh_diffuse) diffuse *= mis_power(pdf, x.bsdf.pdf_diffuse(wi, x.wo_local));
+    if (specular) glossy *= mis_power(pdf, x.bsdf.pdf_specular(wi, x.wo_local));
   }
   if (is_black(diffuse) && is_black(glossy)) return;
   ++counts.shadow;
   if (scene.tracer.occluded(spawn_shadow_ray(x.surface, light.position, light.position_offset))) return;
-  const Rgb arriving = throughput * light.radiance * wi.z;
+  Rgb arriving = throughput * light.radiance * (std::abs(wi.z) / share);
+  if (inside.any()) arriving *= inside.transmittance_over(scene.frame().materials, length(light.position - x.surface.position));
   result[path.after(true).layer()] += arriving * diffuse;
   result[path.after(false).layer()] += arriving * glossy;
 }
@@ -46,6 +54,7 @@ void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, co
   const Rgb emitted = scene.lights.emitted(hit.surface, hit.normal_geometric, wo);
   if (is_black(emitted)) return;
   const float weight = last.weighed ? mis_power(last.pdf_solid_angle,
+                                                last.light_share *
                                                 scene.lights.pdf_solid_angle(last.position, last.normal, hit.surface,
                                                                              hit.triangle, hit.position,
                                                                              hit.normal_geometric))
@@ -60,6 +69,7 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
   Layers result;
   Rgb throughput{1.0f};
   EyePath path;
+  Inside inside;
   LastScatter last;
   Ray ray = camera_ray;
   ++counts.camera;
@@ -70,11 +80,15 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     result.coverage = 1;
     const SurfacePoint point = scene.tracer.surface_point(hit);
     const Vec3 wo = -ray.direction;
+    const Material& material = scene.frame().materials[point.material];
+    const bool front = dot(point.normal_geometric, wo) > 0;
+    if (inside.any() || (is_solid_glass(material) && !front))
+      throughput *= inside.transmittance_to(scene.frame().materials, point.material, front, hit.t);
     add_emission(scene, point, wo, last, throughput, path.layer(), result);
 
-    const ShadingPoint x(point, wo, scene.frame().materials[point.material]);
+    const ShadingPoint x(point, wo, material);
     const bool ends_here = diffuse_light && x.bsdf.has_diffuse();
-    add_sampled_light(scene, x, throughput, path, random, bounce, !ends_here, result, counts);
+    add_sampled_light(scene, x, throughput, path, inside, random, bounce, !ends_here, result, counts);
     if (ends_here) {
       const DiffuseLight::Irradiance e = diffuse_light->at(point, x.normal_geometric, x.normal);
       ++counts.lookups;
@@ -91,9 +105,10 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     const Bsdf::Sample next = x.bsdf.sample(x.wo_local, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
     if (is_black(next.weight) || (ends_here && next.diffuse)) break;
     const Vec3 wi = x.frame.to_world(next.wi);
-    if (next.transmitted ? !(dot(wi, x.normal_geometric) < 0) : !x.sees(wi)) break;
+    if (next.transmitted ? !x.sees_beyond(wi) : !x.sees(wi)) break;
     throughput *= next.weight;
     path.scatter(next.diffuse);
+    if (!next.diffuse && is_solid_glass(material)) inside.scatter(point.material, front, next.transmitted);
 
     if (bounce + 1 >= kRouletteFrom) {
       const float survival = std::min(kLargestSurvival, max_component(throughput));
@@ -102,7 +117,8 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     }
     last.weighed = !next.delta;
     last.position = point.position;
-    last.normal = x.normal;
+    last.normal = next.transmitted ? -x.normal : x.normal;
+    last.light_share = next.transmitted ? x.bsdf.light_share_beyond() : 1 - x.bsdf.light_share_beyond();
     last.pdf_solid_angle = next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.wo_local) : x.bsdf.pdf_specular(next.wi, x.wo_local);
     ray = spawn_ray(point, wi);
     ++counts.bounce;

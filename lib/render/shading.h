@@ -27,6 +27,8 @@ struct ShadingPoint {
 
   /// Is wi on the lit side of both normals? Only then does light from it count.
   bool sees(Vec3 wi) const { return dot(wi, normal_geometric) > 0 && dot(wi, normal) > 0; }
+  /// Is it beyond both of them? Then light passes through from there.
+  bool sees_beyond(Vec3 wi) const { return dot(wi, normal_geometric) < 0 && dot(wi, normal) < 0; }
 
  private:
   static Vec3 viewed_normal(const SurfacePoint& point, Vec3 wo, Vec3 geometric) {
