@@ -34,6 +34,14 @@ def strengths(s):
     map_ = s.photons(path, "20k")
     s.near("photons: emitted flux, W", flux, map_["emitted_flux_W"][1], 1e-5)   # flux of a photon is a float
     s.near("photons: escaped", 0, map_["escaped_flux_W"][1] / flux, 0)
+    # Photons are shared out by flux, so that all of them are in the strongest cube; nothing else may get of its light.
+    # There: 20k paths, 4 sqrt(rho / N) = 2 %, and 1 % for points and gathering.
+    for i, strength in enumerate(STRENGTHS):
+        cached = s.cached(path, (32, 32), 16, photons="20k", common=("--camera", f"cube{i}"))
+        if strength == max(STRENGTHS):
+            s.near(f"cache: radiance in the cube of {strength:g}", strength / (1 - RHO), cached.mean(), 0.03)
+        else:
+            s.at_most(f"cache: radiance in the cube of {strength:g}", strength / (1 - RHO) * 1.1, cached.mean())
 
 
 def lit_room(path, strength, size=1.0):
@@ -51,14 +59,15 @@ def linearity(s):
     def results(strength):
         path = lit_room(s.path(".gltf"), strength)
         map_ = s.photons(path, "20k")
-        return s.render(path, (48, 36), 8), s.render(path, (48, 36), 4, "--photons", map_["path"]), map_
+        return (s.render(path, (48, 36), 8), s.render(path, (48, 36), 4, "--photons", map_["path"]),
+                s.cached(path, (48, 36)), map_)
     one = results(1.0)
     for power in (-66, 66, 99):
         scaled = results(2.0**power)
-        for i, name in enumerate(("path tracing", "photons")):
+        for i, name in enumerate(("path tracing", "photons", "cache")):
             s.same_image(f"2^{power}, {name}", one[i], scaled[i], factor=2.0**power, exactly=True)
-        s.near(f"2^{power}, photons: stored flux", one[2]["stored_flux_W"][0] * 2.0**power,
-               scaled[2]["stored_flux_W"][0], 1e-12)
+        s.near(f"2^{power}, photons: stored flux", one[3]["stored_flux_W"][0] * 2.0**power,
+               scaled[3]["stored_flux_W"][0], 1e-12)
 
 
 @case("light", "1e30 in a room of 1e6 m")

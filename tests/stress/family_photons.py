@@ -38,6 +38,10 @@ def few(s):
     two = s.photons(scene, 2, "--kinds", "indirect")
     s.render(scene, (16, 16), 4, "--photons", two["path"])
     s.true("1 and 2 photons: frames without NaN", True)
+    for count in (1, 2, 3):      # below the 3 that a density needs, points have their direct light and nothing else
+        image = s.cached(scene, (16, 16), photons=count)
+        s.true(f"{count} photons through the cache: indirect layer is finite", image.mean("indirect.G") > 0,
+               f"{image.mean('indirect.G'):.3g}", "> 0")
 
 
 def growth(s, small, large):
@@ -94,6 +98,10 @@ def one_point(s):
                 largest = max(largest, max(image.channels["caustic.G"]))
         s.true(f"spot of {angle:g} rad: density is finite", True, f"max {largest:.3g}")
         s.render(path, (32, 32), 4, "--integrator", "path", "--camera", "near")
+        for camera in ("near", "wide"):
+            image = s.cached(path, (32, 32), photons="10k", common=("--camera", camera))
+            s.true(f"spot of {angle:g} rad, camera {camera}: indirect layer is finite", True,
+                   f"max {max(image.channels['indirect.G']):.3g}")
 
     scene = Scene()                                 # a light so near to a wall that photons coincide there
     scene.mesh(*room_mesh((-1, -1, -1), (1, 1, 1)), scene.material(0.5))
@@ -104,6 +112,12 @@ def one_point(s):
     s.near("lamp 1e-6 m before a wall: stored flux, W", FLUX_OF_LAMP / 0.5, map_["stored_flux_W"][1],
            4 * math.sqrt(0.5 / 20000))
     s.render(path, (32, 32), 4, "--photons", map_["path"])
+    # Of the lamp's light a half falls on the spot beside it, of which rho comes back; gathered, nothing of it may be lost
+    # or be infinite. In the mean over surfaces F rho / (S (1 - rho)); the wall seen is the one that it lights.
+    image = s.cached(path, (32, 32))
+    bound = FLUX_OF_LAMP * 0.5 / (24 * 0.5) * 0.5 / math.pi
+    s.true("lamp 1e-6 m before a wall: indirect radiance, of its mean over all walls", 0.3 < image.mean("indirect.G") / bound < 3,
+           f"{image.mean('indirect.G') / bound:.3g}", "0.3 .. 3")
 
 
 @case("photons", "all on one plane")

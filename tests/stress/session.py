@@ -14,6 +14,7 @@ import time
 import exr
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "formats"))
+import read_irradcache  # noqa: E402
 import read_photons  # noqa: E402
 
 SHORT, FULL, LONG = range(3)
@@ -207,6 +208,30 @@ class Session:
     def read_in_python(self, path):
         try:
             return read_photons.read_photons(path)
+        except ValueError as error:
+            raise Failed(f"{path}: {error}") from None
+
+    def cached(self, scene, size, spp=4, *, photons=None, common=(), records=(), pixels=(), timeout=300):
+        """The frame by photon-trace, irradcache-build and frame-render --irradcache; beside it the files (`photons`,
+        `points`, `records`), the cache as read in Python and the statistics of its making. `common`: options of the
+        last two stages, `records`, `pixels` of one. Indirect light comes from irradiance points: 2 x 2000 of them in the
+        short form, where the tools take 2 x 20 000."""
+        files = [self.path(end) for end in (".photons", ".irradpoints", ".irradcache", ".json")]
+        self.done(self.run("photon-trace", scene, "--photons", photons or self.pick("20k", "200k"), "--kinds",
+                           "caustic,indirect", "-o", files[0], timeout=timeout))
+        run = self.done(self.run("irradcache-build", scene, "--photons", files[0], "--keep-points", files[1], "--size",
+                                 f"{size[0]}x{size[1]}", *self.pick(("--point-count", "2k", "--rays", 200), ()), *records, *common,
+                                 "-o", files[2], "--stats", files[3], timeout=timeout))
+        self.done(self.run("tempolux-info", "--check", *files[:3]))
+        image = self.render(scene, size, spp, "--irradcache", files[2], "--points", files[1], "--photons", files[0], "--channels",
+                            "RGBA,layers", *common, *pixels, timeout=timeout)
+        image.photons, image.points, image.records = files[:3]
+        image.cache, image.building, image.build = self.read_cache(files[2]), self.read_json(files[3]), run
+        return image
+
+    def read_cache(self, path):
+        try:
+            return read_irradcache.read_irradcache(path)
         except ValueError as error:
             raise Failed(f"{path}: {error}") from None
 

@@ -1,0 +1,132 @@
+"""Irradiance caches where lengths degenerate: no distance, no hit, no record, records closer than floats, radii clamped.
+
+The law of most cases is a furnace: every wall emits 1 and reflects 0.5, so the radiance is 2 wherever one looks and
+whatever the radii are. Tolerance: 4 sqrt(rho / N) of N paths (2 % of 20k, 0.6 % of 200k), and 1 % for points, gathering
+and interpolation.
+"""
+import math
+import struct
+
+import session  # noqa: F401  (puts read_irradcache on the path)
+from read_irradcache import write_irradcache
+from scenes import Scene
+from session import case
+
+RHO = 0.5
+LOWER, UPPER = (-1, -1, -1), (1, 1, 1)
+
+
+def tolerance(s):
+    return s.pick(0.03, 0.016)
+
+
+def furnace_room(s, fill=None, eye=(0.3, 0.2, 0.8), target=(-0.4, -0.2, -1), **camera):
+    scene = Scene()
+    wall = scene.material(RHO, 1.0, one_sided=True)
+    scene.room(LOWER, UPPER, wall)
+    if fill:
+        fill(scene, wall)
+    scene.camera(eye, target, **(camera or {"fov": 1.2}))
+    return scene.save(s.path(".gltf"))
+
+
+def looked_at(s, title, image, pixels):
+    """No more records than points looked at: a pixel's centre, and four places in a pixel at an edge."""
+    s.near(f"{title}: radiance", 1 / (1 - RHO), image.mean(), tolerance(s))
+    s.true(f"{title}: records", 1 <= len(image.cache.records) <= 5 * pixels, str(len(image.cache.records)), f"1 .. {5 * pixels}")
+    radii = [r.radius for r in image.cache.records]
+    s.true(f"{title}: radii", all(0 < r < math.inf for r in radii), f"{min(radii):.2g} .. {max(radii):.2g}", "above 0")
+
+
+@case("caches", "zero hit distance")
+def touching(s):
+    """A plate at 0, 1e-7 and 1e-5 m above the floor: gather rays from below it, and from the floor there, hit at once. And
+    a camera that stands 1e-6 m before a wall, and in a corner."""
+    for height in (0.0, 1e-7, 1e-5):
+        def plate(scene, wall, y=height - 1):
+            both = scene.material(RHO, 1.0)
+            scene.quad((-0.5, y, 0.5), (0.5, y, 0.5), (0.5, y, -0.5), (-0.5, y, -0.5), both)
+        looked_at(s, f"plate {height:g} m above the floor", s.cached(furnace_room(s, plate), (32, 24), 16), 32 * 24)
+    for title, eye, target in [("wall", (0.2, 0.1, -1 + 1e-6), (0.2, 0.1, -2)),
+                               ("corner", (-1 + 1e-6, -1 + 1e-6, -1 + 1e-6), (-2, -2, -2))]:
+        image = s.cached(furnace_room(s, None, eye, target), (16, 16), 16)
+        looked_at(s, f"camera 1e-6 m before a {title}", image, 256)
+
+
+@case("caches", "all misses")
+def misses(s):
+    """A floor under a lamp and nothing above it: no gather ray hits. No light, and the largest radius: a tenth of the
+    scene's diagonal."""
+    scene = Scene()
+    scene.quad((-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1), scene.material(0.8))
+    scene.point_light((0, 1, 0), 1.0)
+    scene.camera((0, 2, 0), (0, 0, 0), half_height=0.9)
+    image = s.cached(scene.save(s.path(".gltf")), (32, 32))
+    records = image.cache.records
+    s.near("indirect light", 0, max(map(abs, image.rgb("indirect"))), 0)
+    s.true("hit distance of every record", all(r.radius_unclamped == math.inf for r in records),
+           f"{min(r.radius_unclamped for r in records):g}", "inf")
+    for what, bound in (("smallest", min), ("largest", max)):
+        s.near(f"{what} radius, m", 0.1 * math.hypot(2, 2), bound(r.radius for r in records), 1e-5)
+    s.true("gradients", all(g == 0 for r in records for g in (*r.rotational, *r.translational)), expected="0")
+
+
+@case("caches", "0 and 1 record")
+def few(s):
+    """A cache with all records but one taken out, and with none: what is missing is gathered where it is asked for, so that
+    the picture is that of a full cache, to the noise of gathering (which differs from pixel to pixel here). Where there is
+    nothing to gather from, the picture is dark, and said to be so by the count of missing records."""
+    path = furnace_room(s)
+    full = s.cached(path, (24, 16), 4)
+    for count in (0, 1):
+        cache, file = s.read_cache(full.records), s.path(".irradcache")
+        cache.records = cache.records[:count]
+        write_irradcache(file, cache)
+        s.done(s.run("tempolux-info", "--check", file))
+        image = s.render(path, (24, 16), 4, "--irradcache", file, "--points", full.points, "--rays", 200)
+        s.near(f"{count} records and points: radiance", 1 / (1 - RHO), image.mean(), tolerance(s))
+        s.true(f"{count} records and points: gathered on the spot", image.stats["counts"]["gathered_on_the_spot"] > 0,
+               f"{image.stats['counts']['gathered_on_the_spot']:g}", "> 0")
+        image = s.render(path, (24, 16), 4, "--irradcache", file)
+        s.true(f"{count} records, no points: radiance between direct light alone and all",
+               0.99 * full.mean("direct.G") < image.mean() - 1 <= 1.02, f"{image.mean() - 1:.3g}", "0.5 .. 1")
+
+
+@case("caches", "records closer than float spacing")
+def crowded(s):
+    """An edge of the room through a picture 2e-7 m high: pixels are 6e-9 m apart, where floats are 6e-8 m apart. Then a cache
+    whose records all stand in one point, and at points one float apart."""
+    for title, eye, target in [("wall", (0.3, 0.2, 0.5), (0.3, 0.2, -1)), ("edge", (-0.5, -0.5, 0.2), (-1, -1, 0.2))]:
+        path = furnace_room(s, None, eye, target, half_height=1e-7)
+        image = s.cached(path, (32, 32), 4)
+        looked_at(s, f"picture of 2e-7 m, {title}", image, 32 * 32)
+        s.cost_at_most(f"picture of 2e-7 m, {title}: CPU seconds", 20, image.build.cpu)
+    path = furnace_room(s)
+    full = s.cached(path, (24, 16), 4)
+    cache = s.read_cache(full.records)
+    first = cache.records[0]
+    for title, step in (("in one point", 0), ("one float apart", 1)):
+        cache.records = []
+        for i in range(5000):
+            x = struct.unpack("<f", struct.pack("<I", struct.unpack("<I", struct.pack("<f", first.position[0]))[0] + i * step))[0]
+            record = type(first)(**{**vars(first), "position": (x, *first.position[1:]), "radius": 1e-7 * (1 + i % 7)})
+            cache.records.append(record)
+        file = s.path(".irradcache")
+        write_irradcache(file, cache)
+        image = s.render(path, (24, 16), 4, "--irradcache", file, "--points", full.points, "--rays", 200)
+        s.near(f"5000 records {title}: radiance", 1 / (1 - RHO), image.mean(), tolerance(s))
+        s.cost_at_most(f"5000 records {title}: CPU seconds", 20, image.run.cpu)
+
+
+@case("caches", "radius clamp at both ends")
+def clamped(s):
+    """Records below float spacing, of a pixel, and larger than the room; error bounds at both ends. In a furnace all of them
+    are right."""
+    path = furnace_room(s)
+    for title, options in [("1e-6 pixels", ("--min-radius-px", 1e-6)), ("1e-30 pixels", ("--min-radius-px", 1e-30)),
+                           ("1e6 pixels", ("--min-radius-px", 1e6)), ("1e30 pixels", ("--min-radius-px", 1e30)),
+                           ("error bound 0.001", ("--error-bound", 0.001, "--min-radius-px", 0.05)), ("error bound 2", ("--error-bound", 2)),
+                           ("weight 1e-6", ("--min-weight", 1e-6)), ("weight 0.99", ("--min-weight", 0.99))]:
+        image = s.cached(path, (24, 16), 4, records=options, timeout=120)
+        looked_at(s, f"smallest radius, {title}" if "pixels" in title else title, image, 24 * 16)
+        s.cost_at_most(f"{title}: CPU seconds", 60, image.build.cpu)
