@@ -120,22 +120,22 @@ class Placement {
 }  // namespace
 
 void limit_radius(IrradianceRecord& record, float footprint, float max_radius, const PlacementOptions& options) {
-  float r = record.radius_unclamped;
-  const float e = record.irradiance.r + record.irradiance.g + record.irradiance.b;
-  float slope = 0;
-  for (Vec3 g : record.translational) slope += length(g);
-  if (slope * r > e && slope > 0) r = e / slope;
-  r = std::min(options.error_bound * r, record.radius);
+  // double: squares of gradients, whatever the strength of the light, stay finite, and its power of two changes no radius.
+  const double e = double(record.irradiance.r) + double(record.irradiance.g) + double(record.irradiance.b);
+  double reach = double(record.radius_unclamped), slope = 0;
+  for (Vec3 g : record.translational) slope += length(Vec3d(g));
+  if (slope * reach > e && slope > 0) reach = e / slope;
+  const float r = std::min({options.error_bound * float(reach), record.radius, max_radius});
   record.radius_unclamped *= options.error_bound;
-  r = std::min(r, max_radius);
   record.radius = std::max(r, options.min_radius_px * footprint);
   // Near a wall the gradient is large, noisy, and holds over a part of this radius only [Jakob, Mitsuba 0.6].
   if (r < record.radius)
     for (Vec3& g : record.translational) g *= r / record.radius;
-  slope *= r / record.radius;
+  slope *= double(r / record.radius);
   // A gradient steeper than the irradiance over the smallest radius would extrapolate below zero.
-  if (slope * record.radius > e && slope > 0)
-    for (Vec3& g : record.translational) g *= e / (slope * record.radius);
+  const double over = slope * double(record.radius);
+  if (over > e && slope > 0)
+    for (Vec3& g : record.translational) g *= float(e / over);
 }
 
 std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height, const Box3& bounds,

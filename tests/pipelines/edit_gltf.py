@@ -8,6 +8,7 @@ OUT may be a .glb, or a .gltf that gets its buffer as a .bin file beside it.
   emission FACTOR       all emissive materials are FACTOR times as bright
   lamp [FRAME]          a lamp that moves through frames 0 to 3; one centimetre higher at FRAME
   still                 no animation
+  mirror                the first material that emits nothing is a perfect mirror
   drop NAME             without the key NAME at the top level (cameras, for example)
 """
 import json
@@ -94,6 +95,11 @@ def still(gltf, binary):
     gltf.pop("animations", None)
 
 
+def mirror(gltf, binary):
+    material = next(m for m in gltf["materials"] if not any(m.get("emissiveFactor", [0])))
+    material["pbrMetallicRoughness"] |= {"metallicFactor": 1, "roughnessFactor": 0}
+
+
 def drop(gltf, binary, name):
     gltf.pop(name)
     if name == "cameras":
@@ -105,7 +111,7 @@ def main():
     source, target, edit, *arguments = sys.argv[1:]
     gltf, binary = read_glb(source)
     edits = {"same": same, "camera-from": camera_from, "emission": emission, "lamp": lamp, "still": still,
-             "drop": drop}
+             "mirror": mirror, "drop": drop}
     edits[edit](gltf, binary, *arguments)
     if target.endswith(".gltf"):
         buffer = target[:-5] + ".bin"

@@ -157,6 +157,22 @@ TEST(LimitRadius, EachLimitDecidesWhereItIsTheSmallest) {
   EXPECT_FLOAT_EQ(limited(gathered(1, {}, 1, INFINITY), 1e-3f).radius_unclamped, 0.2f);
 }
 
+/// Light times a power of two: the same radii, gradients times the power, though their squares are beyond floats.
+TEST(LimitRadius, DoesNotDependOnTheStrengthOfTheLight) {
+  const PlacementOptions options;
+  for (float slope : {1.0f, 4.0f, 100.0f})
+    for (float nearest : {1e-3f, 0.05f, INFINITY}) {
+      IrradianceRecord one = gathered(1, {slope, 0, -slope}, 1, nearest);
+      limit_radius(one, 1e-3f, 0.5f, options);
+      for (float power : {0x1p-66f, 0x1p66f, 0x1p99f}) {
+        IrradianceRecord scaled = gathered(power, {slope * power, 0, -slope * power}, 1, nearest);
+        limit_radius(scaled, 1e-3f, 0.5f, options);
+        EXPECT_EQ(scaled.radius, one.radius) << power;
+        EXPECT_EQ(scaled.translational[0].x, one.translational[0].x * power) << power;
+      }
+    }
+}
+
 /// algorithms of the literature divide 0 by 0 in these; ours say the largest or smallest radius.
 TEST(LimitRadius, DegenerateGathers) {
   const PlacementOptions options;

@@ -1,0 +1,75 @@
+#!/bin/sh
+# What a scene does not need is not done, by the gathering chain: sh tests/pipelines/leaving_out.sh BIN
+# Run at the top of the tree; BIN is the folder with the tools. Seen in the files, their statistics, the inputs each tool
+# says it read and the libraries that are mapped. What make leaves out: rerun.sh.
+bin=$1 scene=pipelines/scenes/S2_cornell_moving.glb
+work=$(mktemp -d) || exit 3
+trap 'rm -rf "$work"' EXIT
+failed=0
+bad() { echo "FAILED: $*"; failed=1; }
+tool() { t=$1; shift; LD_DEBUG=files LD_DEBUG_OUTPUT="$work/libraries" "$bin/$t" "$@" -q || { echo "FAILED: $t $*: exit $?"; exit 1; }; }
+edit() { python3 -B tests/pipelines/edit_gltf.py "$@" || exit 1; }
+kinds() { "$bin/tempolux-info" --json "$1" | tr -d ' \n' | sed 's/.*"by_kind":{//' | grep -o '"[a-z]*":{' | tr -d '":{' | tr '\n' ' '; }
+# count NAME FILE: of its statistics
+count() { sed -n "s/.*\"$1\": *\([0-9.]*\).*/\1/p" "$2" | head -1; }
+
+edit $scene "$work/still.glb" still
+edit "$work/still.glb" "$work/walk.glb" camera-from 2
+small='--point-count 2k --rays 50'
+
+# Nothing but the camera moves: the photons of frame 0 are those of frame 2, bit for bit, and so are the points.
+tool scene-plan "$work/walk.glb" --frames 0-3 -o "$work/plan"
+grep -q '^plan_photons := 0000$' "$work/plan/plan.mk" || bad 'only the camera moves: photons of more than frame 0'
+grep -q '^plan_kinds := indirect$' "$work/plan/plan.mk" || bad 'no mirror, no glass: photons of other kinds than indirect'
+tool photon-trace "$work/walk.glb" --frame 0 --photons 20k --kinds indirect -o "$work/0.photons"
+tool photon-trace "$work/walk.glb" --frame 2 --photons 20k --kinds indirect -o "$work/2.photons"
+"$bin/tempolux-info" --diff "$work/0.photons" "$work/2.photons" > /dev/null || bad 'only the camera moves: other photons'
+tool irradcache-build points "$work/walk.glb" --photons "$work/0.photons" --point-count 2k -o "$work/0.irradpoints"
+
+# Records of the other place of the camera: those of the first stay, a few are added where something new is seen. The camera
+# moves by 1 cm in 5.5 m, a pixel of 160 at most: below 5 %.
+tool irradcache-build records "$work/walk.glb" --points "$work/0.irradpoints" --rays 50 --size 160x90 -o "$work/0.irradcache" \
+  --stats "$work/0.json" --depfile "$work/0.d"
+grep -q '\.photons' "$work/0.d" && bad 'records from points: photons were read'
+tool irradcache-build records "$work/walk.glb" --frame 2 --points "$work/0.irradpoints" --records "$work/0.irradcache" --rays 50 \
+  --size 160x90 -o "$work/2.irradcache" --stats "$work/2.json"
+python3 -B - "$work" <<'END' || bad 'only the camera moves: records were gathered again'
+import json, sys
+sys.path.insert(0, "tests/formats")
+from read_irradcache import read_irradcache
+work = sys.argv[1]
+first, second = (read_irradcache(f"{work}/{f}.irradcache").records for f in (0, 2))
+assert second[:len(first)] == first, "old records changed"
+added = len(second) - len(first)
+assert added == json.load(open(f"{work}/2.json"))["results"]["records_added.2"]
+assert added < 0.05 * len(first), f"{added} new records beside {len(first)}"
+rays = [json.load(open(f"{work}/{f}.json"))["counts"]["gather_rays"] for f in (0, 2)]
+assert rays[1] < 0.1 * rays[0], f"{rays[1]} gather rays for frame 2, {rays[0]} for frame 0"
+END
+tool irradcache-build records "$work/walk.glb" --points "$work/0.irradpoints" --records "$work/0.irradcache" --rays 50 --size 160x90 \
+  -o "$work/again.irradcache" --stats "$work/again.json"
+[ "$(count gather_rays "$work/again.json")" = 0 ] || bad 'the same camera again: rays were gathered'
+
+# Pixels: with every record there, points are not read; without mirror or glass photons are not asked for.
+tool frame-render "$work/walk.glb" --irradcache "$work/0.irradcache" --points "$work/0.irradpoints" --spp 1 --pixel-error 0 \
+  --size 160x90 --channels RGBA,layers -o "$work/0.exr" --stats "$work/frame.json" --depfile "$work/frame.d"
+[ "$(count gathered_on_the_spot "$work/frame.json")" = 0 ] || bad 'records are missing in the picture they were placed for'
+grep -q irradpoints "$work/frame.d" && bad 'no record is missing: points were read'
+"$bin/tempolux-info" --json "$work/0.exr" | tr -d ' \n' | grep -q '"caustic.G"[^}]*"max":0[.0]*[,}]' ||
+  bad 'no mirror, no glass: a caustic layer that is not 0'
+
+# A mirror brings caustic photons, and without one there are none of them even where they are asked for.
+tool photon-trace "$work/walk.glb" --photons 5k --kinds caustic,indirect -o "$work/matte.photons"
+[ "$(kinds "$work/matte.photons")" = 'indirect ' ] || bad "no mirror, no glass: photons of kinds $(kinds "$work/matte.photons")"
+edit "$work/still.glb" "$work/mirror.glb" mirror
+tool scene-plan "$work/mirror.glb" --frames 0 -o "$work/mirror"
+grep -q '^plan_kinds := caustic,indirect$' "$work/mirror/plan.mk" || bad 'a mirror: no caustic photons planned'
+tool photon-trace "$work/mirror.glb" --photons 5k --kinds caustic,indirect -o "$work/mirror.photons"
+[ "$(kinds "$work/mirror.photons")" = 'caustic indirect ' ] || bad "a mirror: photons of kinds $(kinds "$work/mirror.photons")"
+
+# Libraries, those opened while running among them: the loader's own list.
+ls "$work"/libraries.* > /dev/null 2>&1 || bad 'the loader lists no libraries'
+grep -hoE 'file=[^ ]*(OpenImageIO|openvdb|opencv)[^ ]*' "$work"/libraries.* | sort -u | grep . && bad 'these were mapped'
+grep -qhE 'file=[^ ]*embree' "$work"/libraries.* || bad 'the list of libraries lacks Embree: it says nothing'
+[ $failed = 0 ] && echo ok
+exit $failed
