@@ -8,6 +8,7 @@
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/material/bsdf.h"
+#include "lib/material/surface_material.h"
 
 namespace tempolux {
 namespace {
@@ -74,16 +75,24 @@ struct FinalGather::Met {
   const Bsdf* bsdf = nullptr;   ///< null: nothing was met
 };
 
-FinalGather::Met FinalGather::meet(const SurfacePoint& hit, Vec3 wo, float distance) const {
+/// A material with textures is made for this hit, in `textured`, which must last as long as the result; a normal map
+/// bends the hit's normal.
+FinalGather::Met FinalGather::meet(SurfacePoint& hit, Vec3 wo, float distance, std::optional<Bsdf>& textured) const {
   const bool front = dot(hit.normal_geometric, wo) > 0;
+  const Bsdf* bsdf = &bsdfs_[hit.material][front];
+  if (tracer_.frame().materials[hit.material].textures) [[unlikely]] {
+    const SurfaceMaterial material(tracer_.frame(), hit, kBounceSpread * distance);
+    bsdf = &textured.emplace(material, front);
+  }
   return {hit, wo, dot(hit.normal_geometric, wo) < 0 ? -hit.normal_geometric : hit.normal_geometric, distance,
-          &bsdfs_[hit.material][front]};
+          bsdf};
 }
 
 void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint64_t> keys,
                            std::span<Rgb> radiance, std::span<float> distance, GatherCounts& counts) const {
   std::array<Hit, kAtOnce> hits;
   std::array<Met, kAtOnce> met;
+  std::array<std::optional<Bsdf>, kAtOnce> textured;
   std::array<PointLookup::Question, kAtOnce> questions;
   std::array<PointLookup::Answer, kAtOnce> answers;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
@@ -93,8 +102,8 @@ void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint6
       met[i].bsdf = nullptr;
       if (hits[i].surface == kNone) continue;
       const Ray& ray = rays[first + i];
-      const SurfacePoint hit = tracer_.surface_point(hits[i]);
-      met[i] = meet(hit, -ray.direction, length(hit.position - ray.origin));
+      SurfacePoint hit = tracer_.surface_point(hits[i]);
+      met[i] = meet(hit, -ray.direction, length(hit.position - ray.origin), textured[i]);
       if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(hit.position, met[i].geometric, hit.object);
     }
     const auto reads_point = [&](std::size_t i) { return met[i].bsdf && met[i].bsdf->has_diffuse(); };
@@ -149,8 +158,9 @@ Rgb FinalGather::reflected_beyond(const SurfacePoint& from, Vec3 travel, float d
   Hit hit;
   ++counts.rays;
   if (!tracer_.intersect(spawn_ray(from, travel), hit)) return Rgb(0.0f);
-  const SurfacePoint there = tracer_.surface_point(hit);
-  const Met met = meet(there, -travel, distance + length(there.position - from.position));
+  SurfacePoint there = tracer_.surface_point(hit);
+  std::optional<Bsdf> textured;
+  const Met met = meet(there, -travel, distance + length(there.position - from.position), textured);
   const PointLight* point =
       met.bsdf->has_diffuse() ? points_.find(there.position, met.geometric, there.object) : nullptr;
   return reflected(met, point, key, depth, counts);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,7 +63,7 @@ class FinalGather {
 
  private:
   struct Met;
-  Met meet(const SurfacePoint& hit, Vec3 wo, float distance) const;
+  Met meet(SurfacePoint& hit, Vec3 wo, float distance, std::optional<Bsdf>& textured) const;
   Rgb reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts) const;
   Rgb reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key, int depth,
                        GatherCounts& counts) const;

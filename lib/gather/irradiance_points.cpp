@@ -9,7 +9,7 @@
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "lib/density/morton.h"
-#include "lib/material/bsdf.h"
+#include "lib/material/surface_material.h"
 
 namespace tempolux {
 namespace {
@@ -20,7 +20,7 @@ double triangle_area(const Surface& surface, const std::array<std::uint32_t, 3>&
 }
 
 bool stores_light(const SceneFrame& frame, const Surface& surface) {
-  return Bsdf(frame.materials[surface.material]).has_lambert();
+  return may_have_lambert(frame.materials[surface.material]);
 }
 
 double storing_area(const SceneFrame& frame) {

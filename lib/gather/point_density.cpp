@@ -7,7 +7,7 @@
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "lib/density/irradiance_estimate.h"
-#include "lib/material/bsdf.h"
+#include "lib/material/surface_material.h"
 
 namespace tempolux {
 namespace {
@@ -46,7 +46,7 @@ PointDensity::PointDensity(const Tracer& tracer, std::vector<formats::Photon> ph
       reach_(tracer),
       index_(photons),
       facing_(index_, options.max_radius) {
-  for (const Material& material : tracer.frame().materials) stores_.push_back(Bsdf(material).has_lambert());
+  for (const Material& material : tracer.frame().materials) stores_.push_back(may_have_lambert(material));
 }
 
 Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& random, float& radius) const {

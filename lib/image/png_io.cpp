@@ -84,13 +84,11 @@ bool read_rows(Session& session, png_structp png, png_bytepp rows) {
   return true;
 }
 
-Raw read_raw(const ByteFile& file, std::uint64_t max_pixels) {
-  std::vector<std::uint8_t> bytes(file.size());
-  file.read_at(0, bytes.data(), bytes.size());
+Raw read_raw(std::span<const unsigned char> bytes, const std::string& place, std::uint64_t max_pixels) {
   Session session;
   session.data = bytes.data();
   session.left = bytes.size();
-  const auto fail = [&](const std::string& what) { throw InputError(file.path() + ": PNG: " + what); };
+  const auto fail = [&](const std::string& what) { throw InputError(place + ": PNG: " + what); };
   if (bytes.size() < 8 || png_sig_cmp(bytes.data(), 0, 8) != 0) fail("no PNG signature; not a PNG file");
 
   struct Handle {
@@ -100,7 +98,7 @@ Raw read_raw(const ByteFile& file, std::uint64_t max_pixels) {
   } handle;
   handle.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &session, on_error, on_warning);
   handle.info = handle.png ? png_create_info_struct(handle.png) : nullptr;
-  if (!handle.info) throw ResourceError(file.path() + ": libpng could not start");
+  if (!handle.info) throw ResourceError(place + ": libpng could not start");
 
   Raw raw;
   if (!start_reading(session, handle.png, handle.info, raw)) fail(one_line(session.message));
@@ -162,7 +160,10 @@ float linear_to_srgb(float linear) {
 }
 
 Image load_png(const std::string& path, std::uint64_t max_pixels) {
-  const Raw raw = read_raw(ByteFile(path), max_pixels);
+  const ByteFile file(path);
+  std::vector<std::uint8_t> file_bytes(file.size());
+  file.read_at(0, file_bytes.data(), file_bytes.size());
+  const Raw raw = read_raw(file_bytes, path, max_pixels);
   std::string transfer;
   const std::vector<float> linear = linear_table(raw, transfer);
   const bool grey = raw.channels < 3, alpha = raw.channels % 2 == 0;
@@ -186,6 +187,16 @@ Image load_png(const std::string& path, std::uint64_t max_pixels) {
     if (alpha) image.channels[3].values[i] = a;
   }
   return image;
+}
+
+CodedPixels decode_png(std::span<const unsigned char> bytes, const std::string& place, std::uint64_t max_pixels) {
+  Raw raw = read_raw(bytes, place, max_pixels);
+  if (raw.bits == 16)
+    for (std::size_t i = 0; i + 1 < raw.bytes.size(); i += 2) {
+      const auto value = std::uint16_t(raw.bytes[i] << 8 | raw.bytes[i + 1]);
+      std::memcpy(&raw.bytes[i], &value, sizeof value);
+    }
+  return {int(raw.width), int(raw.height), raw.channels, raw.bits, std::move(raw.bytes)};
 }
 
 void save_png(const std::string& path, const Picture& picture) {

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
+
+#include "lib/image/encoded_image.h"
 
 #include "lib/image/image.h"
 
@@ -13,6 +16,9 @@ namespace tempolux {
 /// text attribute "tempolux:source" says what was done. Size is checked against max_pixels and against the
 /// file's bytes first. Throws InputError "FILE: ..." for what is not a PNG, damaged or truncated.
 Image load_png(const std::string& path, std::uint64_t max_pixels);
+
+/// Pixels of a PNG in memory as they are coded, palette expanded. Checks and errors as load_png.
+CodedPixels decode_png(std::span<const unsigned char> bytes, const std::string& place, std::uint64_t max_pixels);
 
 /// sRGB transfer (IEC 61966-2-1), encoded [0, 1] to linear [0, 1] and back; values below 0 give 0 in the
 /// latter, above 1 give 1.

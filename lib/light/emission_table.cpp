@@ -22,9 +22,7 @@ void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vect
   };
   for (const std::uint32_t s : table.surfaces) {
     const Surface& surface = frame.surfaces[s];
-    const Material& material = frame.materials[surface.material];
-    for (std::uint32_t t = 0; t < surface.primitive->triangles.size(); ++t)
-      join(TriangleLight(surface, t, material).flux());
+    for (std::uint32_t t = 0; t < surface.primitive->triangles.size(); ++t) join(TriangleLight(frame, s, t).flux());
   }
   for (const PlacedLight& placed : frame.lights) join(punctual_flux(placed.light, table.sphere_radius));
 }

@@ -13,6 +13,7 @@
 #include "lib/light/light_tree.h"
 #include "lib/light/punctual.h"
 #include "lib/light/triangle_light.h"
+#include "lib/scene/texture_lookup.h"
 
 namespace tempolux {
 namespace {
@@ -96,7 +97,11 @@ struct Lights::Impl {
   double sun_share(Vec3 point, Vec3 normal, double& total) const;
   bool sample_sun(Vec3 point, Vec3 normal, double u, double share, double total, LightSample& s) const;
   bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;
-  void emit_triangle(const TriangleLight& t, const double u[4], PhotonEmission& e) const;
+  /// Radiance of a point of a slot's triangle, by barycentrics.
+  Rgb emitted_at(std::size_t slot, double b1, double b2) const {
+    return triangles[slot].emitted_at(*frame, slots[slot].surface, slots[slot].triangle, b1, b2);
+  }
+  Rgbd emit_triangle(std::size_t slot, const double u[4], PhotonEmission& e) const;
   void emit_punctual(const PlacedLight& placed, const double u[4], PhotonEmission& e) const;
 };
 
@@ -113,7 +118,7 @@ void Lights::Impl::add_slots(const EmissionTable& table) {
     first_slot[s] = std::uint32_t(slots.size());
     for (std::uint32_t t = 0; t < surface.primitive->triangles.size(); ++t) {
       slots.push_back({EmissionSlot::Kind::triangle, s, t, kNone, 0});
-      triangles.emplace_back(surface, t, frame->materials[surface.material]);
+      triangles.emplace_back(*frame, s, t);
     }
   }
   for (std::uint32_t i = 0; i < frame->lights.size(); ++i)
@@ -251,7 +256,7 @@ bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool 
   sample.wi = on_triangle.wi;
   sample.position = on_triangle.position;
   sample.position_offset = t.offset;
-  sample.radiance = Rgb(Rgbd(t.radiance) / pdf);
+  sample.radiance = Rgb(Rgbd(m.emitted_at(slot, on_triangle.barycentric.x, on_triangle.barycentric.y)) / pdf);
   sample.pdf_solid_angle = float(pdf);
   return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.radiance);
 }
@@ -270,12 +275,16 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   return pdf < INFINITY ? pdf : 0;
 }
 
-Rgb Lights::emitted(std::uint32_t surface, Vec3 normal_geometric, Vec3 wo) const {
-  const Material& material = impl_->frame->materials[impl_->frame->surfaces[surface].material];
-  return material.double_sided || dot(normal_geometric, wo) > 0 ? material.emission : Rgb(0.0f);
+Rgb Lights::emitted(const SurfacePoint& hit, Vec3 wo, float width) const {
+  const Material& material = impl_->frame->materials[hit.material];
+  if (!material.double_sided && !(dot(hit.normal_geometric, wo) > 0)) return Rgb(0.0f);
+  if (!material.textures) return material.emission;
+  return emission_at(*impl_->frame, hit.surface, hit.triangle, hit.u, hit.v, width);
 }
 
-void Lights::Impl::emit_triangle(const TriangleLight& t, const double u[4], PhotonEmission& e) const {
+/// Returns the flux of the whole triangle, were it everywhere as bright as where the photon starts.
+Rgbd Lights::Impl::emit_triangle(std::size_t slot, const double u[4], PhotonEmission& e) const {
+  const TriangleLight& t = triangles[slot];
   // Heitz' map from square to triangle, as sample_triangle, in double.
   double b1 = u[0], b2 = u[1];
   if (b2 > b1)
@@ -290,6 +299,10 @@ void Lights::Impl::emit_triangle(const TriangleLight& t, const double u[4], Phot
   e.travel = t.area > 0
                  ? normalize(Frame(e.normal).to_world(sample_hemisphere_cos({to_float(u2), to_float(u[3])})))
                  : Vec3{0, 0, 1};
+  if (!t.varies) return t.flux();
+  TriangleLight here = t;
+  here.radiance = emitted_at(slot, b1, b2);
+  return here.flux();
 }
 
 void Lights::Impl::emit_punctual(const PlacedLight& placed, const double u[4], PhotonEmission& e) const {
@@ -320,8 +333,7 @@ PhotonEmission Lights::emit(const double u[4]) const {
   e.slot = std::uint32_t(slot);
   Rgbd flux;
   if (slot < m.triangles.size()) {
-    flux = m.triangles[slot].flux();
-    m.emit_triangle(m.triangles[slot], stretched, e);
+    flux = m.emit_triangle(slot, stretched, e);
   } else {
     const PlacedLight& placed = m.frame->lights[m.slots[slot].light];
     flux = punctual_flux(placed.light, m.sphere_radius);

@@ -9,6 +9,7 @@
 
 #include "lib/core/vec.h"
 #include "lib/scene/at_frame.h"
+#include "lib/scene/surface_point.h"
 
 namespace tempolux {
 
@@ -26,7 +27,8 @@ struct EmissionSlot {
 /// What is frozen over a segment. Slots are the triangles of `surfaces`, one after the other, then the
 /// frame's punctual lights; probability is proportional to the maximum flux over the segment's frames
 /// (luminance, but at least 5 % of the largest channel, so that blue lamps count; a directional light's flux
-/// is its irradiance times the area pi R^2 of the scene sphere's disc).
+/// is its irradiance times the area pi R^2 of the scene sphere's disc). A triangle whose emission a texture
+/// makes vary counts with its mean.
 struct EmissionTable {
   std::vector<std::uint32_t> surfaces;  ///< that emit at some frame: indices into SceneFrame::surfaces
   std::vector<double> probability;      ///< by slot, sums to 1; equal if nothing ever emits
@@ -82,9 +84,9 @@ class Lights {
   /// triangle's own plane decides, as in sample(); light_normal is not looked at.
   float pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
                         Vec3 light_normal) const;
-  /// Radiance that the triangle's material emits towards `wo` (unit, away from it); zero from the back of a
-  /// one-sided emitter.
-  Rgb emitted(std::uint32_t surface, Vec3 normal_geometric, Vec3 wo) const;
+  /// Radiance that the material emits at a hit towards `wo` (unit, away from it), textures read over `width` m; zero
+  /// from the back of a one-sided emitter.
+  Rgb emitted(const SurfacePoint& hit, Vec3 wo, float width) const;
 
   /// A photon from the frozen table: u[0] chooses the slot and, stretched, is the first coordinate on it,
   /// u[1] the second; u[2], u[3] the direction (of a two-sided triangle the lower half of u[2] leaves the

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "lib/core/sampling.h"
+#include "lib/scene/texture_lookup.h"
 
 namespace tempolux {
 namespace {
@@ -89,6 +90,19 @@ TriangleLight::TriangleLight(const Surface& surface, std::uint32_t index, const 
   two_sided = material.double_sided;
 }
 
+TriangleLight::TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index)
+    : TriangleLight(frame.surfaces[surface], index, frame.materials[frame.surfaces[surface].material]) {
+  varies = emission_varies(frame.materials[frame.surfaces[surface].material]);
+  if (varies) radiance = mean_emission(frame, surface, index);
+}
+
+Rgb TriangleLight::emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1,
+                              double b2) const {
+  if (!varies) return radiance;
+  return emission_at(frame, surface, index, float(b1), float(b2), 0) *
+         coverage_at(frame, surface, index, float(b1), float(b2));
+}
+
 Rgbd TriangleLight::flux() const { return Rgbd(radiance) * (kPiD * area * (two_sided ? 2 : 1)); }
 
 Vec3 TriangleLight::point(double b1, double b2) const {
@@ -110,6 +124,7 @@ bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoin
     b = sample_triangle(u);
   }
   const Vec3 offset = light.edge1 * b.x + light.edge2 * b.y, to = view.v0 + offset;
+  sample.barycentric = b;
   sample.position = light.corner + offset;
   const float distance = length(to);
   if (!(distance > 0)) return false;

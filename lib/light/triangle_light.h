@@ -14,15 +14,21 @@ struct TriangleLight {
   double area = 0;     ///< m^2
   Rgb radiance{0.0f};  ///< W/(m^2 sr)
   bool two_sided = false;
+  bool varies = false; ///< radiance is the mean; that of a point is emitted_at's
 
   /// Triangle `index` of a surface, with the material's emission at the frame.
   TriangleLight(const Surface& surface, std::uint32_t index, const Material& material);
+  /// Of a surface of the frame, with the mean over the triangle where a texture or alpha makes it vary.
+  TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index);
+  /// Radiance of the point of barycentrics (b1, b2), times the share of rays that meet it there.
+  Rgb emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const;
   bool emits() const { return area > 0 && max_component(radiance) > 0; }
   Rgbd flux() const;                       ///< pi L A, twice that if two-sided [W]
   Vec3 point(double b1, double b2) const;  ///< by the barycentrics of corners 1 and 2
 };
 
 struct TrianglePoint {
+  Vec2 barycentric{};          ///< of corners 1 and 2
   Vec3 position{}, wi{};       ///< wi: unit, from the point that looks towards position
   double pdf_solid_angle = 0;  ///< [1/sr]
 };

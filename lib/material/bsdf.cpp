@@ -27,7 +27,7 @@ Rgb fresnel(Rgb f0, float f90, float cos_h) {
 }
 
 /// F0 of glTF's dielectric: KHR_materials_ior, KHR_materials_specular.
-Rgb dielectric_f0(const Material& m) {
+Rgb dielectric_f0(const MaterialValues& m) {
   const float r = (m.ior - 1) / (m.ior + 1), f = r * r;
   return Rgb{std::min(1.0f, f * m.specular_color.r), std::min(1.0f, f * m.specular_color.g),
              std::min(1.0f, f * m.specular_color.b)} *
@@ -36,7 +36,8 @@ Rgb dielectric_f0(const Material& m) {
 
 }  // namespace
 
-Bsdf::Bsdf(const Material& material, bool front) {
+Bsdf::Bsdf(const MaterialValues& material, bool front) {
+  if (material.unlit) return;  // scatters nothing
   const float metallic = material.metallic;
   transmission_ = material.transmission * (1 - metallic);
   if (transmission_ > 0) {

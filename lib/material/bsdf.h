@@ -45,7 +45,7 @@ namespace tempolux {
 class Bsdf {
  public:
   /// front: wo is on the front side of the triangle, outside a solid of glass.
-  explicit Bsdf(const Material& material, bool front = true);
+  explicit Bsdf(const MaterialValues& material, bool front = true);
 
   /// Does light arrive at a Lambert lobe here? True of a black one too: what it receives can be measured.
   bool has_lambert() const { return lambert_; }

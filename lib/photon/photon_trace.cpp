@@ -1,12 +1,15 @@
 #include "lib/photon/photon_trace.h"
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "formats/error.h"
 #include "lib/core/frame.h"
 #include "lib/core/random.h"
 #include "lib/material/inside.h"
+#include "lib/material/surface_material.h"
+#include "lib/scene/texture_lookup.h"
 
 namespace tempolux {
 namespace {
@@ -38,6 +41,18 @@ struct Arrival {
     const float geometric = dot(wi, normal_geometric);
     shading_correction = flat ? 1 : geometric > 0 ? std::max(0.0f, wi_local.z) / geometric : 0;
   }
+};
+
+/// What only materials with textures or alpha need; bends the point's normal.
+struct Textured {
+  SurfaceMaterial material;
+  Bsdf bsdf;
+  float coverage;                            ///< share of photons that meet the surface there
+
+  Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel, float distance)
+      : material(frame, point, kBounceSpread * distance),
+        bsdf(material, dot(point.normal_geometric, travel) < 0),
+        coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
 };
 
 /// Field by field into its place: a copy of 32 bytes just put together would wait for each of them.
@@ -87,6 +102,7 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
   batches_per_group_ = (members_ + kBatch - 1) / kBatch;
   for (const Material& material : tracer.frame().materials) {
     solid_.push_back(is_solid_glass(material));
+    varies_.push_back(material.textures || lets_rays_pass(material));
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
   }
 }
@@ -121,10 +137,12 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
       batch.escaped += Rgbd(flux);
       return;
     }
-    const SurfacePoint point = tracer_.surface_point(hit);
+    SurfacePoint point = tracer_.surface_point(hit);
+    std::optional<Textured> textured;
+    if (varies_[point.material]) [[unlikely]] textured.emplace(tracer_.frame(), point, ray.direction, hit.t);
     const Arrival at(point, ray.direction);
     const bool front = dot(point.normal_geometric, at.wi) > 0;
-    const Bsdf& bsdf = bsdfs_[point.material][front];
+    const Bsdf& bsdf = textured ? textured->bsdf : bsdfs_[point.material][front];
     const bool solid = solid_[point.material];
     if (inside.any() || (solid && !front)) {
       const Rgb sent = flux;
@@ -139,6 +157,7 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
     if (wanted && bsdf.has_lambert() && at.shading_correction > 0) {
       Rgb stored = flux * (bsdf.arrival_weight(at.wi_local.z) * at.shading_correction);
       if (inside.any()) stored *= 1 / inside.index_squared(tracer_.frame().materials);
+      if (textured) stored *= 1 / textured->coverage;
       record(stored, point, at.normal_geometric, kind, bounce, batch.block.photons);
     }
 

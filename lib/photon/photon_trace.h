@@ -43,7 +43,9 @@ struct PhotonBatch {
 ///     flux x arrival_weight(wi) x |wi.n_s| / |wi.n_g|     [W]
 /// so that  rho/pi x density  is what the Lambert lobe reflects, shading normals included [Veach 1997, 5.3];
 /// for a matte flat surface that is the flux that arrives. Inside solids of glass it is divided by the index
-/// squared (bsdf.h). What solids absorb on the way counts as absorbed. Roulette keeps the flux of a path about constant
+/// squared (bsdf.h). What solids absorb on the way counts as absorbed. Of a surface of alpha mode BLEND only the
+/// share alpha of the photons take notice: divided by alpha they stand for all that arrive. Roulette keeps the flux
+/// of a path about constant
 /// and its expectation exact.
 class PhotonTracer {
  public:
@@ -69,6 +71,7 @@ class PhotonTracer {
   PhotonHalton halton_;
   std::vector<char> solid_;   ///< by material: boundary of a solid of glass
   std::vector<std::array<Bsdf, 2>> bsdfs_;   ///< by material: seen from the back, from the front
+  std::vector<std::uint8_t> varies_;         ///< by material: textures decide at each hit
   std::uint64_t group_count_, members_, batches_per_group_;
 };
 

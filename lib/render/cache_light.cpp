@@ -33,9 +33,10 @@ std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& vi
   for (std::uint32_t mirrors = 0; mirrors < kMirrorsInARow; ++mirrors) {
     Hit hit;
     if (!tracer.intersect(ray, hit)) return std::nullopt;
-    const SurfacePoint point = tracer.surface_point(hit);
+    SurfacePoint point = tracer.surface_point(hit);
     distance += hit.t;
-    const ShadingPoint shading(point, -ray.direction, tracer.frame().materials[point.material]);
+    const SurfaceMaterial material(tracer.frame(), point, view.pixel_size(distance));
+    const ShadingPoint shading(point, -ray.direction, material);
     if (shading.bsdf.has_diffuse()) {
       // Size of a pixel there: the angle to the neighbouring pixel's ray times the whole way.
       const float step = view.pixel_size(distance);

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 
+#include "lib/material/surface_material.h"
 #include "lib/scene/at_frame.h"
 #include "lib/trace/trace.h"
 
@@ -30,6 +31,11 @@ class CameraView {
   float pixel_size(float distance) const {
     const double at_one = 2 * half_height_ / height_;
     return float(camera_.camera.kind == Camera::Kind::perspective ? at_one * double(distance) : at_one);
+  }
+
+  /// What a pixel's ray stands for, for textures.
+  RayCone cone() const {
+    return camera_.camera.kind == Camera::Kind::perspective ? RayCone{0, pixel_size(1)} : RayCone{pixel_size(0), 0};
   }
 
   /// OpenEXR's standard attributes: row-vector matrices, row-major. Camera space is left-handed, +x right, +y up,

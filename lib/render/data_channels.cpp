@@ -86,6 +86,7 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
   const OtherFrame later(motion ? next : NeighbourFrame{}, scene.frame());
   const OtherFrame earlier(motion ? previous : NeighbourFrame{}, scene.frame());
   const Vec3d origin = scene.frame().origin;
+  const RayCone cone = view.cone();
 
   parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -97,7 +98,8 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
         if (ID) ID[i] = kNone;
         continue;
       }
-      const SurfacePoint point = scene.tracer.surface_point(hit);
+      SurfacePoint point = scene.tracer.surface_point(hit);
+      const SurfaceMaterial material(scene.frame(), point, cone.width + cone.spread * hit.t);
       if (Z) Z[i] = float(view.depth(point.position));
       if (ID) ID[i] = point.object;
       if (NX) {
@@ -109,7 +111,7 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
         PX[i] = float(world.x); PY[i] = float(world.y); PZ[i] = float(world.z);
       }
       if (AR) {
-        const Bsdf bsdf(scene.frame().materials[point.material]);
+        const Bsdf bsdf(material);
         const Rgb rho = bsdf.diffuse_albedo();
         AR[i] = rho.r; AG[i] = rho.g; AB[i] = rho.b;
       }

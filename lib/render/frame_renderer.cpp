@@ -98,7 +98,7 @@ PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uin
   for (int s = first; s < first + count; ++s) {
     const PixelRandom random(seed, pixel, std::uint32_t(s));
     const Vec2 jitter = random.get2(0, Purpose::pixel);
-    sum.add(trace_eye_path(scene, view.ray(float(x) + jitter.x, float(y) + jitter.y), random, light, counts));
+    sum.add(trace_eye_path(scene, view.ray(float(x) + jitter.x, float(y) + jitter.y), random, light, counts, view.cone()));
   }
   return sum;
 }

@@ -57,7 +57,9 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image);
 
 /// Data channels of one ray through each pixel's centre: "Z", "N", "P", "id", "albedo", "motion" (forward
-/// and backward: pixels, +u right, +v up; zero where nothing is seen). `next` and `previous` are the scene one
+/// and backward: pixels, +u right, +v up; zero where nothing is seen). N is the normal that light is computed with, normal
+/// map included; albedo is that of the textures over a pixel. A surface of alpha mode BLEND is met or passed by chance,
+/// once for a pixel. `next` and `previous` are the scene one
 /// frame later and earlier with their cameras; needed for motion only.
 struct NeighbourFrame {
   const SceneFrame* frame = nullptr;

@@ -49,9 +49,10 @@ void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, const Rg
 }
 
 /// Emission of the surface that was hit, weighed against light sampling from the scattering before.
+/// Textures are read at their finest level where light sampling could have found the light: both read the same.
 void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, const LastScatter& last,
-                  const Rgb& throughput, Layer layer, Layers& result) {
-  const Rgb emitted = scene.lights.emitted(hit.surface, hit.normal_geometric, wo);
+                  const Rgb& throughput, Layer layer, float width, Layers& result) {
+  const Rgb emitted = scene.lights.emitted(hit, wo, last.weighed ? 0 : width);
   if (is_black(emitted)) return;
   const float weight = last.weighed ? mis_power(last.pdf_solid_angle,
                                                 last.light_share *
@@ -65,7 +66,7 @@ void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, co
 }  // namespace
 
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
-                      const DiffuseLight* diffuse_light, RayCounts& counts) {
+                      const DiffuseLight* diffuse_light, RayCounts& counts, RayCone cone) {
   Layers result;
   Rgb throughput{1.0f};
   EyePath path;
@@ -78,14 +79,19 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     Hit hit;
     if (!scene.tracer.intersect(ray, hit)) break;
     result.coverage = 1;
-    const SurfacePoint point = scene.tracer.surface_point(hit);
+    SurfacePoint point = scene.tracer.surface_point(hit);
     const Vec3 wo = -ray.direction;
-    const Material& material = scene.frame().materials[point.material];
     const bool front = dot(point.normal_geometric, wo) > 0;
-    if (inside.any() || (is_solid_glass(material) && !front))
+    if (inside.any() || (is_solid_glass(scene.frame().materials[point.material]) && !front))
       throughput *= inside.transmittance_to(scene.frame().materials, point.material, front, hit.t);
-    add_emission(scene, point, wo, last, throughput, path.layer(), result);
+    cone.advance(hit.t);
+    add_emission(scene, point, wo, last, throughput, path.layer(), cone.width, result);
 
+    const SurfaceMaterial material(scene.frame(), point, cone.width);
+    if (material.values().unlit) [[unlikely]] {
+      if (path.sharp()) result[path.layer()] += throughput * material.values().base_color;
+      break;
+    }
     const ShadingPoint x(point, wo, material);
     const bool ends_here = diffuse_light && x.bsdf.has_diffuse();
     add_sampled_light(scene, x, throughput, path, inside, random, bounce, !ends_here, result, counts);
@@ -116,6 +122,7 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
       throughput *= 1 / survival;
     }
     last.weighed = !next.delta;
+    if (!next.delta) cone.spread = std::max(cone.spread, kBounceSpread);
     last.position = point.position;
     last.normal = next.transmitted ? -x.normal : x.normal;
     last.light_share = next.transmitted ? x.bsdf.light_share_beyond() : 1 - x.bsdf.light_share_beyond();

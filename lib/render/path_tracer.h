@@ -8,6 +8,7 @@
 #include "lib/core/random.h"
 #include "lib/core/sobol.h"
 #include "lib/light/lights.h"
+#include "lib/material/surface_material.h"
 #include "lib/trace/trace.h"
 
 namespace tempolux {
@@ -31,6 +32,7 @@ using Layers = LayersT<float>;
 class EyePath {
  public:
   void scatter(bool diffuse) {
+    sharp_ = sharp_ && !diffuse;
     switch (layer_) {
       case Layer::emission: layer_ = diffuse ? Layer::direct : Layer::specular; break;
       case Layer::specular: break;
@@ -39,6 +41,8 @@ class EyePath {
       case Layer::indirect: break;
     }
   }
+  /// Has the path no event D yet? Only then is it the eye that looks at what it meets.
+  bool sharp() const { return sharp_; }
   EyePath after(bool diffuse) const {
     EyePath next = *this;
     next.scatter(diffuse);
@@ -48,6 +52,7 @@ class EyePath {
 
  private:
   Layer layer_ = Layer::emission;
+  bool sharp_ = true;
 };
 
 /// Random numbers of one pixel sample: scrambled Sobol points for the first bounces, hashed ones beyond.
@@ -105,7 +110,11 @@ struct RenderScene {
 ///
 /// With `diffuse_light` the path ends at its first Lambert lobe x: direct light there by light sampling alone,
 /// caustic and indirect light = rho/pi times the irradiance given (biased as that irradiance is).
+///
+/// An unlit material shows its base colour as radiance to the eye, directly and through events S alone (layers emission
+/// and specular); it lights nothing and scatters nothing, here and in photon-trace alike.
+/// `cone` is the pixel's, for the level of textures (CameraView::cone); the default reads their finest level.
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
-                      const DiffuseLight* diffuse_light, RayCounts& counts);
+                      const DiffuseLight* diffuse_light, RayCounts& counts, RayCone cone = {});
 
 }  // namespace tempolux

@@ -17,7 +17,7 @@ struct ShadingPoint {
 
   /// wo is unit and points away from the surface. Where the shading normal looks away from wo the geometric
   /// one takes its place.
-  ShadingPoint(const SurfacePoint& point, Vec3 wo, const Material& material)
+  ShadingPoint(const SurfacePoint& point, Vec3 wo, const MaterialValues& material)
       : surface(point),
         normal_geometric(dot(point.normal_geometric, wo) < 0 ? -point.normal_geometric : point.normal_geometric),
         normal(viewed_normal(point, wo, normal_geometric)),

@@ -147,6 +147,7 @@ SceneFrame SegmentScene::at(int frame) const {
   const std::vector<Surface> moving = place_surfaces(*scene_, segment_, world, true);
   at.surfaces.insert(at.surfaces.end(), moving.begin(), moving.end());
   at.materials = scene_->materials;
+  at.images = scene_->images;
   at.lights = place_lights(*scene_, segment_.origin, world, options_);
   at.origin = segment_.origin;
   at.bounds = bounds_;

@@ -109,6 +109,7 @@ struct SceneFrame {
   std::vector<Surface> surfaces;            ///< first the static ones, then those that move
   std::size_t static_count = 0;
   std::vector<Material> materials;          ///< evaluated
+  std::shared_ptr<const TextureImages> images;   ///< of the materials' textures; null: there are none
   std::vector<PlacedLight> lights;
   Vec3d origin{};                           ///< world = origin + scene space
   Box3 bounds;                              ///< of the whole segment, scene space

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "lib/image/texture_images.h"
 #include "lib/scene/scene.h"
 
 namespace tempolux {
@@ -11,7 +12,8 @@ namespace tempolux {
 struct GltfOptions {
   bool allow_outside = false;                    ///< URIs may leave the scene's folder
   std::string animation{};                       ///< play only the animation of this name; empty: all together
-  std::uint64_t max_file_bytes = 4ull << 30;     ///< of the scene file and of each buffer
+  std::uint64_t max_file_bytes = 4ull << 30;     ///< of the scene file, of each buffer and of each image
+  TextureLimits textures{};
 };
 
 /// Reads and checks a scene. Everything the file says is checked before it is used to size, index or

@@ -153,10 +153,6 @@ Material read_material(Import& import, std::size_t index) {
   textures.emission = read_texture(import, source.emissiveTexture, place + ".emissiveTexture");
   if (source.occlusionTexture.index >= 0) import.ignore("occlusion textures (occlusion is computed)");
   if (textures.any()) material.textures = textures;
-  if (textures.any()) import.ignore("textures (materials keep their factors)");
-  if (material.unlit) import.ignore("KHR_materials_unlit (the material is lit like any other)");
-  if (material.alpha_mode != Material::Alpha::opaque)
-    import.ignore("alphaMode " + source.alphaMode + " (the material is opaque)");
   return material;
 }
 

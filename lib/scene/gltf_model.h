@@ -34,6 +34,7 @@ struct Import {
   std::uint64_t geometry_budget = 0;    ///< bytes that may still be allocated for geometry
   std::vector<int> node_from_source{};  ///< node index of the file -> of the scene, -1: not in the scene
   std::vector<int> mesh_from_source{};  ///< the same for meshes; -1: not used or without triangles
+  std::vector<EncodedImage> images{};              ///< of the scene, as they are met
   std::vector<std::uint32_t> image_from_source{};  ///< image of the file -> of the scene, kNone: not read
   std::map<std::string, std::size_t> ignored{};  ///< what was ignored -> how often; warnings at the end
 

@@ -5,7 +5,6 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
-#include "lib/image/encoded_image.h"
 #include "lib/scene/gltf_gate.h"
 #include "lib/scene/gltf_model.h"
 
@@ -13,9 +12,6 @@ namespace tempolux::gltf {
 namespace {
 
 using tinygltf::Value;
-
-/// More pixels than this are refused before they are decoded, whatever the size they are to be reduced to.
-constexpr std::uint64_t kMaxPixels = 1ull << 28;
 
 std::vector<unsigned char> from_base64(Import& import, const std::string& text, const std::string& place) {
   std::vector<unsigned char> bytes;
@@ -63,21 +59,25 @@ std::uint32_t image_of(Import& import, std::size_t source) {
   import.image_from_source.resize(images.size(), kNone);
   if (import.image_from_source[source] != kNone) return import.image_from_source[source];
   const std::string place = place_of("images", source, images[source].name);
-  SceneImage image;
+  EncodedImage image;
   image.bytes = image_bytes(import, images[source], place);
   image.place = images[source].path.empty() ? import.scene.path + ": " + place : images[source].path;
   const ImageHeader header = read_image_header(image.bytes, image.place);
   image.width = header.width;
   image.height = header.height;
   const std::string size = std::to_string(image.width) + "x" + std::to_string(image.height) + " pixels";
-  if (std::uint64_t(image.width) * std::uint64_t(image.height) > kMaxPixels)
-    throw InputError(image.place + ": " + size + ", over the limit of " + std::to_string(kMaxPixels) +
+  const TextureLimits& limits = import.options->textures;
+  if (std::uint64_t(image.width) * std::uint64_t(image.height) > limits.max_pixels)
+    throw InputError(image.place + ": " + size + ", over the limit of " + std::to_string(limits.max_pixels) +
                      "; make it smaller");
+  if (const int side = std::max(image.width, image.height); side > limits.max_side)
+    import.scene.warnings.push_back(image.place + ": " + size + ", reduced to " + std::to_string(limits.max_side) +
+                                    " on a side (--max-texture)");
   Hasher hasher;
   hasher.add_bytes(image.bytes.data(), image.bytes.size());
   image.digest = hasher.hex();
-  import.scene.images.push_back(std::move(image));
-  return import.image_from_source[source] = std::uint32_t(import.scene.images.size() - 1);
+  import.images.push_back(std::move(image));
+  return import.image_from_source[source] = std::uint32_t(import.images.size() - 1);
 }
 
 Texture::Wrap wrap_of(Import& import, int mode, const std::string& place) {

@@ -6,14 +6,18 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "lib/core/affine.h"
 #include "lib/core/vec.h"
+#include "lib/image/texture_wrap.h"
 
 namespace tempolux {
+
+class TextureImages;   // lib/image/texture_images.h
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 
@@ -39,8 +43,8 @@ struct MaterialValues {
 
 /// A texture as a material refers to it.
 struct Texture {
-  enum class Wrap : std::uint8_t { repeat, mirrored, clamp };
-  std::uint32_t image = kNone;       ///< index into Scene::images; kNone: no texture
+  using Wrap = TextureWrap;
+  std::uint32_t image = kNone;       ///< number in Scene::images; kNone: no texture
   std::uint32_t uv_set = 0;          ///< TEXCOORD_n of the primitive
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   bool nearest = false;              ///< magnified without interpolation
@@ -74,14 +78,6 @@ struct Material : MaterialValues {
   std::optional<MaterialTextures> textures;   ///< none for most materials: they cost one test then
 
   bool operator==(const Material&) const = default;
-};
-
-/// A picture of the scene, PNG or JPEG as in its file: decoded when it is first looked at.
-struct SceneImage {
-  std::string place;                 ///< "FILE: images[2] "Wood"", for messages
-  std::vector<unsigned char> bytes;
-  int width = 0, height = 0;         ///< px
-  std::string digest;                ///< of the bytes
 };
 
 /// Triangles of one glTF primitive in the space of its node.
@@ -157,7 +153,7 @@ struct Scene {
   std::vector<Node> nodes;                  ///< parents before children; the default scene's nodes only
   std::vector<Mesh> meshes;
   std::vector<Material> materials;          ///< never empty: a primitive without one uses the last
-  std::vector<SceneImage> images;           ///< those that a material's texture names
+  std::shared_ptr<const TextureImages> images;  ///< those that a material's texture names; null: there are none
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
   std::vector<Animation> animations;        ///< all play together (GltfOptions::animation chose them)

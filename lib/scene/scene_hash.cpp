@@ -2,6 +2,7 @@
 #include "lib/scene/scene_hash.h"
 
 #include "formats/hash.h"
+#include "lib/image/texture_images.h"
 
 namespace tempolux {
 namespace {
@@ -35,7 +36,7 @@ void add_shape(Hasher& hasher, const Surface& surface) {
 void add_texture(Hasher& hasher, const Scene& scene, const char* name, const Texture& texture) {
   if (!texture) return;
   hasher.add(std::string_view(name));
-  hasher.add(std::string_view(scene.images[texture.image].digest));
+  hasher.add(std::string_view(scene.images->encoded(texture.image).digest));
   for (const float number : texture.transform) hasher.add(number);
   for (const std::uint32_t number : {texture.uv_set, std::uint32_t(texture.wrap_u), std::uint32_t(texture.wrap_v),
                                      std::uint32_t(texture.nearest)})

@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
+#include <deque>
 #include <string>
 #include <vector>
 
 #include "formats/error.h"
 #include "lib/core/check.h"
+#include "lib/core/random.h"
+#include "lib/image/texture_images.h"
+#include "lib/scene/texture_lookup.h"
 
 namespace tempolux {
 namespace {
@@ -79,6 +84,35 @@ RTCRay to_embree(const Ray& ray) {
   r.dir_x = ray.direction.x; r.dir_y = ray.direction.y; r.dir_z = ray.direction.z; r.tfar = ray.t_max;
   r.time = 0; r.mask = 0xffffffffu; r.id = 0; r.flags = 0;
   return r;
+}
+
+/// What the filter of a surface that lets rays pass reads.
+struct AlphaSurface {
+  const SceneFrame* frame;
+  std::uint32_t surface;
+};
+
+/// In [0, 1), from the bits of ray and triangle: the same ray meets the same triangle or passes it, in whatever
+/// order Embree finds its hits, on any thread.
+float chance(const RTCRay& ray, std::uint32_t surface, std::uint32_t triangle) {
+  std::uint64_t key = mix64((std::uint64_t(surface) << 32 | triangle) + 0x616c706861ull);
+  for (const float x : {ray.org_x, ray.org_y, ray.org_z, ray.dir_x, ray.dir_y, ray.dir_z})
+    key = mix64(key ^ std::bit_cast<std::uint32_t>(x));
+  return float(key >> 40) * 0x1p-24f;
+}
+
+/// Embree's filter of surfaces with alpha: refuses a hit where the surface is not there (MASK), or with probability
+/// 1 - alpha (BLEND). Never throws: the texture was decoded before.
+void pass_by_alpha(const RTCFilterFunctionNArguments* arguments) {
+  const auto& alpha = *static_cast<const AlphaSurface*>(arguments->geometryUserPtr);
+  for (unsigned i = 0; i < arguments->N; ++i) {
+    if (arguments->valid[i] == 0) continue;
+    const RTCHit hit = rtcGetHitFromHitN(arguments->hit, arguments->N, i);
+    const float coverage = coverage_at(*alpha.frame, alpha.surface, hit.primID, hit.u, hit.v);
+    if (coverage >= 1) continue;
+    if (!(chance(rtcGetRayFromRayN(arguments->ray, arguments->N, i), alpha.surface, hit.primID) < coverage))
+      arguments->valid[i] = 0;
+  }
 }
 
 bool intersect_tree(const Tree& tree, RTCRayHit& query, Hit& hit) {
@@ -156,6 +190,7 @@ struct Tracer::Impl {
   RTCDevice device = nullptr;
   Tree fixed, moving;
   std::vector<SurfaceArrays> surfaces;
+  std::deque<AlphaSurface> alpha;   ///< of the surfaces that have a filter; they stay where they are
   mutable std::atomic<std::uint64_t> refused{0};
 
   ~Impl() {
@@ -188,6 +223,14 @@ struct Tracer::Impl {
       for (const Vec3 p : surface.positions) tree.bounds.add(p);
       rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                                  sizeof triangles[0], triangles.size());
+      if (const Material& material = frame->materials[surface.material]; lets_rays_pass(material)) {
+        if (material.textures && material.textures->base_color)   // decoded here, not in the filter
+          frame->images->pyramid(material.textures->base_color.image, TextureTransfer::srgb);
+        alpha.push_back({frame, std::uint32_t(s)});
+        rtcSetGeometryUserData(geometry, &alpha.back());
+        rtcSetGeometryIntersectFilterFunction(geometry, pass_by_alpha);
+        rtcSetGeometryOccludedFilterFunction(geometry, pass_by_alpha);
+      }
       rtcCommitGeometry(geometry);
       rtcAttachGeometryByID(tree.scene, geometry, unsigned(s - first));
       rtcReleaseGeometry(geometry);

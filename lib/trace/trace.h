@@ -7,6 +7,7 @@
 
 #include "lib/core/vec.h"
 #include "lib/scene/at_frame.h"
+#include "lib/scene/surface_point.h"
 
 namespace tempolux {
 
@@ -22,19 +23,10 @@ struct Hit {
   float u = 0, v = 0;                            ///< barycentrics of corners 1 and 2
 };
 
-/// What a shading routine needs to know of a hit; all in scene space.
-struct SurfacePoint {
-  Vec3 position;               ///< from the triangle's corners, not from t: exact to a few ulp
-  Vec3 normal_geometric;       ///< unit, towards the front of the triangle
-  Vec3 normal;                 ///< shading normal: unit, on the front's side
-  Vec2 uv;
-  float offset = 0;            ///< m: rays leaving start this far above the side they leave from
-  std::uint32_t surface = kNone, triangle = 0, object = 0, material = 0;
-  float u = 0, v = 0;
-};
-
 /// Two search trees, what is static over the segment and what moves; the nearer hit wins, static at a tie.
-/// Thread-safe once built. Every ray is checked: one that is not finite is a miss and counted, never an abort.
+/// Surfaces of alpha mode MASK are not there where alpha is below the cut-off; those of BLEND are met with probability
+/// alpha, drawn from the bits of ray and triangle: in the mean a share 1 - alpha of all light goes through, straight on,
+/// and no one else needs to know. Thread-safe once built. Every ray is checked: one that is not finite is a miss and counted, never an abort.
 class Tracer {
  public:
   explicit Tracer(const SceneFrame& frame);

@@ -8,6 +8,7 @@
 
 #include "lib/core/frame.h"
 #include "lib/core/sampling.h"
+#include "lib/image/texture_images.h"
 #include "lib/scene/at_frame.h"
 
 namespace tempolux::test {
@@ -66,6 +67,13 @@ class HandMadeScene {
         }
     }
     add(p, t, material);
+  }
+  /// Texture coordinates of the surface added last, by vertex.
+  void set_uvs(const std::vector<Vec2>& uvs) { primitives_.back()->uvs = uvs; }
+  const std::vector<Vec3>& last_positions() const { return primitives_.back()->positions; }
+  /// The images that materials' textures name by number.
+  void set_images(std::vector<EncodedImage> images) {
+    frame_.images = std::make_shared<const TextureImages>(std::move(images));
   }
   void add_point_light(Vec3 position, Rgb intensity) {
     PlacedLight light;

@@ -252,9 +252,16 @@ TEST(Lights, EmitFromTheFrontAndFromBothSidesIfTwoSided) {
   const std::uint32_t two = scene.add(square_facing_down({0, 0, 1}, 1), Rgb(3.0f), true);
   const Lights lights = scene.lights();
   const Vec3 front{0, 0, -1};
-  EXPECT_EQ(lights.emitted(one, front, {0, 0, -1}), Rgb(2.0f));
-  EXPECT_EQ(lights.emitted(one, front, {0, 0, 1}), Rgb(0.0f));
-  EXPECT_EQ(lights.emitted(two, front, {0, 0, 1}), Rgb(3.0f));
+  const auto hit = [&](std::uint32_t surface) {
+    SurfacePoint point;
+    point.surface = surface;
+    point.material = scene.frame.surfaces[surface].material;
+    point.normal_geometric = front;
+    return point;
+  };
+  EXPECT_EQ(lights.emitted(hit(one), {0, 0, -1}, 0), Rgb(2.0f));
+  EXPECT_EQ(lights.emitted(hit(one), {0, 0, 1}, 0), Rgb(0.0f));
+  EXPECT_EQ(lights.emitted(hit(two), {0, 0, 1}, 0), Rgb(3.0f));
 }
 
 }  // namespace

@@ -1,0 +1,32 @@
+#include "lib/image/texture_images.h"
+
+#include <new>
+
+#include "formats/error.h"
+
+namespace tempolux {
+
+TextureImages::TextureImages(std::vector<EncodedImage> images, const TextureLimits& limits)
+    : images_(std::move(images)), limits_(limits), entries_(std::make_unique<Entry[]>(2 * images_.size())) {}
+
+const TexturePyramid& TextureImages::decode(std::size_t image, TextureTransfer transfer) const {
+  Entry& entry = entries_[2 * image + std::size_t(transfer)];
+  const std::lock_guard lock(entry.decoding);
+  if (entry.pyramid) return *entry.pyramid;
+  const EncodedImage& source = images_[image];
+  std::unique_ptr<TexturePyramid> pyramid;
+  try {
+    pyramid = std::make_unique<TexturePyramid>(decode_image(source, limits_.max_pixels), transfer, limits_.max_side);
+  } catch (const std::bad_alloc&) {
+    throw ResourceError(source.place + ": not enough memory to decode it; reduce textures with --max-texture");
+  }
+  if (bytes_.fetch_add(pyramid->byte_count()) + pyramid->byte_count() > limits_.max_bytes)
+    throw InputError(source.place + ": textures take more than " + std::to_string(limits_.max_bytes) +
+                     " bytes decoded; reduce them with --max-texture");
+  ++decoded_;
+  entry.pyramid = std::move(pyramid);
+  entry.ready.store(entry.pyramid.get(), std::memory_order_release);
+  return *entry.pyramid;
+}
+
+}  // namespace tempolux

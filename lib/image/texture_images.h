@@ -1,0 +1,55 @@
+// lib/image/texture_images.h -- the images of a scene's textures, each decoded when it is first looked at.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "lib/image/encoded_image.h"
+#include "lib/image/texture_pyramid.h"
+
+namespace tempolux {
+
+struct TextureLimits {
+  int max_side = 16384;                      ///< px: larger images are reduced when they are decoded
+  std::uint64_t max_pixels = 1ull << 28;     ///< of one image before it is reduced: more are refused
+  std::uint64_t max_bytes = 4ull << 30;      ///< of all decoded pyramids together
+};
+
+/// Thread-safe. What no one looks at is never decoded.
+class TextureImages {
+ public:
+  explicit TextureImages(std::vector<EncodedImage> images, const TextureLimits& limits = {});
+
+  std::size_t size() const { return images_.size(); }
+  const EncodedImage& encoded(std::size_t image) const { return images_[image]; }
+  /// The image as a texture, decoded by the first call. Throws InputError if it is damaged or the limit of bytes is
+  /// reached, naming the image; ResourceError without memory.
+  const TexturePyramid& pyramid(std::size_t image, TextureTransfer transfer) const {
+    const Entry& entry = entries_[2 * image + std::size_t(transfer)];
+    const TexturePyramid* ready = entry.ready.load(std::memory_order_acquire);
+    return ready ? *ready : decode(image, transfer);
+  }
+  /// Images decoded so far (one read both as colour and as numbers counts twice), and bytes they take.
+  std::size_t decoded_count() const { return decoded_; }
+  std::uint64_t decoded_bytes() const { return bytes_; }
+
+ private:
+  struct Entry {
+    std::atomic<const TexturePyramid*> ready{nullptr};
+    std::mutex decoding;
+    std::unique_ptr<TexturePyramid> pyramid;
+  };
+  const TexturePyramid& decode(std::size_t image, TextureTransfer transfer) const;
+
+  std::vector<EncodedImage> images_;
+  TextureLimits limits_;
+  std::unique_ptr<Entry[]> entries_;  ///< two for each image
+  mutable std::atomic<std::size_t> decoded_{0};
+  mutable std::atomic<std::uint64_t> bytes_{0};
+};
+
+}  // namespace tempolux

@@ -1,0 +1,47 @@
+// lib/material/surface_material.h -- what a material is at a hit: its factors times its textures there.
+#pragma once
+
+#include <optional>
+
+#include "lib/scene/at_frame.h"
+#include "lib/scene/surface_point.h"
+
+namespace tempolux {
+
+/// Width of what a ray stands for, for choosing the level of textures: it grows by `spread` metres per metre.
+///
+/// A camera ray starts with a pixel's angle and keeps it through mirrors and smooth glass (curved ones are not
+/// accounted for). After any other scattering, and from lights, a ray stands for a cone of kBounceSpread: about what
+/// one of 500 rays over a half sphere covers. The mean over a surface is kept by coarse levels, so this blurs what
+/// lies between a texture and the light it throws on others, no more.
+struct RayCone {
+  float width = 0, spread = 0;   ///< m; m/m
+  void advance(float distance) { width += spread * distance; }
+};
+inline constexpr float kBounceSpread = 0.1f;
+
+/// The material at a hit. A material without textures is its factors: that costs one test.
+class SurfaceMaterial {
+ public:
+  /// Bends point.normal by the normal map if there is one. width [m]: RayCone. `point` is of `frame`.
+  SurfaceMaterial(const SceneFrame& frame, SurfacePoint& point, float width)
+      : values_(&frame.materials[point.material]) {
+    if (frame.materials[point.material].textures) [[unlikely]] read_textures(frame, point, width);
+  }
+  SurfaceMaterial(const SurfaceMaterial&) = delete;
+  SurfaceMaterial& operator=(const SurfaceMaterial&) = delete;
+
+  operator const MaterialValues&() const { return *values_; }
+  const MaterialValues& values() const { return *values_; }
+
+ private:
+  void read_textures(const SceneFrame& frame, SurfacePoint& point, float width);
+
+  const MaterialValues* values_;
+  std::optional<MaterialValues> textured_;
+};
+
+/// Has the material a Lambert lobe somewhere on a surface (Bsdf::has_lambert), whatever its textures say?
+bool may_have_lambert(const Material& material);
+
+}  // namespace tempolux

@@ -1,0 +1,66 @@
+// lib/scene/texture_lookup.h -- textures read at a point of a surface: coordinates, level, emission, coverage.
+#pragma once
+
+#include <cstdint>
+
+#include "lib/image/texture_pyramid.h"
+#include "lib/scene/at_frame.h"
+#include "lib/scene/surface_point.h"
+
+namespace tempolux {
+
+/// A point of a triangle as textures see it. Everything it was made of must outlive it.
+///
+/// The level of a texture is that at which one texel is as large as the footprint: log2(width sqrt(texels per m^2)),
+/// with the texels per area of the triangle (one number for both directions: where a texture is stretched, or seen
+/// at a slant, that is sharper along one direction and smoother along the other than it might be).
+class TextureSpot {
+ public:
+  /// u, v: barycentrics of corners 1 and 2; width [m]: of what looks at the point, 0: the finest level.
+  TextureSpot(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v, float width)
+      : frame_(frame), surface_(frame.surfaces[surface]), corners_(surface_.primitive->triangles[triangle]),
+        u_(u), v_(v), width_(width) {}
+
+  /// Linear value at the point; the texture must have an image. A primitive without the coordinates that the
+  /// texture asks for shows the corner (0, 0).
+  Rgba read(const Texture& texture, TextureTransfer transfer) const;
+
+  /// `normal` (unit) bent by a normal map of glTF 2.0: x along the image's rightwards axis, y along its upwards axis,
+  /// both across `normal`, times scale; at least 3 degrees above the triangle's plane. `normal` itself where the
+  /// coordinates have no direction. `geometric`: the triangle's, on the same side.
+  Vec3 bend(const Texture& normal_map, float scale, Vec3 normal, Vec3 geometric) const;
+
+ private:
+  struct Corners {
+    Vec2 uv[3];   ///< transformed
+    bool exist = false;
+  };
+  Corners coordinates(const Texture& texture) const;
+  float level(const Corners& corners, const TexturePyramid& pyramid) const;
+  Vec3 edge(int corner) const;
+
+  const SceneFrame& frame_;
+  const Surface& surface_;
+  const std::array<std::uint32_t, 3>& corners_;
+  float u_, v_, width_;
+};
+
+/// Texture coordinates of a set; empty if the primitive has none.
+const std::vector<Vec2>& texture_coordinates(const Primitive& primitive, std::uint32_t uv_set);
+
+/// Does the material's emission, or whether it is there, depend on where?
+bool emission_varies(const Material& material);
+/// Radiance that the material emits at a point [glTF nits].
+Rgb emission_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v, float width);
+
+/// Share of rays that meet the surface at a point, by the finest level of the texture: 1 for opaque materials, alpha for
+/// BLEND, 1 or 0 for MASK.
+float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v);
+/// Can a ray pass a surface of this material?
+bool lets_rays_pass(const Material& material);
+
+/// Mean over a triangle of emission times coverage: 0 only if it is 0 everywhere, at least 1 % of the material's factor
+/// elsewhere (so that nothing that emits is chosen too rarely). By 64 points, each over its share of the triangle.
+Rgb mean_emission(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle);
+
+}  // namespace tempolux

@@ -1,0 +1,368 @@
+// Light and textures: answers known on paper for emission, coverage, normal maps, unlit surfaces and reflectance that
+// varies over a surface.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lib/light/lights.h"
+#include "lib/photon/photon_trace.h"
+#include "lib/render/path_tracer.h"
+#include "lib/scene/texture_lookup.h"
+#include "tests/lib/light/light_scene.h"
+#include "tests/support/png_bytes.h"
+#include "tests/support/scenes.h"
+
+namespace tempolux {
+namespace {
+
+using test::HandMadeScene;
+using test::matte;
+using test::png_image;
+using test::texture_of_image;
+
+EmissionTable table_of(HandMadeScene& scene) { return build_emission_table({&scene.frame(), 1}); }
+
+/// A quad of side 2 at z = 1 that faces down; u along x, v along y, from 0 to 1.
+const std::vector<Vec3> kLamp{{-1, -1, 1}, {-1, 1, 1}, {1, 1, 1}, {1, -1, 1}};
+const std::vector<Vec2> kLampUvs{{0, 0}, {0, 1}, {1, 1}, {1, 0}};
+
+/// Two texels: the left half at half the light, the right half dark; emission 2 where the texture is 1.
+HandMadeScene half_dark_lamp(bool alpha = false) {
+  HandMadeScene scene;
+  Material lamp = matte(Rgb(0.0f), Rgb(2.0f));
+  lamp.double_sided = false;
+  lamp.textures.emplace();
+  if (alpha) {
+    lamp.alpha_mode = Material::Alpha::blend;
+    lamp.textures->base_color = texture_of_image();
+    scene.set_images({png_image(2, 1, 4, {255, 255, 255, 51, 255, 255, 255, 0})});   // alpha 0.2 and 0
+  } else {
+    lamp.textures->emission = texture_of_image();
+    scene.set_images({png_image(2, 1, 3, {188, 188, 188, 0, 0, 0})});
+  }
+  scene.add_quad(kLamp[0], kLamp[1], kLamp[2], kLamp[3], lamp);
+  scene.set_uvs(kLampUvs);
+  return scene;
+}
+constexpr float kHalf = 0.502886f;   // sRGB code 188
+
+TEST(EmissiveTexture, IrradianceIsThatOfTheBrightHalf) {
+  // Samples have L cos / pdf between 0 and about twice their mean; N = 2^14 stratified in two dimensions but for the
+  // edge of the texture: sigma about 2 / sqrt(N) of the mean at worst, 1.6 %; stratified far less.
+  for (const bool alpha : {false, true}) {
+    HandMadeScene scene = half_dark_lamp(alpha);
+    const Lights lights(scene.frame(), table_of(scene));
+    const double radiance = 2 * (alpha ? 0.2 : double(kHalf));
+    for (const Vec3 point : {Vec3{0, 0, 0}, Vec3{-0.5f, 0.3f, 0.7f}, Vec3{3, 1, -2}}) {
+      const Vec3 normal{0, 0, 1};
+      const double expected = radiance * polygon_irradiance(point, normal, {{-1, -1, 1}, {-1, 1, 1}, {0, 1, 1}, {0, -1, 1}});
+      double sum = 0;
+      constexpr int kSide = 128;
+      for (int i = 0; i < kSide; ++i)
+        for (int j = 0; j < kSide; ++j) {
+          LightSample light;
+          if (lights.sample(point, normal, {(float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide}, light))
+            sum += double(light.radiance.g) * double(std::max(0.0f, dot(light.wi, normal)));
+        }
+      EXPECT_NEAR(sum / (kSide * kSide), expected, 0.01 * expected) << alpha << " " << point.x;
+    }
+  }
+}
+
+TEST(EmissiveTexture, PhotonsCarryTheTexelsLight) {
+  // pi L A of the bright half, 2 m^2. Half of the photons carry all: sigma = 1 / sqrt(N), 0.8 % for N = 2^14; here
+  // the points are a lattice.
+  for (const bool alpha : {false, true}) {
+    HandMadeScene scene = half_dark_lamp(alpha);
+    const Lights lights(scene.frame(), table_of(scene));
+    const double expected = M_PI * 2 * (alpha ? 0.2 : double(kHalf)) * 2;
+    double sum = 0;
+    constexpr int kSide = 128;
+    for (int i = 0; i < kSide; ++i)
+      for (int j = 0; j < kSide; ++j) {
+        const double u[4] = {(i + 0.5) / kSide, (j + 0.5) / kSide, 0.3, 0.6};
+        const PhotonEmission photon = lights.emit(u);
+        if (photon.origin.x > 0.01f) { EXPECT_EQ(photon.flux, Rgb(0.0f)); }
+        sum += double(photon.flux.r) / (kSide * kSide);
+      }
+    EXPECT_NEAR(sum, expected, 0.01 * expected) << alpha;
+    EXPECT_NEAR(lights.total_flux().r, expected, 0.05 * expected) << alpha;   // the mean by 64 points
+  }
+}
+
+TEST(EmissiveTexture, TrianglesThatAreDarkAllOverAreNoLights) {
+  HandMadeScene scene;
+  Material lamp = matte(Rgb(0.0f), Rgb(2.0f));
+  lamp.textures.emplace().emission = texture_of_image();
+  scene.set_images({png_image(16, 1, 1, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 255, 0, 0})});
+  scene.add_quad(kLamp[0], kLamp[1], kLamp[2], kLamp[3], lamp);
+  scene.set_uvs({{0, 0}, {0, 1}, {0.3f, 1}, {0.3f, 0}});
+  EXPECT_EQ(mean_emission(scene.frame(), 0, 0), Rgb(0.0f));
+  scene.set_uvs({{0, 0}, {0, 1}, {1, 1}, {1, 0}});
+  EXPECT_NEAR(mean_emission(scene.frame(), 0, 0).r + mean_emission(scene.frame(), 0, 1).r, 2 * 2.0f / 8, 0.05);
+}
+
+/// A horizontal square of side 2 at z = 0 of a material with alpha; u along x, v along y.
+HandMadeScene veil(Material::Alpha mode, float alpha, bool textured) {
+  HandMadeScene scene;
+  Material material = matte(Rgb(0.5f));
+  material.alpha_mode = mode;
+  material.alpha = alpha;
+  if (textured) {
+    material.textures.emplace().base_color = texture_of_image();
+    scene.set_images({png_image(2, 1, 4, {255, 255, 255, 204, 255, 255, 255, 51})});   // 0.8 and 0.2
+  }
+  scene.add_quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, material);
+  scene.set_uvs({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  return scene;
+}
+
+/// Share of downward rays that meet the veil, in its left (x < 0) or right half; both kinds of query.
+double met(const Tracer& tracer, float x, bool occlusion) {
+  constexpr int kRays = 20000;
+  int count = 0;
+  for (int i = 0; i < kRays; ++i) {
+    const float y = -0.9f + 1.8f * float(i) / kRays;
+    const Ray ray{{x, y, 1}, {0.01f, 0, -1}, 0, INFINITY};
+    Hit hit;
+    count += occlusion ? tracer.occluded(ray) : tracer.intersect(ray, hit);
+  }
+  return double(count) / kRays;
+}
+
+TEST(Alpha, BlendMeetsTheShareAlphaOfTheRays) {
+  // 4 sigma of 20000 draws: 4 sqrt(0.25 / 20000) = 0.0141
+  for (const bool occlusion : {false, true}) {
+    for (const float alpha : {0.0f, 0.3f, 0.75f}) {
+      HandMadeScene scene = veil(Material::Alpha::blend, alpha, false);
+      EXPECT_NEAR(met(Tracer(scene.frame()), 0.4f, occlusion), alpha, 0.0141);
+    }
+    HandMadeScene scene = veil(Material::Alpha::blend, 0.5f, true);
+    const Tracer tracer(scene.frame());
+    EXPECT_NEAR(met(tracer, -0.5f, occlusion), 0.4, 0.0141);
+    EXPECT_NEAR(met(tracer, 0.5f, occlusion), 0.1, 0.0141);
+  }
+}
+
+TEST(Alpha, ARayHasOneFateHoweverItIsAsked) {
+  HandMadeScene scene = veil(Material::Alpha::blend, 0.5f, false);
+  const Tracer tracer(scene.frame()), another(scene.frame());
+  for (int i = 0; i < 200; ++i) {
+    const Ray ray{{0.003f * float(i) - 0.4f, 0.2f, 1}, {0, 0, -1}, 0, INFINITY};
+    Hit hit;
+    const bool first = tracer.intersect(ray, hit);
+    EXPECT_EQ(first, tracer.occluded(ray));
+    EXPECT_EQ(first, another.intersect(ray, hit));
+  }
+}
+
+TEST(Alpha, MaskIsThereOrNot) {
+  for (const bool occlusion : {false, true}) {
+    HandMadeScene scene = veil(Material::Alpha::mask, 1, true);   // cut-off 0.5
+    const Tracer tracer(scene.frame());
+    EXPECT_EQ(met(tracer, -0.5f, occlusion), 1);
+    EXPECT_EQ(met(tracer, 0.5f, occlusion), 0);
+    HandMadeScene half = veil(Material::Alpha::mask, 0.5f, false);
+    EXPECT_EQ(met(Tracer(half.frame()), 0.5f, occlusion), 1);   // alpha = cut-off: there
+  }
+}
+
+TEST(Alpha, HalfTransparentQuadBeforeALampDimsItByAlpha) {
+  HandMadeScene scene = veil(Material::Alpha::blend, 0.4f, false);
+  scene.add_quad({-9, -9, -1}, {9, -9, -1}, {9, 9, -1}, {-9, 9, -1}, matte(Rgb(0.6f)));
+  scene.add_point_light({0, 0, 3}, Rgb(10.0f));
+  const Tracer tracer(scene.frame());
+  const Lights lights(scene.frame(), table_of(scene));
+  // Straight below, seen from the side under the veil: direct light is 0.6 (albedo/pi I / d^2). N = 40000 draws of
+  // probability 0.6: sigma = sqrt(0.4 / 0.6 / N) = 0.4 %.
+  double direct = 0;
+  constexpr int kSamples = 40000;
+  RayCounts counts;
+  for (int i = 0; i < kSamples; ++i) {
+    const Vec3 eye{2, 0.0001f * float(i % 200), -0.5f}, target{0.0002f * float(i / 200), 0.001f, -1};
+    const Layers layers = trace_eye_path({tracer, lights}, {eye, normalize(target - eye), 0, INFINITY},
+                                         PixelRandom(1, 7, std::uint32_t(i)), nullptr, counts);
+    direct += double(layers[Layer::direct].g) / kSamples;
+  }
+  const double expected = 0.6 * (0.6 / M_PI * 10 / 16);
+  EXPECT_NEAR(direct, expected, 4 * 0.004 * expected);
+}
+
+TEST(Alpha, PhotonsOnAVeilStandForAllThatArrive) {
+  // A veil of alpha 0.25 under a point light on its axis: flux that arrives is that of the solid angle of the square,
+  // whatever alpha. Seen from height 1 over its centre a square of side 2 fills a sixth of the sphere: 4 pi I / 6.
+  HandMadeScene scene = veil(Material::Alpha::blend, 0.25f, false);
+  scene.add_point_light({0, 0, 1}, Rgb(1.0f));
+  const Tracer tracer(scene.frame());
+  const Lights lights(scene.frame(), table_of(scene));
+  PhotonOptions options;
+  options.photon_count = 200'000;
+  const PhotonTracer photons(tracer, lights, options);
+  double sum = 0;
+  for (std::size_t b = 0; b < photons.batch_count(); ++b)
+    for (const formats::Photon& photon : photons.trace(b).block.photons)
+      if (photon.kind == formats::PathKind::direct) sum += double(photon.flux[0]);
+  // 33 333 photons of which a quarter is stored: sigma = sqrt(3 / 33333) = 0.95 %
+  EXPECT_NEAR(sum, 4 * M_PI / 6, 4 * 0.0095 * 4 * M_PI / 6);
+}
+
+TEST(NormalMap, TiltsAsTheSpecificationSays) {
+  // Red towards the image's right, green towards its top. Codes 218 and 128: x = 0.7098, y = 0.0039, z = 0.7098.
+  HandMadeScene scene;
+  Material material = matte(Rgb(1.0f));
+  material.textures.emplace().normal = texture_of_image();
+  scene.set_images({png_image(1, 1, 3, {218, 128, 218}), png_image(1, 1, 3, {128, 218, 218})});
+  const auto tilted = [&](const std::vector<Vec2>& uvs, bool green, bool flipped = false) {
+    material.textures->normal.image = green ? 1 : 0;
+    HandMadeScene one;
+    one.set_images({png_image(1, 1, 3, {218, 128, 218}), png_image(1, 1, 3, {128, 218, 218})});
+    one.add_quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, material);
+    one.set_uvs(uvs);
+    SceneFrame frame = one.frame();
+    frame.surfaces[0].flipped = flipped;
+    const Tracer tracer(frame);
+    Hit hit;
+    EXPECT_TRUE(tracer.intersect({{0.6f, 0.3f, 1}, {0, 0, -1}, 0, INFINITY}, hit));
+    SurfacePoint point = tracer.surface_point(hit);
+    const SurfaceMaterial here(frame, point, 0);
+    return point.normal;
+  };
+  const float s = std::sqrt(0.5f);
+  const auto expect = [&](Vec3 normal, Vec3 wanted) { EXPECT_GT(dot(normal, wanted), 0.9999f) << normal.x << " " << normal.y << " " << normal.z; };
+  const std::vector<Vec2> upright{{0, 1}, {1, 1}, {1, 0}, {0, 0}};     // the image's top at y = 1
+  expect(tilted(upright, false), {s, 0, s});
+  expect(tilted(upright, true), {0, s, s});
+  const std::vector<Vec2> mirrored{{1, 1}, {0, 1}, {0, 0}, {1, 0}};    // the image's right at x = 0
+  expect(tilted(mirrored, false), {-s, 0, s});
+  expect(tilted(mirrored, true), {0, s, s});
+  const std::vector<Vec2> turned{{0, 0}, {0, 1}, {1, 1}, {1, 0}};      // the image's right at y = 1, its top at x = 0
+  expect(tilted(turned, false), {0, s, s});
+  expect(tilted(turned, true), {-s, 0, s});
+  expect(tilted(upright, false, true), {s, 0, -s});                    // the other side is the front
+  const std::vector<Vec2> nowhere(4, Vec2{0.3f, 0.3f});
+  expect(tilted(nowhere, false), {0, 0, 1});
+}
+
+TEST(NormalMap, ATiltedNormalIsLitLikeATiltedPlane) {
+  // Light from straight above on a matte plane whose map tilts by 45 degrees: cos 45 of what the plain one gets.
+  HandMadeScene scene;
+  Material material = matte(Rgb(0.8f));
+  material.textures.emplace().normal = texture_of_image();
+  scene.set_images({png_image(1, 1, 3, {218, 128, 218})});
+  scene.add_quad({-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, material);
+  scene.set_uvs({{0, 1}, {1, 1}, {1, 0}, {0, 0}});
+  scene.add_point_light({0, 0, 100}, Rgb(1e4f));
+  const Tracer tracer(scene.frame());
+  const Lights lights(scene.frame(), table_of(scene));
+  RayCounts counts;
+  const Vec3 eye{0.5f, 0.2f, 1};
+  const Layers layers = trace_eye_path({tracer, lights}, {eye, normalize(Vec3{0.01f, 0.02f, 0} - eye), 0, INFINITY},
+                                       PixelRandom(1, 7, 0), nullptr, counts);
+  EXPECT_NEAR(layers[Layer::direct].g, 0.8 / M_PI * std::sqrt(0.5), 2e-3);
+}
+
+TEST(Unlit, ShowsItselfToTheEyeAndLightsNothing) {
+  HandMadeScene scene;
+  Material unlit = matte(Rgb(0.25f, 0.5f, 1.0f));
+  unlit.unlit = true;
+  scene.add_room({-1, -1, -1}, {1, 1, 1}, unlit);
+  scene.add_quad({-0.5f, -0.5f, 0}, {0.5f, -0.5f, 0}, {0.5f, 0.5f, 0}, {-0.5f, 0.5f, 0}, matte(Rgb(0.8f)));
+  scene.add_point_light({0, 0, 0.5f}, Rgb(1.0f));
+  const Tracer tracer(scene.frame());
+  const EmissionTable table = table_of(scene);
+  EXPECT_TRUE(table.surfaces.empty());
+  const Lights lights(scene.frame(), table);
+  RayCounts counts;
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    const Layers wall = trace_eye_path({tracer, lights}, {{0, 0, 0.2f}, normalize(Vec3{1, 0.3f, 0.4f}), 0, INFINITY},
+                                       PixelRandom(1, 7, i), nullptr, counts);
+    EXPECT_EQ(wall[Layer::emission], (Rgb{0.25f, 0.5f, 1.0f}));
+    EXPECT_EQ(wall[Layer::direct], Rgb(0.0f));
+    const Layers table_top = trace_eye_path({tracer, lights}, {{0, 0, 0.2f}, normalize(Vec3{0.1f, 0.1f, -1}), 0, INFINITY},
+                                            PixelRandom(1, 7, i), nullptr, counts);
+    EXPECT_EQ(table_top[Layer::emission], Rgb(0.0f));
+    EXPECT_GT(table_top[Layer::direct].g, 0);
+    EXPECT_EQ(table_top[Layer::indirect], Rgb(0.0f));
+  }
+  PhotonOptions options;
+  options.photon_count = 1000;
+  const PhotonTracer photons(tracer, lights, options);
+  for (std::size_t b = 0; b < photons.batch_count(); ++b)
+    for (const formats::Photon& photon : photons.trace(b).block.photons) {
+      EXPECT_EQ(photon.object, 1);
+      EXPECT_EQ(photon.kind, formats::PathKind::direct);
+    }
+}
+
+/// Inside a hollow sphere of matte walls every place sends the same light to every other: after one reflection light
+/// is spread evenly, so only the mean reflectance m counts: indirect irradiance is E_0 m / (1 - m) everywhere, with
+/// E_0 = F / S the light of a lamp at the centre. Here one half of the wall reflects 0.8, the other 0.2.
+HandMadeScene two_coloured_sphere() {
+  HandMadeScene scene;
+  Material wall = matte(Rgb(1.0f));
+  wall.textures.emplace().base_color = texture_of_image();
+  scene.set_images({png_image(2, 1, 3, {231, 231, 231, 124, 124, 124})});
+  scene.add_hollow_sphere({}, 1, 12, wall);
+  std::vector<Vec2> uvs;
+  // Vertices of a triangle that touch x = 0 lie on it: 0.5 would be the other half's.
+  for (const Vec3 p : scene.last_positions()) uvs.push_back({0.5f + 0.49f * p.x, 0.5f});
+  scene.set_uvs(uvs);
+  scene.add_point_light({}, Rgb(1.0f));
+  return scene;
+}
+const double kMeanReflectance = (std::pow((231 / 255.0 + 0.055) / 1.055, 2.4) + std::pow((124 / 255.0 + 0.055) / 1.055, 2.4)) / 2;
+
+TEST(TexturedReflectance, PhotonsInASphere) {
+  HandMadeScene scene = two_coloured_sphere();
+  const Tracer tracer(scene.frame());
+  const Lights lights(scene.frame(), table_of(scene));
+  PhotonOptions options;
+  options.photon_count = 100'000;
+  const PhotonTracer photons(tracer, lights, options);
+  double sum = 0;
+  for (std::size_t b = 0; b < photons.batch_count(); ++b)
+    for (const formats::Photon& photon : photons.trace(b).block.photons)
+      if (photon.kind == formats::PathKind::indirect) sum += double(photon.flux[0]);
+  // Path lengths are geometric with mean 1: sigma about 1.5 / sqrt(100 000) = 0.5 %
+  const double expected = 4 * M_PI * kMeanReflectance / (1 - kMeanReflectance);
+  EXPECT_NEAR(sum, expected, 4 * 0.005 * expected);
+}
+
+TEST(TexturedReflectance, EyePathsInASphere) {
+  HandMadeScene scene = two_coloured_sphere();
+  const Tracer tracer(scene.frame());
+  const Lights lights(scene.frame(), table_of(scene));
+  const double wall = 2 * kMeanReflectance, dark = std::pow((124 / 255.0 + 0.055) / 1.055, 2.4), bright = wall - dark;
+  const double irradiance = 1.0;   // I / r^2
+  RayCounts counts;
+  for (const float side : {-1.0f, 1.0f}) {
+    const double rho = side < 0 ? bright : dark;
+    double direct = 0, indirect = 0;
+    constexpr int kSamples = 20000;
+    for (int i = 0; i < kSamples; ++i) {
+      const Ray ray{{0.1f, 0.05f, 0.02f}, normalize(Vec3{side, 0.3f * float(i % 97) / 97, 0.2f}), 0, INFINITY};
+      const Layers layers = trace_eye_path({tracer, lights}, ray, PixelRandom(3, 5, std::uint32_t(i)), nullptr, counts);
+      direct += double(layers[Layer::direct].g) / kSamples;
+      indirect += double(layers[Layer::indirect].g) / kSamples;
+    }
+    // The faces lie up to 1 % inside the unit sphere, where light is up to 2 % brighter; indirect light has a sigma of
+    // about its mean / sqrt(N) = 0.7 %.
+    EXPECT_NEAR(direct, rho / M_PI * irradiance, 0.02 * rho / M_PI);
+    const double expected = rho / M_PI * irradiance * kMeanReflectance / (1 - kMeanReflectance);
+    EXPECT_NEAR(indirect, expected, 0.035 * expected) << side;
+  }
+}
+
+TEST(TexturedReflectance, WhatNoRayMeetsIsNeverDecoded) {
+  HandMadeScene scene = two_coloured_sphere();
+  const Tracer tracer(scene.frame());
+  const Lights lights(scene.frame(), table_of(scene));
+  EXPECT_EQ(scene.frame().images->decoded_count(), 0u);
+  PhotonOptions options;
+  options.photon_count = 10;
+  PhotonTracer(tracer, lights, options).trace(0);
+  EXPECT_EQ(scene.frame().images->decoded_count(), 1u);
+}
+
+}  // namespace
+}  // namespace tempolux
