@@ -30,13 +30,6 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
-std::string host_name() {
-  char name[HOST_NAME_MAX + 1] = "host";
-  gethostname(name, sizeof name - 1);
-  std::string host = name;
-  std::ranges::replace(host, '/', '_');
-  return host;
-}
 
 /// ".NAME.tmp.HOST." in the folder of `target`; a name too long for the file system is cut and hashed.
 std::filesystem::path temporary_stem(const std::filesystem::path& target, const std::string& host) {
@@ -209,7 +202,7 @@ struct Output::State : std::streambuf {
     if (file < 0) fail(path, "cannot write", errno);
   }
   void open_temporary(std::optional<mode_t> mode) {
-    const std::filesystem::path stem = temporary_stem(target, host_name());
+    const std::filesystem::path stem = temporary_stem(target, temporary_host());
     temporary_path = stem.string() + std::to_string(getpid());
     enter_in_ledger();
     remove_stale(stem);
@@ -281,6 +274,14 @@ struct Output::State : std::streambuf {
     close(handle);
   }
 };
+
+std::string temporary_host() {
+  char name[HOST_NAME_MAX + 1] = "host";
+  gethostname(name, sizeof name - 1);
+  std::string host = name;
+  std::ranges::replace(host, '/', '_');
+  return host;
+}
 
 Output::Output(const std::string& path, bool no_clobber, Kind kind)
     : state_(std::make_unique<State>(path, no_clobber)) {

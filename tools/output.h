@@ -47,6 +47,8 @@ class Output {
   std::unique_ptr<State> state_;
 };
 
+/// HOST in the names of temporary files: this machine.
+std::string temporary_host();
 /// Final names of the outputs committed by this process so far, in order; "-" is not among them.
 std::vector<std::string> committed_outputs();
 /// `message` with every temporary name of this run replaced by the final name.

@@ -4,16 +4,24 @@
 //
 // Writes plan/plan.json, plan/plan.mk and plan/state/*. A file whose content would be the same is left
 // untouched, except plan.mk, which make wants newer than the scene. Format: formats/plan/plan.md.
+//
+//     scene-plan room.glb --frames 0-47 --estimate --frame-options '--size 960x540'
+//     scene-plan --tidy out
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/error.h"
+#include "lib/core/parallel.h"
 #include "lib/plan/plan_files.h"
+#include "tools/pilot.h"
 #include "tools/scene_input.h"
+#include "tools/tidy.h"
 
 using namespace tempolux;
 
@@ -35,46 +43,106 @@ bool write_if_changed(const std::string& path, const std::string& content) {
   return true;
 }
 
+struct Options {
+  std::string scene, folder = "plan", tidy_folder;
+  double tidy_hours = 24;
+  bool estimate = false, json = false;
+  int jobs = 1;
+  tools::RunOptions run;
+};
+
+void remove_left_overs(tools::Tool& tool, const Options& options) {
+  const tools::Tidied tidied = tools::tidy(options.tidy_folder, options.tidy_hours * 3600);
+  std::cout << "removed " << tidied.removed << " unfinished files of " << tidied.bytes << " bytes, kept " << tidied.kept
+            << " that may still be written\n";
+  tool.stats().count("removed", double(tidied.removed));
+}
+
+/// The plan as files; of those whose content would be the same only plan.mk is written.
+void write_plan(tools::Tool& tool, const Plan& plan, const Scene& scene, const Options& options, tools::Output& makefile,
+                const std::string& estimate) {
+  const std::string rules = plan_makefile(plan, options.folder, scene.files);
+  std::size_t changed = 0;
+  const std::vector<PlanFile> states = state_files(plan);
+  for (const PlanFile& state : states) changed += write_if_changed(options.folder + "/" + state.name, state.content);
+  const std::string scene_name = std::filesystem::path(options.scene).filename().string();
+  write_if_changed(options.folder + "/plan.json", plan_json(plan, scene_name, tool.history_line(), estimate));
+  makefile.write(rules.data(), rules.size());
+  makefile.commit();  // last: from here on the plan is up to date
+  tool.stats().count("state_files", double(states.size()));
+  tool.stats().count("state_files_changed", double(changed));
+}
+
+void plan_range(tools::Tool& tool, Options& options, bool write) {
+  while (options.folder.size() > 1 && options.folder.back() == '/') options.folder.pop_back();
+  std::optional<tools::Output> makefile;
+  if (write) {
+    check_folder_name(options.folder);
+    make_folder(options.folder + "/state");
+    makefile.emplace(options.folder + "/plan.mk", false, tools::Output::Kind::text);
+  }
+  tool.stats().phase("load");
+  const tools::SceneInput input(tool, options.scene, tools::SceneInput::light | tools::SceneInput::a_camera);
+  const Scene& scene = input.scene();
+
+  tool.stats().phase("plan");
+  const int camera = scene.camera_node(tool.common().camera);
+  const Plan plan = make_plan(scene, tool.common().frames, camera, input.time());
+  for (const std::string& warning : plan.warnings) tool.warn(options.scene + ": " + warning);
+  std::string estimate_as_json;
+  if (options.estimate) {
+    tool.stats().phase("estimate");
+    const int processors = usable_processor_count(), threads = tool.common().threads;
+    options.run.threads = threads;
+    const Estimate estimate = tools::estimate_run(options.scene, plan, options.run);
+    estimate_as_json = estimate_json(estimate, processors, options.jobs, threads);
+    std::cout << (options.json ? estimate_as_json : estimate_text(estimate, processors, options.jobs, threads));
+  }
+  tool.stats().phase("write");
+  if (makefile) write_plan(tool, plan, scene, options, *makefile, estimate_as_json);
+  for (const Stage& stage : plan.stages)
+    tool.say(stage.name + (stage.needed ? ": needed: " : ": not needed: ") + stage.because);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   tools::Tool tool("scene-plan", "Say what a range of frames needs, as make variables and state files.", argc,
                    argv);
-  std::string scene_file, folder = "plan";
-  tool.app().add_option("scene", scene_file, "glTF scene, .gltf or .glb")->required();
-  tool.output_option(folder, "folder for plan.json, plan.mk and state/")->capture_default_str();
+  Options options;
+  CLI::App& app = tool.app();
+  app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; needed but for --tidy");
+  const CLI::Option* output = tool.output_option(options.folder, "folder for plan.json, plan.mk and state/; with --estimate "
+                                                 "only if it is given")->capture_default_str();
+  const auto add = [&](CLI::Option* option) {
+    tool.leave_out_of_history(option);
+    return option;
+  };
+  add(app.add_flag("--estimate", options.estimate,
+                   "print what the run will cost: CPU seconds and bytes of each stage, from short runs on this machine"));
+  add(app.add_flag("--json", options.json, "print the estimate as JSON"));
+  tool.leave_out_of_history(tool.size_option("--size", options.run.width, options.run.height,
+                                             "size of the frames to estimate, pixels, unless the options below say it"));
+  add(app.add_option("--photon-options", options.run.photons, "options photon-trace will get, as one word"))->type_name("TEXT");
+  add(app.add_option("--point-options", options.run.points, "options irradcache-build points will get"))->type_name("TEXT");
+  add(app.add_option("--cache-options", options.run.cache, "options irradcache-build records will get"))->type_name("TEXT");
+  add(app.add_option("--frame-options", options.run.frames, "options frame-render will get"))->type_name("TEXT");
+  add(app.add_option("--jobs", options.jobs, "processes at a time to estimate for, as make -j"))
+      ->type_name("N")->capture_default_str()->check(CLI::Range(1, 100000));
+  add(app.add_option("--tidy", options.tidy_folder,
+                     "instead: remove unfinished files of killed runs from this folder and those in it"))->type_name("FOLDER");
+  add(app.add_option("--tidy-hours", options.tidy_hours, "unfinished files of other hosts count as left over after so many hours"))
+      ->type_name("HOURS")->capture_default_str()->check(CLI::NonNegativeNumber);
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
   return tool.run([&] {
-    while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
-    check_folder_name(folder);
-    make_folder(folder + "/state");
-    tools::Output makefile(folder + "/plan.mk", false, tools::Output::Kind::text);
-
-    tool.stats().phase("load");
-    const tools::SceneInput input(tool, scene_file, tools::SceneInput::light | tools::SceneInput::a_camera);
-    const Scene& scene = input.scene();
-
-    tool.stats().phase("plan");
-    const int camera = scene.camera_node(tool.common().camera);
-    const Plan plan = make_plan(scene, tool.common().frames, camera, input.time());
-    for (const std::string& warning : plan.warnings) tool.warn(scene_file + ": " + warning);
-
-    tool.stats().phase("write");
-    const std::string rules = plan_makefile(plan, folder, scene.files);
-    std::size_t changed = 0;
-    const std::vector<PlanFile> states = state_files(plan);
-    for (const PlanFile& state : states)
-      changed += write_if_changed(folder + "/" + state.name, state.content);
-    const std::string scene_name = std::filesystem::path(scene_file).filename().string();
-    write_if_changed(folder + "/plan.json", plan_json(plan, scene_name, tool.history_line()));
-    makefile.write(rules.data(), rules.size());
-    makefile.commit();  // last: from here on the plan is up to date
-
-    tool.stats().count("state_files", double(states.size()));
-    tool.stats().count("state_files_changed", double(changed));
-    for (const Stage& stage : plan.stages)
-      tool.say(stage.name + (stage.needed ? ": needed: " : ": not needed: ") + stage.because);
+    if (options.tidy_folder.empty() && options.scene.empty()) throw InputError("scene is required; see scene-plan --help");
+    if (!options.tidy_folder.empty()) {
+      if (!options.scene.empty()) throw InputError("--tidy FOLDER needs no scene; leave it out");
+      remove_left_overs(tool, options);
+    } else {
+      plan_range(tool, options, !options.estimate || output->count() > 0);
+    }
     return int(tools::exit_ok);
   });
 }

@@ -72,7 +72,8 @@ std::string frame_digits(int frame) {
   return text.data();
 }
 
-std::string plan_json(const Plan& plan, const std::string& scene_name, const std::string& history) {
+std::string plan_json(const Plan& plan, const std::string& scene_name, const std::string& history,
+                      const std::string& estimate) {
   const bool photons = !plan.photon_kinds.empty();
   Json json = {{"format", "tempolux plan"},
                {"version", "1.0"},
@@ -91,6 +92,7 @@ std::string plan_json(const Plan& plan, const std::string& scene_name, const std
   for (const PlannedSegment& segment : plan.segments)
     json["segments"].push_back(segment_json(segment, photons));
   json["warnings"] = plan.warnings;
+  if (!estimate.empty()) json["estimate"] = Json::parse(estimate);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -15,7 +15,9 @@ struct PlanFile {
 };
 
 /// plan.json: everything, for people and scripts.
-std::string plan_json(const Plan& plan, const std::string& scene_name, const std::string& history);
+/// `estimate`: estimate_json(), or empty.
+std::string plan_json(const Plan& plan, const std::string& scene_name, const std::string& history,
+                      const std::string& estimate = {});
 
 /// Throws InputError if make cannot name files in a folder of this name (blanks, '%', ':' ...).
 void check_folder_name(const std::string& folder);
