@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,6 +59,7 @@ struct PictureOptions {
   std::string layer;                     ///< "": R, G, B
   std::optional<double> exposure_stops;  ///< nothing: auto
   int columns = 0, tile_width = 320;     ///< of a sheet; columns 0: about square
+  std::function<void(double)> progress;  ///< of a sheet, [0, 1]; may be empty
 };
 /// An image as PNG.
 void write_picture(const std::string& path, const PictureOptions& options, Output& output);

@@ -119,11 +119,17 @@ void write_picture(const std::string& path, const PictureOptions& options, Outpu
 
 void write_sheet(const std::vector<std::string>& paths, const PictureOptions& options, Output& output) {
   PreviewOptions preview{options.layer, options.exposure_stops};
+  const double steps = double(paths.size()) * (preview.exposure_stops ? 1 : 2);
+  double done = 0;
+  const auto step = [&] {
+    if (options.progress) options.progress(++done / steps);
+  };
   if (!preview.exposure_stops) {  // frames are read twice, so that one at a time is in memory
     std::vector<double> stops;
     for (const std::string& path : paths) {
       const Image image = load(path, true);
       stops.push_back(named(path, [&] { return auto_exposure_stops(image, options.layer); }));
+      step();
     }
     preview.exposure_stops = sequence_exposure_stops(stops);
   }
@@ -132,6 +138,7 @@ void write_sheet(const std::vector<std::string>& paths, const PictureOptions& op
     const Image image = load(path, true);
     const Picture picture = named(path, [&] { return make_picture(image, preview); });
     pictures.push_back(contact_sheet({picture}, 1, options.tile_width));
+    step();
   }
   save_png(output.temporary_path(), contact_sheet(pictures, options.columns, options.tile_width));
 }

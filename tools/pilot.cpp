@@ -138,10 +138,16 @@ class Pilots {
   }
 
   Estimate all() {
+    const auto done = [&](double part) {
+      if (options_.progress) options_.progress(part);
+    };
     if (!kinds_.empty()) {
       photons();
+      done(0.1);
       points();
+      done(0.3);
       records();
+      done(0.7);
     }
     frames();
     return estimate_;

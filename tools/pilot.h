@@ -1,6 +1,7 @@
 // tools/pilot.h -- scene-plan --estimate: short runs of the other tools, from which the whole run is estimated.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "lib/plan/estimate.h"
@@ -13,6 +14,7 @@ struct RunOptions {
   std::string photons, points, cache, frames;
   int width = 640, height = 360;
   int threads = 1;
+  std::function<void(double)> progress;  ///< called with [0, 1]; may be empty
 };
 
 /// Runs the programs beside this one on a fraction of the photons and pixels, for the first picture of the plan, in

@@ -94,6 +94,7 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
     tool.stats().phase("estimate");
     const int processors = usable_processor_count(), threads = tool.common().threads;
     options.run.threads = threads;
+    options.run.progress = [&](double done) { tool.progress(done); };
     const Estimate estimate = tools::estimate_run(options.scene, plan, options.run);
     estimate_as_json = estimate_json(estimate, processors, options.jobs, threads);
     std::cout << (options.json ? estimate_as_json : estimate_text(estimate, processors, options.jobs, threads));

@@ -91,6 +91,7 @@ int answer(tools::Tool& tool, Request& request) {
   if (request.check) return check_files(tool, request);
   if (!request.sheet.empty()) {
     tools::Output output(request.sheet, keep);
+    request.picture.progress = [&](double done) { tool.progress(done); };
     tools::write_sheet(request.files, request.picture, output);
     output.commit();
   } else if (!request.png.empty()) {
