@@ -222,18 +222,28 @@ class Pilots {
                                 costs.a * wanted + costs.b * pixels() * counts_.views,
                                 large.bytes * wanted / std::max(1.0, n2)});
   }
-  void frames() {
+  Cost render(int width, int height, const std::string& output) {
     Words words = common(options_.frames, counts_.first);
     take(words, "--size", "");
-    const std::string output = folder_.file("p.exr"), png = folder_.file("p.png");
-    words.insert(words.end(), {"--size", size_of(width_, height_), "-o", output});
+    words.insert(words.end(), {"--size", size_of(width, height), "-o", output});
     if (!kinds_.empty())
       words.insert(words.end(), {"--irradcache", folder_.file("p.irradcache"), "--points", folder_.file("p.irradpoints")});
     if (kinds_.find("caustic") != std::string::npos)
       words.insert(words.end(), {"--photons", folder_.file("p.photons")});
-    const Cost cost = run(folder_, "frame-render", words, output);
-    const PilotRun pilot = pilot_of(cost, {"render", "data channels", "write"}, pilot_pixels());
-    const StageEstimate frame = scaled("frame-render", double(counts_.pictures.size()), pilot, pixels());
+    return run(folder_, "frame-render", words, output);
+  }
+  /// A larger picture has less to see in each pixel, which then needs fewer samples: its time grows more slowly than
+  /// its pixels, though never slower than its width.
+  void frames() {
+    const std::string output = folder_.file("p.exr"), png = folder_.file("p.png");
+    const int half_width = std::max(4, width_ / 2), half_height = std::max(4, height_ / 2);
+    const std::set<std::string> work{"render", "data channels", "write"};
+    const double small = render(half_width, half_height, output).phases(work);
+    const Cost cost = render(width_, height_, output);
+    const PilotRun pilot = pilot_of(cost, work, pilot_pixels());
+    StageEstimate frame = scaled("frame-render", double(counts_.pictures.size()), pilot, pixels());
+    const double by_width = pilot.work_cpu_s * options_.width / width_;
+    frame.work_cpu_s = std::max(by_width, power_law(half_width, small, width_, pilot.work_cpu_s, options_.width));
     estimate_.stages.push_back(frame);
     const double copies = frame_count_ - double(counts_.pictures.size());
     if (copies > 0) estimate_.stages.push_back({"copies of equal frames", copies, 0.002, 0, frame.bytes});
