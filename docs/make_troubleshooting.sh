@@ -26,7 +26,7 @@ look() {
 }
 pair() {  # NAME LAYER-OPTIONS...
   name=$1; shift
-  "$bin/tempolux-info" --sheet "$out/trouble-$name.png" --columns 2 --tile "${tile:-200}" "$@" "$work/$name-bad.exr" "$work/$name-good.exr"
+  "$bin/tempolux-info" --sheet "$out/trouble-$name.png" --columns 2 --tile 200 "$@" "$work/$name-bad.exr" "$work/$name-good.exr"
   echo "$out/trouble-$name.png $(wc -c < "$out/trouble-$name.png")"
 }
 
@@ -64,7 +64,7 @@ for mesh in scene["meshes"]:
             primitive["material"] = len(scene["materials"]) - 1
 json.dump(scene, open(sys.argv[2], "w"))
 END
-scenes=$work size="--size 112x112" tile=160
+scenes=$work size="--size 104x104"
 "$bin/frame-render" $scenes/mirror.gltf $size --integrator path --spp 16 -o "$work/firefly-bad.exr" -q
 chain firefly-good mirror.gltf 0 200k
 pair firefly
