@@ -119,11 +119,11 @@ def judged(bench, name, size, halves, targets):
 
 
 HEADER = ["scene", "asked: RMSE in CPU s", "RMSE", "CPU s", "bias", "reached", "settings"]
-FAST = {"S2": [(0.0025, 1.5, Settings(100000, (), ("--rays", 400), ("--pixel-error", 0.005))),
+FAST = {"S2": [(0.0025, 1.5, Settings(100000, (), ("--rays", 350), ("--pixel-error", 0.0055))),
                (0.0076, 0.6, Settings(30000, ("--point-count", "6k", "--light-samples", 2), ("--rays", 150, "--error-bound", 0.3),
                                       ("--spp", 4, "--pixel-error", 0.03)))],
         "S3": [(0.0030, 3.0, Settings(100000, (), ("--rays", 400), ("--pixel-error", 0.005))),
-               (0.0143, 0.74, Settings(20000, ("--point-count", "4k", "--light-samples", 2), ("--rays", 80, "--error-bound", 0.4),
+               (0.0143, 0.74, Settings(20000, ("--point-count", "4k", "--light-samples", 2), ("--rays", 60, "--error-bound", 0.5),
                                        ("--spp", 2, "--pixel-error", 0.05)))]}
 
 
