@@ -8,12 +8,14 @@
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/material/bsdf.h"
+#include "lib/material/inside.h"
 #include "lib/material/surface_material.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kDeepestSpecular = 32;   ///< events S in a row followed by one ray; roulette ends them long before
+/// Events S followed by one ray; roulette ends all but 4e-12 of them before, clear or not.
+constexpr int kDeepestSpecular = 512;
 
 /// A key from where a point is, to the bit.
 std::uint64_t key_of(Vec3 p, Vec3 n, std::uint64_t seed) {
@@ -142,6 +144,8 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
   if (!specular || depth >= kDeepestSpecular) return result;
   // Other lobes: one sampled direction, by roulette on its weight; the Lambert lobe was read above.
   const Side side(met.hit, met.geometric, met.wo);
+  const MaterialValues& material = tracer_.frame().materials[met.hit.material];
+  const bool front = dot(met.hit.normal_geometric, met.wo) > 0, solid = is_solid_glass(material);
   const auto next = bsdf.sample(side.wo_local, random.get1(2, Purpose::lobe), random.get2(2, Purpose::scatter));
   if (next.diffuse || is_black(next.weight)) return result;
   const Vec3 travel = side.frame.to_world(next.wi);
@@ -149,12 +153,13 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
   const float survival = std::min(0.95f, max_component(next.weight));
   if (!(random.get1(2, Purpose::roulette) < survival)) return result;
   return result + next.weight * (1 / survival) *
-                      reflected_beyond(met.hit, travel, met.distance, mix64(key + 2), depth + 1, counts);
+                      reflected_beyond(met.hit, travel, met.distance, mix64(key + 2), depth + 1, counts,
+                                       solid && front == next.transmitted ? &material : nullptr);
 }
 
-/// Radiance along a ray that goes on from `from`, `distance` on the way already.
+/// Radiance along a ray that goes on from `from`, `distance` on the way already, inside a solid of glass or not.
 Rgb FinalGather::reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key,
-                                  int depth, GatherCounts& counts) const {
+                                  int depth, GatherCounts& counts, const MaterialValues* inside) const {
   Hit hit;
   ++counts.rays;
   if (!tracer_.intersect(spawn_ray(from, travel), hit)) return Rgb(0.0f);
@@ -163,7 +168,8 @@ Rgb FinalGather::reflected_beyond(const SurfacePoint& from, Vec3 travel, float d
   const Met met = meet(there, -travel, distance + length(there.position - from.position), textured);
   const PointLight* point =
       met.bsdf->has_diffuse() ? points_.find(there.position, met.geometric, there.object) : nullptr;
-  return reflected(met, point, key, depth, counts);
+  const Rgb radiance = reflected(met, point, key, depth, counts);
+  return inside ? radiance * transmittance(*inside, length(there.position - from.position)) : radiance;
 }
 
 /// Irradiance at a hit too near for its point to be read: caustic light is the point's all the same, direct light

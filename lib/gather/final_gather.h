@@ -66,7 +66,7 @@ class FinalGather {
   Met meet(SurfacePoint& hit, Vec3 wo, float distance, std::optional<Bsdf>& textured) const;
   Rgb reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts) const;
   Rgb reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key, int depth,
-                       GatherCounts& counts) const;
+                       GatherCounts& counts, const MaterialValues* inside = nullptr) const;
   Rgb near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key,
                       int depth, GatherCounts& counts) const;
 

@@ -7,6 +7,7 @@
 #include "formats/error.h"
 #include "lib/core/frame.h"
 #include "lib/core/random.h"
+#include "lib/core/sampling.h"
 #include "lib/material/inside.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/texture_lookup.h"
@@ -40,6 +41,22 @@ struct Arrival {
         flat(normal == normal_geometric) {
     const float geometric = dot(wi, normal_geometric);
     shading_correction = flat ? 1 : geometric > 0 ? std::max(0.0f, wi_local.z) / geometric : 0;
+  }
+
+  /// Event D where the normals differ: `travel` by the cosine to the geometric normal; returns f_D cos / pdf as the eye
+  /// has it that looks against `travel` (ShadingPoint in lib/render/shading.h): by the shading normal, or by
+  /// the geometric one where the shading normal looks away from it.
+  Rgb scatter_diffuse(const Bsdf& bsdf, const Bsdf::Sample& chosen, Vec2 u, Vec3& travel) const {
+    const Frame geometric(normal_geometric);
+    const Vec3 out = sample_hemisphere_cos(u), in = geometric.to_local(wi);
+    travel = geometric.to_world(out);
+    const Vec3 shaded = frame.to_local(travel);
+    const bool by_shading = shaded.z > 1e-4f;
+    // Light from behind the shading normal is seen from behind it only, and then it scatters by D alone.
+    if (!(wi_local.z > 0)) return by_shading ? Rgb(0.0f) : bsdf.eval_diffuse(out, in) * kPi;
+    const float p = bsdf.pdf_diffuse(chosen.wi, wi_local) / pdf_hemisphere_cos(chosen.wi.z);
+    return by_shading ? bsdf.eval_diffuse(shaded, wi_local) * (kPi * shading_correction / p)
+                      : bsdf.eval_diffuse(out, in) * (kPi / p);
   }
 };
 
@@ -163,13 +180,20 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
 
     // Scatter, or be absorbed.
     const float u_lobe = bsdf.has_specular() ? random.get1(bounce, Purpose::lobe) : 0;   // else it chooses nothing
-    const auto next = bsdf.sample(at.wi_local, u_lobe, random.get2(bounce, Purpose::scatter));
-    const Vec3 travel = at.frame.to_world(next.wi);
-    const float side = next.transmitted ? -1.0f : 1.0f, cos_geometric = side * dot(travel, at.normal_geometric);
+    const Vec2 u_scatter = random.get2(bounce, Purpose::scatter);
+    auto next = bsdf.sample(at.wi_local, u_lobe, u_scatter);
+    Vec3 travel = at.frame.to_world(next.wi);
     const Rgb before = flux;
+    if (!at.flat && (next.diffuse || !(at.wi_local.z > 0))) {
+      next.diffuse = true;
+      next.weight = at.scatter_diffuse(bsdf, next, u_scatter, travel);
+    } else if (!at.flat) {
+      const float side = next.transmitted ? -1.0f : 1.0f;
+      next.weight *= at.shading_correction * std::max(0.0f, side * dot(travel, at.normal_geometric)) /
+                     std::max(1e-6f, side * next.wi.z);
+    }
+    const float cos_geometric = (next.transmitted ? -1.0f : 1.0f) * dot(travel, at.normal_geometric);
     flux *= next.weight;
-    if (!at.flat && !next.delta)
-      flux *= at.shading_correction * std::max(0.0f, cos_geometric) / std::max(1e-6f, side * next.wi.z);
     const float survival = std::min(kLargestSurvival, max_component(flux) / std::max(max_component(before), 1e-37f));
     if (!(cos_geometric > 0) || !(random.get1(bounce, Purpose::roulette) < survival)) {
       batch.absorbed += Rgbd(before);

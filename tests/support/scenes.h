@@ -18,7 +18,7 @@ class HandMadeScene {
  public:
   /// Adds triangles as one surface with a material of its own; returns its index.
   std::uint32_t add(const std::vector<Vec3>& positions, const std::vector<std::array<std::uint32_t, 3>>& triangles,
-                    const Material& material, bool moving = false) {
+                    const Material& material, bool moving = false, const std::vector<Vec3>& normals = {}) {
     auto primitive = std::make_unique<Primitive>();
     primitive->positions = positions;
     primitive->triangles = triangles;
@@ -26,6 +26,7 @@ class HandMadeScene {
     surface.object = surface.node = surface.material = std::uint32_t(frame_.materials.size());
     surface.primitive = primitive.get();
     surface.positions = positions;
+    if (!normals.empty()) surface.normals = normals;
     frame_.materials.push_back(material);
     primitives_.push_back(std::move(primitive));
     (moving ? moving_ : fixed_).push_back(surface);
@@ -46,6 +47,10 @@ class HandMadeScene {
   }
   /// A sphere of subdivided octahedron faces, fronts inwards.
   void add_hollow_sphere(Vec3 centre, float radius, int subdivisions, const Material& material) {
+    add_sphere(centre, radius, subdivisions, material, true, false);
+  }
+  /// The same, fronts inwards or outwards, shaded flat or smoothly.
+  void add_sphere(Vec3 centre, float radius, int subdivisions, const Material& material, bool inwards, bool smooth) {
     std::vector<Vec3> p;
     std::vector<std::array<std::uint32_t, 3>> t;
     for (int face = 0; face < 8; ++face) {
@@ -60,13 +65,16 @@ class HandMadeScene {
       for (int i = 0; i < n; ++i)
         for (int j = 0; j < n - i; ++j) {
           const auto put = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-            if (mirrored) t.push_back({a, b, c}); else t.push_back({a, c, b});
+            if (mirrored == inwards) t.push_back({a, b, c}); else t.push_back({a, c, b});
           };
           put(corner(i, j), corner(i + 1, j), corner(i, j + 1));
           if (j < n - i - 1) put(corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
         }
     }
-    add(p, t, material);
+    std::vector<Vec3> normals;
+    if (smooth)
+      for (Vec3 at : p) normals.push_back(normalize(inwards ? centre - at : at - centre));
+    add(p, t, material, false, normals);
   }
   /// Texture coordinates of the surface added last, by vertex.
   void set_uvs(const std::vector<Vec2>& uvs) { primitives_.back()->uvs = uvs; }

@@ -1,0 +1,101 @@
+// Coarse meshes with smooth normals: photons and the path tracer must see the same light.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "lib/photon/photon_trace.h"
+#include "lib/render/path_tracer.h"
+#include "tests/support/scenes.h"
+
+namespace tempolux {
+namespace {
+
+using test::HandMadeScene;
+using test::matte;
+
+struct Light {
+  double walls = 0, ball = 0;   ///< mean irradiance after one scattering or more, green
+};
+
+constexpr std::uint32_t kWalls = 0, kBall = 1;
+
+/// From what photons store (photon_trace.h: the flux by the shading normal), per area.
+Light by_photons(const Tracer& tracer, const Lights& lights, double wall_area, double ball_area) {
+  PhotonOptions options;
+  options.photon_count = 200000;
+  options.store_direct = false;
+  const PhotonTracer photons(tracer, lights, options);
+  Light light;
+  for (std::size_t b = 0; b < photons.batch_count(); ++b)
+    for (const formats::Photon& photon : photons.trace(b).block.photons)
+      if (photon.object <= kBall) (photon.object == kWalls ? light.walls : light.ball) += double(photon.flux[1]);
+  return {light.walls / wall_area, light.ball / ball_area};
+}
+
+/// From paths that start at uniform points into directions by the cosine to the shading normal.
+Light by_paths(const Tracer& tracer, const Lights& lights, const test::AreaSampler& area, std::size_t triangles, Vec3 centre, int count) {
+  RayCounts counts;
+  double sum[2] = {0, 0};
+  int n[2] = {0, 0};
+  for (int i = 0; i < count; ++i) {
+    const PathRandom random(11, std::uint64_t(i));
+    SurfacePoint from;
+    // Half of the places on the ball, whose triangles come after the room's 12.
+    const bool ball = i % 2 != 0;
+    const double room = area.cumulative[11] / area.area(), both = area.cumulative[11 + triangles] / area.area();
+    const double u = double(random.get1(0, Purpose::test));
+    area.sample(float(ball ? room + u * (both - room) : u * room), random.get2(1, Purpose::test), from.position, from.normal_geometric);
+    from.normal = ball ? normalize(from.position - centre) : from.normal_geometric;
+    from.offset = 1e-5f;
+    const Vec3 travel = Frame(from.normal).to_world(sample_hemisphere_cos(random.get2(2, Purpose::test)));
+    ++n[ball];
+    if (!(dot(travel, from.normal_geometric) > 0)) continue;
+    const Layers seen = trace_eye_path({tracer, lights}, spawn_ray(from, travel), PixelRandom(3, std::uint64_t(i), 0), nullptr, counts);
+    for (std::size_t l = std::size_t(Layer::specular); l < kLayerCount; ++l) sum[ball] += M_PI * double(seen.value[l].g);
+  }
+  return {sum[0] / n[0], sum[1] / n[1]};
+}
+
+class SmoothBall : public testing::TestWithParam<std::tuple<int, int>> {};   // material, subdivisions
+
+/// A ball of 72 triangles, normals up to 13 degrees off, or of 32, fills a good part of a closed room. Photons: 200000 paths
+/// leave 0.3 %. Paths: deviation 0.7 of the mean, 60000 places each: 0.3 %. 1.2 % is 3 sigma.
+/// Mirror and glass of 32 triangles: 2 %, for where the eye falls back on the geometric normal (grazing) photons do
+/// not; an octahedron is 4 % off.
+/// (For the interpolated normal on the ball its exact one is taken here: the same at the corners, 0.1 deg off between.)
+TEST_P(SmoothBall, PhotonsAndPathsAgree) {
+  const auto [kind, subdivisions] = GetParam();
+  const std::size_t triangles = std::size_t(8 * subdivisions * subdivisions);
+  Material ball;
+  ball.metallic = 0;
+  ball.specular = 0;
+  ball.base_color = Rgb(0.9f);
+  if (kind == 1) ball.metallic = 1, ball.roughness = 0, ball.specular = 1;
+  if (kind == 2) ball.transmission = 1, ball.thin_walled = false, ball.roughness = 0, ball.specular = 1;
+  HandMadeScene scene;
+  scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
+  const Vec3 centre{0.1f, -0.1f, 0.05f};
+  scene.add_sphere(centre, 0.75f, subdivisions, ball, false, true);
+  Material lamp = matte(Rgb(0.0f), Rgb(1.0f));   // that paths can meet behind mirror and glass
+  lamp.double_sided = false;
+  scene.add_quad({0.2f, 0.95f, -0.9f}, {0.9f, 0.95f, -0.9f}, {0.9f, 0.95f, -0.2f}, {0.2f, 0.95f, -0.2f}, lamp);
+  const SceneFrame& frame = scene.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  const test::AreaSampler area(frame);
+  const double wall_area = area.cumulative[11], ball_area = area.cumulative[11 + triangles] - wall_area;
+  const Light photons = by_photons(tracer, lights, wall_area, ball_area);
+  const Light paths = by_paths(tracer, lights, area, triangles, centre, 120000);
+  EXPECT_NEAR(photons.walls / paths.walls, 1, kind > 0 && subdivisions < 3 ? 0.02 : 0.012) << photons.walls;
+  if (kind == 0) {
+    EXPECT_NEAR(photons.ball / paths.ball, 1, 0.012) << photons.ball;
+  }
+  RecordProperty("walls", std::to_string(photons.walls / paths.walls));
+  RecordProperty("ball", std::to_string(photons.ball / paths.ball));
+}
+
+INSTANTIATE_TEST_SUITE_P(MatteMirrorGlass, SmoothBall, testing::Combine(testing::Values(0, 1, 2), testing::Values(2, 3)));
+
+}  // namespace
+}  // namespace tempolux
