@@ -21,12 +21,15 @@ constexpr int kMostInColumn = 8;   ///< surfaces on top of each other
 
 }  // namespace
 
+// All rays here meet surfaces of alpha mode BLEND wherever they are at all: what such a surface lets pass is in the
+// photons' flux already (photon_trace.h), its area is there.
+
 Reach::Reach(const Tracer& tracer) : tracer_(tracer) {
   const Box3& bounds = tracer.frame().bounds;
   offset_ = 0x1p-20f * max_component(max(abs(bounds.lower), abs(bounds.upper)));
 }
 
-bool Reach::free(Vec3 from, Vec3 to) const { return !tracer_.occluded({from, to - from, 0, 1}); }
+bool Reach::free(Vec3 from, Vec3 to) const { return !tracer_.occluded({from, to - from, 0, 1, true}); }
 
 bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
   const Vec3 start = from + normal * (2 * offset_), end = to + to_normal * (2 * offset_);
@@ -101,7 +104,7 @@ bool PointDensity::open_and_flat(const IrradiancePoint& point, float radius, flo
     const float phi = 2 * kPi * (float(i) + turn) / float(kRim);
     const Vec3 rim = start + (frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi)) * radius;
     Hit hit;
-    if (!reach_.free(start, rim) || !tracer_.intersect({rim, -point.normal, 0, down}, hit) ||
+    if (!reach_.free(start, rim) || !tracer_.intersect({rim, -point.normal, 0, down, true}, hit) ||
         !stores_[tracer_.frame().surfaces[hit.surface].material])
       return false;
   }
@@ -137,7 +140,7 @@ float PointDensity::column(const IrradiancePoint& point, Vec3 across, float heig
   float left = 2 * half, sum = 0;
   for (int i = 0; i < kMostInColumn && left > 0; ++i) {
     Hit hit;
-    if (!tracer_.intersect({top, -point.normal, 0, left}, hit)) break;
+    if (!tracer_.intersect({top, -point.normal, 0, left, true}, hit)) break;
     const SurfacePoint there = tracer_.surface_point(hit);
     const float side = dot(there.normal_geometric, point.normal), cosine = std::abs(side);
     const Vec3 up = side < 0 ? -there.normal_geometric : there.normal_geometric;

@@ -78,11 +78,13 @@ struct SurfaceArrays {
         flipped(s.flipped) {}
 };
 
+constexpr unsigned kAllBlend = 1;   ///< RTCRay::id of a ray with all_blend
+
 RTCRay to_embree(const Ray& ray) {
   RTCRay r;
   r.org_x = ray.origin.x; r.org_y = ray.origin.y; r.org_z = ray.origin.z; r.tnear = ray.t_min;
   r.dir_x = ray.direction.x; r.dir_y = ray.direction.y; r.dir_z = ray.direction.z; r.tfar = ray.t_max;
-  r.time = 0; r.mask = 0xffffffffu; r.id = 0; r.flags = 0;
+  r.time = 0; r.mask = 0xffffffffu; r.id = ray.all_blend ? kAllBlend : 0; r.flags = 0;
   return r;
 }
 
@@ -110,7 +112,8 @@ void pass_by_alpha(const RTCFilterFunctionNArguments* arguments) {
     const RTCHit hit = rtcGetHitFromHitN(arguments->hit, arguments->N, i);
     const float coverage = coverage_at(*alpha.frame, alpha.surface, hit.primID, hit.u, hit.v);
     if (coverage >= 1) continue;
-    if (!(chance(rtcGetRayFromRayN(arguments->ray, arguments->N, i), alpha.surface, hit.primID) < coverage))
+    const RTCRay ray = rtcGetRayFromRayN(arguments->ray, arguments->N, i);
+    if (!(ray.id == kAllBlend ? coverage > 0 : chance(ray, alpha.surface, hit.primID) < coverage))
       arguments->valid[i] = 0;
   }
 }

@@ -15,6 +15,7 @@ struct Ray {
   Vec3 origin;                 ///< scene space
   Vec3 direction;              ///< need not be unit; t is in units of its length
   float t_min = 0, t_max = INFINITY;
+  bool all_blend = false;      ///< meets surfaces of alpha mode BLEND wherever alpha > 0: to measure them, not for light
 };
 
 struct Hit {
