@@ -15,8 +15,8 @@ namespace tempolux {
 namespace {
 
 double triangle_area(const Surface& surface, const std::array<std::uint32_t, 3>& t) {
-  const Vec3 a = surface.positions[t[0]];
-  return 0.5 * double(length(cross(surface.positions[t[1]] - a, surface.positions[t[2]] - a)));
+  const Vec3 a = surface.position(t[0]);
+  return 0.5 * double(length(cross(surface.position(t[1]) - a, surface.position(t[2]) - a)));
 }
 
 bool stores_light(const SceneFrame& frame, const Surface& surface) {
@@ -51,7 +51,7 @@ void place_on(const Surface& surface, std::uint32_t rank, double area_per_point,
       const double first = at ? cumulative[at - 1] : 0, width = cumulative[at] - first;
       const float within = width > 0 ? float(std::clamp((along - first) / width, 0.0, 0.999999)) : 0.5f;
       const auto& t = triangles[at];
-      const Vec3 a = surface.positions[t[0]], b = surface.positions[t[1]], c = surface.positions[t[2]];
+      const Vec3 a = surface.position(t[0]), b = surface.position(t[1]), c = surface.position(t[2]);
       const Vec2 bary = sample_triangle({within, u.y});
       IrradiancePoint point;
       point.position = a * (1 - bary.x - bary.y) + b * bary.x + c * bary.y;

@@ -27,7 +27,10 @@ void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vect
   for (const PlacedLight& placed : frame.lights) join(punctual_flux(placed.light, table.sphere_radius));
 }
 
-bool anything_that_emits_moves(const SceneFrame& frame) {
+/// Whether the flux of any slot may differ between two frames.
+bool any_flux_changes(const SceneFrame& frame) {
+  if (std::ranges::any_of(frame.segment.changes, [](const PropertyChange& c) { return c.carries != "camera"; }))
+    return true;
   for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s)
     if (frame.materials[frame.surfaces[s].material].emissive()) return true;
   return false;  // the flux of punctual lights does not depend on where they are
@@ -65,7 +68,7 @@ EmissionTable build_emission_table(const Scene& scene, const Segment& segment, c
   const SegmentScene stage(scene, segment, options);
   std::vector<SceneFrame> frames;
   frames.push_back(stage.at(segment.first));
-  if (anything_that_emits_moves(frames.front()))
+  if (any_flux_changes(frames.front()))
     for (int f = segment.first + 1; f <= segment.last; ++f) frames.push_back(stage.at(f));
   return build_emission_table(frames);
 }

@@ -76,8 +76,8 @@ Vec2 project(const TriangleLight& t, const View& view, Vec3d w) {
 
 TriangleLight::TriangleLight(const Surface& surface, std::uint32_t index, const Material& material) {
   const auto& corners = surface.primitive->triangles[index];
-  const Vec3 p0 = surface.positions[corners[0]], p1 = surface.positions[corners[1]],
-             p2 = surface.positions[corners[2]];
+  const Vec3 p0 = surface.position(corners[0]), p1 = surface.position(corners[1]),
+             p2 = surface.position(corners[2]);
   corner = p0;
   edge1 = p1 - p0;
   edge2 = p2 - p0;

@@ -11,6 +11,7 @@
 #include "formats/hash.h"
 #include "lib/light/lights.h"
 #include "lib/material/bsdf.h"
+#include "lib/scene/animate.h"
 
 namespace tempolux {
 namespace {
@@ -40,13 +41,14 @@ std::vector<MovingNode> moving_nodes(const Scene& scene, const Segment& segment)
                      : node.camera >= 0 ? "camera"
                                         : ""});
   }
+  for (const PropertyChange& change : segment.changes) moves.push_back({change.name, change.why, change.carries});
   return moves;
 }
 
 /// Whether anything but cameras moves, so that frames of the segment can differ in light.
 bool light_transport_moves(const std::vector<MovingNode>& moves) {
   return std::ranges::any_of(moves, [](const MovingNode& node) {
-    return node.carries == "geometry" || node.carries == "light";
+    return node.carries == "geometry" || node.carries == "light" || node.carries == "material";
   });
 }
 
@@ -66,10 +68,12 @@ std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const Scene&
     if (!frame.asked && !light_moves && !frames.empty()) {  // nothing to find out
       frame.moving_geometry = frames.front().moving_geometry;
       frame.lights = frames.front().lights;
+      frame.materials = frames.front().materials;
     } else {
       const SceneFrame state = stage.at(frame.evaluated);
       frame.moving_geometry = state.hashes.moving_geometry;
       frame.lights = state.hashes.lights;
+      frame.materials = state.hashes.materials;
       if (frame.asked) frame.camera = camera_hash(state.camera(camera_node));
     }
     frames.push_back(std::move(frame));
@@ -81,7 +85,7 @@ std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const Scene&
 void share_light(std::vector<PlannedSegment>& segments) {
   std::map<std::array<std::string, 5>, int> first_with;
   const auto content = [](const PlannedSegment& s, const PlannedFrame& f) {
-    return std::array{s.static_geometry, s.materials, s.frozen, f.moving_geometry, f.lights};
+    return std::array{s.static_geometry, f.materials, s.frozen, f.moving_geometry, f.lights};
   };
   for (const PlannedSegment& segment : segments)
     for (const PlannedFrame& frame : segment.frames)
@@ -97,6 +101,15 @@ void share_pictures(std::vector<PlannedSegment>& segments) {
     for (PlannedFrame& frame : segment.frames)
       if (frame.asked)
         frame.picture = first_with.try_emplace({frame.lit_frame, frame.camera}, frame.frame).first->second;
+}
+
+/// The hash that all frames share, or one of them all.
+std::string materials_of(const std::vector<PlannedFrame>& frames) {
+  Hasher hasher;
+  for (const PlannedFrame& frame : frames) hasher.add(std::string_view(frame.materials));
+  const bool same = std::ranges::all_of(
+      frames, [&](const PlannedFrame& frame) { return frame.materials == frames.front().materials; });
+  return same ? frames.front().materials : hasher.hex();
 }
 
 bool cameras_differ(const std::vector<PlannedFrame>& frames) {
@@ -127,11 +140,11 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const st
   planned.first = segment.first;
   planned.last = segment.last;
   planned.static_geometry = begin.hashes.static_geometry;
-  planned.materials = begin.hashes.materials;
   planned.frozen = frozen_hash(scene, segment, options);
   planned.moves = moving_nodes(scene, segment);
   const bool light_moves = light_transport_moves(planned.moves);
   planned.frames = planned_frames(stage, scene, asked, camera_node, light_moves, options);
+  planned.materials = materials_of(planned.frames);
   planned.camera_moves = cameras_differ(planned.frames);
   return planned;
 }
@@ -144,6 +157,17 @@ std::set<std::uint32_t> used_materials(const Scene& scene) {
       for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)
         if (!primitive.triangles.empty()) used.insert(primitive.material);
   return used;
+}
+
+/// The materials at all frames of the plan; once if no animation changes them.
+std::vector<std::vector<Material>> material_states(const Scene& scene, const Plan& plan) {
+  const Animator animator(scene);
+  if (animator.property_tracks().empty()) return {scene.materials};
+  std::vector<std::vector<Material>> states;
+  for (const PlannedSegment& segment : plan.segments)
+    for (const PlannedFrame& frame : segment.frames)
+      states.push_back(animator.materials(frame.evaluated / plan.time.fps));
+  return states;
 }
 
 /// "1 frame", "3 frames".
@@ -169,11 +193,17 @@ std::size_t different(const Plan& plan, int PlannedFrame::*member) {
 /// The stages, and by which fact each is needed or not.
 void plan_stages(const Scene& scene, Plan& plan) {
   const std::set<std::uint32_t> used = used_materials(scene);
+  const std::vector<std::vector<Material>> at_frames = material_states(scene, plan);
   std::size_t diffuse = 0, specular = 0;
   for (const std::uint32_t material : used) {
-    const Bsdf bsdf(scene.materials[material]);
-    diffuse += bsdf.has_diffuse();
-    specular += bsdf.has_specular();
+    bool is_diffuse = false, is_specular = false;
+    for (const std::vector<Material>& materials : at_frames) {
+      const Bsdf bsdf(materials[material]);
+      is_diffuse = is_diffuse || bsdf.has_diffuse();
+      is_specular = is_specular || bsdf.has_specular();
+    }
+    diffuse += is_diffuse;
+    specular += is_specular;
   }
   const std::string lambert = share(diffuse, used.size(), "by a Lambert lobe");
   const std::string other = share(specular, used.size(), "by a mirror or glossy lobe");

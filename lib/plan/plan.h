@@ -10,11 +10,11 @@
 
 namespace tempolux {
 
-/// A node that moves in a segment.
+/// What moves in a segment: a node, or a material, light or camera that an animation changes.
 struct MovingNode {
   std::string name;                 ///< its name in the scene, or "node N"
   std::string why;                  ///< what differs: "translation of MovingBox"
-  std::string carries;              ///< "geometry", "light", "camera", or "" (only its children matter)
+  std::string carries;              ///< "geometry", "light", "camera", "material", or "" (only its children matter)
 };
 
 /// What is known of one frame. Frames with equal `lit_frame` have the same light transport.
@@ -27,12 +27,14 @@ struct PlannedFrame {
   std::string camera;               ///< hash of the chosen camera; empty if not asked
   std::string moving_geometry;      ///< hashes, as in SceneHashes
   std::string lights;
+  std::string materials;
 };
 
 /// A segment that holds some of the frames asked for, with all frames it has.
 struct PlannedSegment {
   int first = 0, last = 0;
-  std::string static_geometry, materials;  ///< hashes, as in SceneHashes
+  std::string static_geometry;      ///< hash, as in SceneHashes
+  std::string materials;            ///< the same; if an animation changes materials, of all frames' hashes
   std::string frozen;               ///< hash of what is frozen: emission table, bounds, origin
   bool camera_moves = false;        ///< the camera differs between two of the frames asked for
   std::vector<MovingNode> moves;

@@ -16,7 +16,7 @@ bool asked(const std::vector<std::string>& channels, const char* name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();
 }
 
-/// Where the same point of the same surface is in another frame: the surface is the one of the same node with
+/// Where the same point of the same surface is in another frame, deformed as it is there: the surface is the one of the same node with
 /// the same rank among that node's surfaces, the point has the same barycentrics.
 class OtherFrame {
  public:
@@ -28,7 +28,7 @@ class OtherFrame {
     for (std::size_t s = 0; s < here.surfaces.size(); ++s) {
       const auto& candidates = by_node[here.surfaces[s].node];
       const std::size_t r = rank[here.surfaces[s].node]++;
-      if (r < candidates.size() && candidates[r]->positions.size() == here.surfaces[s].positions.size())
+      if (r < candidates.size() && candidates[r]->primitive == here.surfaces[s].primitive)
         there_[s] = candidates[r];
     }
   }
@@ -37,8 +37,8 @@ class OtherFrame {
     const Surface* surface = there_[point.surface];
     if (!surface) return {};
     const auto& corner = surface->primitive->triangles[point.triangle];
-    const auto& p = surface->positions;
-    const auto raster = view_->project(p[corner[0]] * (1 - point.u - point.v) + p[corner[1]] * point.u + p[corner[2]] * point.v);
+    const auto raster = view_->project(surface->position(corner[0]) * (1 - point.u - point.v) +
+                                       surface->position(corner[1]) * point.u + surface->position(corner[2]) * point.v);
     if (!raster) return {};
     return {float((*raster)[0] - here[0]), float(here[1] - (*raster)[1])};
   }

@@ -55,10 +55,13 @@ void set_rotation(std::span<double> out, const Value& q) { std::copy(q.begin(), 
 
 bool same_time(double a, double b) { return float(a) == float(b); }
 
-bool has_two_values(const AnimationTrack& track) {
-  for (std::size_t i = track.components; i < track.values.size(); ++i)
-    if (track.values[i] != track.values[i - track.components]) return true;
-  return false;
+/// By joint of the node's skin: a vertex of its mesh follows it.
+std::vector<std::uint8_t> joints_used(const Scene& scene, const Node& node) {
+  std::vector<std::uint8_t> used(scene.skins[std::size_t(node.skin)].joints.size(), 0);
+  for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)
+    for (const Influence& influence : primitive.influences)
+      if (influence.weight > 0) used[influence.joint] = 1;
+  return used;
 }
 
 }  // namespace
@@ -95,16 +98,29 @@ Value evaluate(const AnimationTrack& track, double time_s) {
 }
 
 Animator::Animator(const Scene& scene)
-    : scene_(&scene), tracks_(scene.nodes.size()), animated_(scene.nodes.size(), false) {
+    : scene_(&scene), tracks_(scene.nodes.size()), joint_used_(scene.nodes.size()) {
   for (const Animation& animation : scene.animations)
     for (const AnimationTrack& track : animation.tracks) {
-      tracks_[std::size_t(track.target)].push_back(&track);
-      if (has_two_values(track)) animated_[std::size_t(track.target)] = true;
+      anything_animated_ = true;
+      (track.path <= Path::weights ? tracks_[std::size_t(track.target)] : property_tracks_).push_back(&track);
     }
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
-    const int parent = scene.nodes[n].parent;
-    if (parent >= 0 && animated_[std::size_t(parent)]) animated_[n] = true;
-  }
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+    if (scene.nodes[n].skin >= 0) joint_used_[n] = joints_used(scene, scene.nodes[n]);
+}
+
+Pose Animator::pose(std::size_t n, double time_s, const std::vector<Affine>& world_from_node) const {
+  const Node& node = scene_->nodes[n];
+  Pose pose{node.weights, {}};
+  if (!pose.weights.empty())
+    for (const AnimationTrack* track : tracks_[n])
+      if (track->path == Path::weights) evaluate(*track, time_s, pose.weights);
+  if (node.skin < 0) return pose;
+  const Skin& skin = scene_->skins[std::size_t(node.skin)];
+  pose.world_from_mesh.resize(skin.joints.size());
+  for (std::size_t j = 0; j < skin.joints.size(); ++j)
+    if (joint_used_[n][j])
+      pose.world_from_mesh[j] = world_from_node[std::size_t(skin.joints[j])] * skin.joint_from_mesh[j];
+  return pose;
 }
 
 Affine Animator::local(std::size_t n, double time_s) const {

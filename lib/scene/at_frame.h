@@ -14,12 +14,21 @@
 namespace tempolux {
 
 class Animator;
+class Sharing;
+
+/// A material, light or camera that an animation changes in a segment (KHR_animation_pointer).
+struct PropertyChange {
+  std::string name, why;                    ///< "Glass", "roughness of Glass"
+  std::string carries;                      ///< "material", "light" or "camera"
+};
 
 /// An interval of frames over which "static" means static (architecture.md 4). Both ends belong to it.
 struct Segment {
   int first = 0, last = 0;
-  std::vector<std::uint8_t> node_moves;     ///< per node: its evaluated state differs between two frames
+  std::vector<std::uint8_t> node_moves;     ///< per node: its evaluated state differs between two frames: its
+                                            ///< world transform, or the morph weights and joints of its mesh
   std::vector<std::string> why_moves;       ///< per node: "" or what differs, e.g. "translation of MovingBox"
+  std::vector<PropertyChange> changes;      ///< materials, lights and cameras that differ between two frames
   Vec3d origin{};                           ///< world position of scene space's origin: 0 unless the scene
                                             ///< is far from the world's origin for its size
   Box3d world_bounds;                       ///< of all geometry over the whole segment, world space, m
@@ -67,15 +76,30 @@ class SharedArray {
 ///
 /// A transform may flatten or shrink triangles to zero area at some frames: their normal is then zero, not
 /// NaN, and they can neither be hit nor emit.
+///
+/// Where many nodes or instances share a large primitive, the surface is `instanced`: it keeps no vertices of
+/// its own, position() and normal() transform the primitive's. They give the same numbers either way.
 struct Surface {
   std::uint32_t object = 0;                 ///< id.object
   std::uint32_t node = 0;
   std::uint32_t material = 0;
   bool flipped = false;                     ///< transform mirrors: the front is on the other winding
   const Primitive* primitive = nullptr;     ///< triangles and uvs; owned by the Scene
-  SharedArray<Vec3> positions;              ///< scene space, m; double transform, rounded once
-  SharedArray<Vec3> normals;                ///< unit, or empty: flat shading
-  Affine scene_from_node;
+  SharedArray<Vec3> positions;              ///< scene space, m; double transform, rounded once; empty: instanced
+  SharedArray<Vec3> normals;                ///< unit, or empty: flat shading, or instanced
+  Affine scene_from_node;                   ///< of an instance: its own transform included
+
+  bool instanced() const { return positions.empty(); }
+  /// Scene space, m.
+  Vec3 position(std::uint32_t vertex) const {
+    return instanced() ? Vec3(scene_from_node.point(Vec3d(primitive->positions[vertex]))) : positions[vertex];
+  }
+  /// Has shading normals; else flat.
+  bool smooth() const { return instanced() ? !primitive->normals.empty() : !normals.empty(); }
+  /// Unit, scene space; only of a smooth surface.
+  Vec3 normal(std::uint32_t vertex) const {
+    return instanced() ? Vec3(normalize(scene_from_node.normal(Vec3d(primitive->normals[vertex])))) : normals[vertex];
+  }
 };
 
 struct PlacedLight {
@@ -114,6 +138,7 @@ struct SceneFrame {
   Vec3d origin{};                           ///< world = origin + scene space
   Box3 bounds;                              ///< of the whole segment, scene space
   std::vector<Affine> world_from_node;      ///< per node, at this frame
+  std::vector<Camera> cameras;              ///< evaluated
   SceneHashes hashes;
 
   /// The camera of a node (an index into Scene::nodes, as Scene::camera_node returns it) at this frame.
@@ -148,6 +173,8 @@ class SegmentScene {
   std::vector<Surface> static_surfaces_;
   Box3 bounds_;
   std::string static_hash_, materials_hash_, media_hash_;
+  std::shared_ptr<const Sharing> sharing_;
+  bool materials_stay_ = true;
 };
 
 /// SegmentScene(scene, segment, options).at(frame), for callers that need one frame.

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "lib/scene/gltf_check.h"
+#include "lib/scene/gltf_gate.h"
+#include "lib/scene/gltf_pointer.h"
 
 namespace tempolux::gltf {
 namespace {
@@ -39,12 +41,19 @@ bool wanted(const Import& import, const tinygltf::AnimationChannel& channel, con
 }
 
 /// Numbers per value: one per morph target of the node's mesh for weights.
-std::size_t components_of(const Import& import, Path path, int source_node, const std::string& place) {
-  if (path != Path::weights) return path == Path::rotation ? 4 : 3;
-  const int mesh = import.model.nodes[std::size_t(source_node)].mesh;
-  const std::size_t count = mesh < 0 || std::size_t(mesh) >= import.model.meshes.size()
-                                ? 0
-                                : target_count(import.model.meshes[std::size_t(mesh)]);
+std::size_t components_of(const Import& import, Path path, int target, const std::string& place) {
+  switch (path) {
+    case Path::weights: break;
+    case Path::rotation:
+    case Path::base_color: return 4;
+    case Path::translation:
+    case Path::scale:
+    case Path::emissive_factor:
+    case Path::specular_color:
+    case Path::light_color: return 3;
+    default: return 1;
+  }
+  const std::size_t count = import.scene.nodes[std::size_t(target)].weights.size();
   if (count == 0) import.fail(place, "animates morph weights of a node whose mesh has no morph targets");
   return count;
 }
@@ -69,15 +78,15 @@ void read_values(Import& import, const tinygltf::AnimationSampler& sampler, cons
   }
 }
 
-AnimationTrack read_track(Import& import, const tinygltf::Animation& source,
-                          const tinygltf::AnimationChannel& channel, Path path, const std::string& place) {
-  if (channel.sampler < 0 || std::size_t(channel.sampler) >= source.samplers.size())
-    import.fail(place + ".sampler", "sampler " + std::to_string(channel.sampler) + " does not exist");
-  const tinygltf::AnimationSampler& sampler = source.samplers[std::size_t(channel.sampler)];
+AnimationTrack read_track(Import& import, const tinygltf::Animation& source, int sampler_index, Path path, int target,
+                          const std::string& place) {
+  if (sampler_index < 0 || std::size_t(sampler_index) >= source.samplers.size())
+    import.fail(place + ".sampler", "sampler " + std::to_string(sampler_index) + " does not exist");
+  const tinygltf::AnimationSampler& sampler = source.samplers[std::size_t(sampler_index)];
   AnimationTrack track;
-  track.target = import.node_from_source[std::size_t(channel.target_node)];
+  track.target = target;
   track.path = path;
-  track.components = components_of(import, path, channel.target_node, place);
+  track.components = components_of(import, path, target, place);
   track.interpolation = interpolation_of(import, sampler.interpolation, place);
   track.times_s = read_numbers(import, sampler.input, 1, place + ".input");
   for (std::size_t i = 1; i < track.times_s.size(); ++i)
@@ -85,7 +94,7 @@ AnimationTrack read_track(Import& import, const tinygltf::Animation& source,
       import.fail(place + ".input",
                   "times must increase from key to key; key " + std::to_string(i) + " does not");
   if (track.times_s.front() < 0) import.fail(place + ".input", "the first time is negative");
-  if (path != Path::weights && import.scene.nodes[std::size_t(track.target)].has_matrix)
+  if (path < Path::weights && import.scene.nodes[std::size_t(target)].has_matrix)
     import.fail(place,
                 "animates a node that is given by a matrix; export it as translation, rotation, scale");
   read_values(import, sampler, place, track);
@@ -117,6 +126,15 @@ std::size_t target_count(const tinygltf::Mesh& mesh) {
 void import_animations(Import& import, const std::string& only) {
   if (!only.empty()) check_name(import, only);
   std::set<std::pair<int, Path>> animated;
+  const auto add = [&](Animation& animation, AnimationTrack track) {
+    if (!animated.insert({track.target, track.path}).second) {
+      import.ignore("further animation of a property that an earlier animation moves already "
+                    "(--animation NAME chooses one)");
+      return;
+    }
+    import.scene.duration_s = std::max(import.scene.duration_s, track.times_s.back());
+    animation.tracks.push_back(std::move(track));
+  };
   for (std::size_t a = 0; a < import.model.animations.size(); ++a) {
     const tinygltf::Animation& source = import.model.animations[a];
     if (!only.empty() && name_of(source, a) != only) continue;
@@ -127,17 +145,18 @@ void import_animations(Import& import, const std::string& only) {
           place_of("animations", a, source.name) + ".channels[" + std::to_string(c) + "]";
       Path path{};
       if (!wanted(import, source.channels[c], place, path)) continue;
-      AnimationTrack track = read_track(import, source, source.channels[c], path, place);
-      if (!animated.insert({track.target, path}).second) {
-        import.ignore("further animation of a property that an earlier animation moves already "
-                      "(--animation NAME chooses one)");
-        continue;
-      }
-      import.scene.duration_s = std::max(import.scene.duration_s, track.times_s.back());
-      animation.tracks.push_back(std::move(track));
+      const int target = import.node_from_source[std::size_t(source.channels[c].target_node)];
+      add(animation, read_track(import, source, source.channels[c].sampler, path, target, place));
+    }
+    for (const PointerChannel& channel : import.gated->pointers) {
+      PointedAt at;
+      if (channel.animation != a || !resolve_pointer(import, channel.pointer, at)) continue;
+      const std::string place = place_of("animations", a, source.name) + ": pointer " + one_line(channel.pointer, 100);
+      add(animation, read_track(import, source, channel.sampler, at.path, at.target, place));
     }
     if (!animation.tracks.empty()) import.scene.animations.push_back(std::move(animation));
   }
+  keep_factors(import);
 }
 
 }  // namespace tempolux::gltf

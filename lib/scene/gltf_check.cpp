@@ -192,7 +192,8 @@ Elements open_accessor(Import& import, int index, int components, const std::str
   elements.component_type = accessor.componentType;
   elements.components = component_count(accessor.type);
   elements.normalized = accessor.normalized;
-  if (accessor.type != (components == 1 ? TINYGLTF_TYPE_SCALAR : components))  // VEC2 .. VEC4 are 2 .. 4
+  const int type = components == 1 ? TINYGLTF_TYPE_SCALAR : components == 16 ? TINYGLTF_TYPE_MAT4 : components;
+  if (accessor.type != type)  // VEC2 .. VEC4 are 2 .. 4
     import.fail(place, "accessor " + std::to_string(index) + " has another type than is needed here (" +
                            std::to_string(components) + " numbers per element)");
   if (accessor.bufferView != -1) {

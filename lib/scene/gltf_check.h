@@ -21,7 +21,7 @@ std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& pla
 std::vector<Vec2> read_vec2(Import& import, int accessor, const std::string& place);
 /// Unsigned 8, 16 or 32-bit integers, not normalised.
 std::vector<std::uint32_t> read_indices(Import& import, int accessor, const std::string& place);
-/// All components in one row; `components` per element (1, 3 or 4).
+/// All components in one row; `components` per element (1, 3, 4, or 16: a matrix, column after column).
 std::vector<double> read_numbers(Import& import, int accessor, int components, const std::string& place);
 
 }  // namespace tempolux::gltf

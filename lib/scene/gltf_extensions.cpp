@@ -32,8 +32,6 @@ constexpr std::array kExtensions{
     Extension{"EXT_texture_avif", Packs::textures, kToPng},
     Extension{"KHR_texture_basisu", Packs::textures,
               "convert its textures with `gltf-transform ktxdecompress IN.glb OUT.glb` (it calls ktx of KTX-Software)"},
-    Extension{"EXT_mesh_gpu_instancing", Packs::nothing, "export with instances as nodes of their own"},
-    Extension{"KHR_animation_pointer", Packs::nothing, "animate translation, rotation or scale of nodes instead"},
     Extension{"KHR_materials_pbrSpecularGlossiness", Packs::nothing,
               "convert its materials with `gltf-transform metalrough IN.glb OUT.glb`"},
     Extension{"KHR_gaussian_splatting", Packs::nothing, "only triangles can be rendered"}};

@@ -29,7 +29,8 @@ const std::set<std::string> kKnown{"KHR_lights_punctual",    "KHR_materials_emis
                                    "KHR_materials_specular", "KHR_materials_ior",
                                    "KHR_mesh_quantization",  "KHR_materials_transmission",
                                    "KHR_materials_volume",   "KHR_materials_unlit",
-                                   "KHR_texture_transform"};
+                                   "KHR_texture_transform",  "EXT_mesh_gpu_instancing",
+                                   "KHR_animation_pointer"};
 
 [[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what) {
   throw InputError(file + ": " + place + ": " + what);
@@ -170,23 +171,24 @@ void keep_node_extras(const Json& document, Gated& gated) {
       gated.node_extras.emplace(i, extras->dump());
 }
 
-/// tinygltf would drop these without a word.
-void drop_pointer_channels(Json& document, const std::string& path, Gated& gated) {
-  std::size_t dropped = 0;
+/// tinygltf would drop these without a word: kept beside.
+void keep_pointer_channels(Json& document, Gated& gated) {
   if (!document.contains("animations")) return;
-  for (Json& animation : document["animations"]) {
+  for (std::size_t a = 0; a < document["animations"].size(); ++a) {
+    Json& animation = document["animations"][a];
     Json kept = Json::array();
     for (Json& channel : animation["channels"]) {
-      if (channel["target"]["path"] == "pointer")
-        ++dropped;
-      else
+      const Json& target = channel["target"];
+      if (target["path"] != "pointer") {
         kept.push_back(std::move(channel));
+        continue;
+      }
+      const Json::json_pointer place("/extensions/KHR_animation_pointer/pointer");
+      const std::string pointer = target.contains(place) && target[place].is_string() ? target[place].get<std::string>() : "";
+      gated.pointers.push_back({a, channel["sampler"].get<int>(), pointer});
     }
     animation["channels"] = std::move(kept);
   }
-  if (dropped > 0)
-    gated.warnings.push_back(path + ": ignored: " + std::to_string(dropped) +
-                             " channels of KHR_animation_pointer");
 }
 
 int hex_digit(char c) {
@@ -350,7 +352,7 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
   check_version(document, path);
   keep_node_extras(document, gated);
   check_extensions(document, path, gated);
-  drop_pointer_channels(document, path, gated);
+  keep_pointer_channels(document, gated);
   if (document.contains("buffers"))
     for (std::size_t i = 0; i < document["buffers"].size(); ++i)
       approve_buffer(document["buffers"][i], i, path, container, options, gated);

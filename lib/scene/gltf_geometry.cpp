@@ -4,6 +4,7 @@
 #include <string>
 
 #include "lib/scene/gltf_check.h"
+#include "lib/scene/gltf_deform.h"
 
 namespace tempolux::gltf {
 namespace {
@@ -61,6 +62,16 @@ void drop_unused_vertices(Primitive& primitive) {
   primitive.positions = pick(primitive.positions, used);
   primitive.normals = pick(primitive.normals, used);
   primitive.uvs = pick(primitive.uvs, used);
+  primitive.uvs1 = pick(primitive.uvs1, used);
+  for (MorphTarget& target : primitive.targets) {
+    target.positions = pick(target.positions, used);
+    target.normals = pick(target.normals, used);
+  }
+  const std::size_t n = primitive.influences_per_vertex;
+  for (std::size_t v = 0; v < used.size() && n > 0; ++v)  // `used` rises: nothing is overwritten before it is read
+    std::copy_n(primitive.influences.begin() + std::ptrdiff_t(used[v] * n), n,
+                primitive.influences.begin() + std::ptrdiff_t(v * n));
+  primitive.influences.resize(used.size() * n);
   for (Triangle& t : primitive.triangles)
     for (std::uint32_t& i : t) i = new_index[i];
 }
@@ -96,11 +107,20 @@ void read_normals(Import& import, int accessor, const std::string& place, Primit
   }
 }
 
+std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, const char* name,
+                           std::size_t vertices, const std::string& place) {
+  const auto found = source.attributes.find(name);
+  if (found == source.attributes.end()) return {};
+  std::vector<Vec2> uvs = read_vec2(import, found->second, place + "." + name);
+  if (uvs.size() != vertices)
+    import.fail(place + "." + name, "there are not as many texture coordinates as positions");
+  return uvs;
+}
+
 void note_ignored(Import& import, const tinygltf::Primitive& source) {
-  if (!source.targets.empty()) import.ignore("morph targets (meshes stay in their rest shape)");
   for (const auto& [name, accessor] : source.attributes) {
     if (name == "COLOR_0") import.ignore("vertex colours");
-    if (name == "TEXCOORD_1") import.ignore("second texture coordinates");
+    if (name == "TEXCOORD_2") import.ignore("third and further texture coordinates");
   }
 }
 
@@ -125,16 +145,17 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
   import.take_memory(order.size() * sizeof(Triangle), place);
   primitive.triangles = triangles_from(order, source.mode);
   const std::size_t before = primitive.triangles.size();
-  std::erase_if(primitive.triangles, [&](const Triangle& t) { return !has_area(primitive.positions, t); });
+  const bool opens = !source.targets.empty() || source.attributes.contains("JOINTS_0");  // in another pose
+  if (!opens)
+    std::erase_if(primitive.triangles, [&](const Triangle& t) { return !has_area(primitive.positions, t); });
   if (before > primitive.triangles.size())
     import.ignore("triangles of zero area", before - primitive.triangles.size());
   if (const auto normal = source.attributes.find("NORMAL"); normal != source.attributes.end())
     read_normals(import, normal->second, place + ".NORMAL", primitive);
-  if (const auto uv = source.attributes.find("TEXCOORD_0"); uv != source.attributes.end()) {
-    primitive.uvs = read_vec2(import, uv->second, place + ".TEXCOORD_0");
-    if (primitive.uvs.size() != primitive.positions.size())
-      import.fail(place + ".TEXCOORD_0", "there are not as many texture coordinates as positions");
-  }
+  primitive.uvs = read_uvs(import, source, "TEXCOORD_0", primitive.positions.size(), place);
+  primitive.uvs1 = read_uvs(import, source, "TEXCOORD_1", primitive.positions.size(), place);
+  read_targets(import, source, place, primitive);
+  read_influences(import, source, place, primitive);
   if (source.material < -1 || source.material >= int(import.model.materials.size()))
     import.fail(place + ".material", "material " + std::to_string(source.material) + " does not exist");
   primitive.material = source.material == -1 ? std::uint32_t(import.scene.materials.size() - 1)
@@ -153,6 +174,8 @@ int mesh_of(Import& import, std::size_t source_index, std::vector<bool>& seen) {
   Mesh mesh;
   mesh.name = source.name;
   for (std::size_t p = 0; p < source.primitives.size(); ++p) {
+    if (source.primitives[p].targets.size() != target_count(source))
+      import.fail(place, "its primitives have different numbers of morph targets");
     Primitive primitive =
         read_primitive(import, source.primitives[p], place + ".primitives[" + std::to_string(p) + "]");
     if (!primitive.triangles.empty()) mesh.primitives.push_back(std::move(primitive));

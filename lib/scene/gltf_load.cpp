@@ -93,6 +93,7 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   import_lights(import);
   import_cameras(import);
   import_meshes(import);
+  import_deformation(import);
   import_animations(import, options.animation);
   for (const auto& [what, count] : import.ignored)
     scene.warnings.push_back(path + ": ignored: " + what +

@@ -69,6 +69,7 @@ void import_materials(Import& import);   ///< gltf_material.cpp
 void import_lights(Import& import);      ///< gltf_material.cpp: KHR_lights_punctual
 void import_cameras(Import& import);     ///< gltf_material.cpp
 void import_meshes(Import& import);      ///< gltf_geometry.cpp: those that nodes use
+void import_deformation(Import& import); ///< gltf_deform.cpp: skins, morph weights, instances of nodes
 /// gltf_animation.cpp. `only`: the animation of this name (an unnamed one is "animation INDEX"); empty: all.
 void import_animations(Import& import, const std::string& only);
 

@@ -66,7 +66,6 @@ Node read_node(Import& import, std::uint32_t index, int parent) {
   node.mesh = checked_index(import, source.mesh, import.model.meshes.size(), place + ".mesh");
   node.camera = checked_index(import, source.camera, import.model.cameras.size(), place + ".camera");
   node.light = light_of(import, source, place);
-  if (source.skin >= 0) import.ignore("skins (meshes stay in their rest shape)");
   return node;
 }
 

@@ -80,18 +80,38 @@ struct Material : MaterialValues {
   bool operator==(const Material&) const = default;
 };
 
+/// What a morph target adds to every vertex, times its weight.
+struct MorphTarget {
+  std::vector<Vec3> positions, normals;                     ///< either may be empty: adds nothing
+};
+
+/// One joint's share in a vertex.
+struct Influence {
+  std::uint16_t joint = 0;                                  ///< index into Skin::joints
+  float weight = 0;                                         ///< those of a vertex sum to 1
+};
+
 /// Triangles of one glTF primitive in the space of its node.
 struct Primitive {
-  std::vector<Vec3> positions;                              ///< m, node space
+  std::vector<Vec3> positions;                              ///< m, node space, at rest
   std::vector<Vec3> normals;                                ///< unit; empty: flat shading
-  std::vector<Vec2> uvs;                                    ///< TEXCOORD_0; empty: none
+  std::vector<Vec2> uvs, uvs1;                              ///< TEXCOORD_0, TEXCOORD_1; empty: none
   std::vector<std::array<std::uint32_t, 3>> triangles;      ///< counter-clockwise seen from the front
   std::uint32_t material = 0;                               ///< index into Scene::materials
+  std::vector<MorphTarget> targets;
+  std::vector<Influence> influences;                        ///< influences_per_vertex for each vertex
+  std::size_t influences_per_vertex = 0;                    ///< 0: a skin does not move it
 };
 
 struct Mesh {
   std::string name;
-  std::vector<Primitive> primitives;
+  std::vector<Primitive> primitives;      ///< all with the same number of morph targets
+};
+
+/// Joints that carry a mesh: a vertex is at sum of weight x world_from_joint x joint_from_mesh x position.
+struct Skin {
+  std::vector<int> joints;                ///< nodes
+  std::vector<Affine> joint_from_mesh;    ///< inverse bind matrices
 };
 
 struct Camera {
@@ -125,20 +145,35 @@ struct Node {
   bool has_matrix = false;
   Affine matrix{};
   int mesh = -1, camera = -1, light = -1;      ///< -1: none
+  int skin = -1;                  ///< -1: none; else the mesh's skinned primitives ignore the node's own transform
+  std::vector<double> weights;    ///< of its mesh's morph targets at rest
+  std::vector<Affine> instances;  ///< EXT_mesh_gpu_instancing, node_from_instance: the mesh stands at each; empty: once
   std::uint32_t object = kNone;                ///< id.object of its mesh: 0, 1, 2 ... in node order
   std::string extras;                          ///< its own properties as JSON text; empty: none
 };
 
 /// One animated property: keys at increasing times.
 struct AnimationTrack {
-  enum class Path { translation, rotation, scale, weights };
+  enum class Path {
+    translation, rotation, scale, weights,                                    // of a node
+    base_color, alpha_cutoff, metallic, roughness, emissive_factor, emissive_strength, specular, specular_color,
+    ior, transmission,                                                        // of a material
+    light_color, light_intensity, inner_cone, outer_cone,                     // of a light
+    yfov, ymag                                                                // of a camera
+  };
   enum class Interpolation { linear, step, cubic_spline };
-  int target = 0;                           ///< index of the node
+  int target = 0;                           ///< index of the node, material, light or camera
   Path path = Path::translation;
   Interpolation interpolation = Interpolation::linear;
   std::size_t components = 3;               ///< numbers per value: 4 of a rotation, one per morph target
   std::vector<double> times_s;              ///< strictly increasing
   std::vector<double> values;               ///< value after value; spline: in-tangent, value, out-tangent of each key
+};
+
+/// What a colour is the product of, where KHR_animation_pointer may change one factor and not the other.
+struct ColorFactors {
+  Rgb color{1.0f};
+  float strength = 1;
 };
 
 struct Animation {
@@ -156,6 +191,8 @@ struct Scene {
   std::shared_ptr<const TextureImages> images;  ///< those that a material's texture names; null: there are none
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
+  std::vector<Skin> skins;
+  std::vector<ColorFactors> emission_factors, light_factors;  ///< by material, by light, at rest
   std::vector<Animation> animations;        ///< all play together (GltfOptions::animation chose them)
   std::vector<std::string> object_names;    ///< by object id
   double duration_s = 0;                    ///< last key of all animations

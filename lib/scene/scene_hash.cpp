@@ -1,6 +1,8 @@
 // lib/scene/scene_hash.cpp
 #include "lib/scene/scene_hash.h"
 
+#include <map>
+
 #include "formats/hash.h"
 #include "lib/image/texture_images.h"
 
@@ -30,6 +32,26 @@ void add_shape(Hasher& hasher, const Surface& surface) {
   hasher.add(std::uint32_t(surface.flipped));
   add_values(hasher, surface.positions);
   add_values(hasher, surface.primitive->triangles);
+}
+
+/// Digest of what instances of a primitive share.
+std::string shared_digest(const Primitive& primitive) {
+  Hasher hasher;
+  add_values(hasher, primitive.positions);
+  add_values(hasher, primitive.triangles);
+  add_values(hasher, primitive.normals);
+  add_values(hasher, primitive.uvs);
+  if (!primitive.uvs1.empty()) add_values(hasher, primitive.uvs1);
+  return hasher.hex();
+}
+
+/// An instance is its transform and the digest of its primitive, made once for all of them.
+void add_instance(Hasher& hasher, const Surface& surface, std::map<const Primitive*, std::string>& digests) {
+  std::string& digest = digests[surface.primitive];
+  if (digest.empty()) digest = shared_digest(*surface.primitive);
+  hasher.add(surface.object);
+  hasher.add(surface.scene_from_node);
+  hasher.add(std::string_view(digest));
 }
 
 /// A texture by its image's bytes and how they are laid on; nothing for a material without.
@@ -66,21 +88,27 @@ std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surf
   const std::vector<std::uint32_t> numbers = material_numbers(scene);
   Hasher hasher;
   hasher.add(std::string_view("geometry 1"));
+  std::map<const Primitive*, std::string> digests;
   hasher.add(origin);
   for (const Surface& surface : surfaces) {
-    add_shape(hasher, surface);
     hasher.add(numbers[surface.material]);
+    if (surface.instanced()) {
+      add_instance(hasher, surface, digests);
+      continue;
+    }
+    add_shape(hasher, surface);
     add_values(hasher, surface.normals);
     add_values(hasher, surface.primitive->uvs);
+    if (!surface.primitive->uvs1.empty()) add_values(hasher, surface.primitive->uvs1);
   }
   return hasher.hex();
 }
 
-std::string materials_hash(const Scene& scene) {
+std::string materials_hash(const Scene& scene, std::span<const Material> materials) {
   const std::vector<std::uint32_t> numbers = material_numbers(scene);
-  std::vector<const Material*> ordered(scene.materials.size(), nullptr);
+  std::vector<const Material*> ordered(materials.size(), nullptr);
   for (std::size_t m = 0; m < numbers.size(); ++m)
-    if (numbers[m] != kNone) ordered[numbers[m]] = &scene.materials[m];
+    if (numbers[m] != kNone) ordered[numbers[m]] = &materials[m];
   Hasher hasher;
   hasher.add(std::string_view("materials 1"));
   for (const Material* material : ordered) {
@@ -100,7 +128,7 @@ std::string materials_hash(const Scene& scene) {
 }
 
 std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const PlacedLight> lights,
-                        std::span<const Surface> surfaces) {
+                        std::span<const Material> materials, std::span<const Surface> surfaces) {
   Hasher hasher;
   hasher.add(std::string_view("lights 1"));
   hasher.add(origin);
@@ -116,7 +144,7 @@ std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const Placed
     if (placed.light.kind != PunctualLight::Kind::point) hasher.add(placed.direction);
   }
   for (const Surface& surface : surfaces) {
-    const Material& material = scene.materials[surface.material];
+    const Material& material = materials[surface.material];
     if (!material.emissive()) continue;
     add_shape(hasher, surface);
     hasher.add(material.emission);

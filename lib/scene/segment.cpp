@@ -1,11 +1,14 @@
 // lib/scene/segment.cpp -- intervals of frames, what moves in them, and where scene space lies.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
 #include "formats/error.h"
 #include "lib/scene/animate.h"
 #include "lib/scene/at_frame.h"
+#include "lib/scene/deform.h"
+#include "lib/scene/place_surfaces.h"
 
 namespace tempolux {
 namespace {
@@ -35,34 +38,81 @@ void set_borders(const Scene& scene, int frame, const TimeOptions& options, Segm
 }
 
 const char* path_word(Path path) {
-  switch (path) {
-    case Path::translation: return "translation";
-    case Path::rotation: return "rotation";
-    case Path::scale: return "scale";
-    default: return "weights";
-  }
+  static const std::array<const char*, 20> words{
+      "translation", "rotation", "scale", "weights", "base colour", "alpha cutoff", "metallic", "roughness",
+      "emissive factor", "emissive strength", "specular", "specular colour", "ior", "transmission", "colour",
+      "intensity", "inner cone", "outer cone", "yfov", "ymag"};
+  return words[std::size_t(path)];
 }
 
-/// Which of the node's own properties differ between two frames, else that its parent moves.
+bool differs_in(const AnimationTrack& track, const Segment& segment, double fps) {
+  std::vector<double> first(track.components), now(track.components);
+  evaluate(track, segment.first / fps, first);
+  for (int f = segment.first + 1; f <= segment.last; ++f) {
+    evaluate(track, f / fps, now);
+    if (now != first) return true;
+  }
+  return false;
+}
+
+std::string name_of(const Node& node) {
+  return node.name.empty() ? "node " + std::to_string(node.source_index) : node.name;
+}
+
+/// Which of the node's own properties differ between two frames, else that its parent or a joint moves.
 std::string reason(const Scene& scene, const Animator& animator, const Segment& segment, std::size_t n,
                    double fps) {
   std::string properties;
-  for (const AnimationTrack* track : animator.tracks(n)) {
-    std::vector<double> first(track->components), now(track->components);
-    evaluate(*track, segment.first / fps, first);
-    for (int f = segment.first + 1; f <= segment.last; ++f) {
-      evaluate(*track, f / fps, now);
-      if (now == first) continue;
-      properties += (properties.empty() ? "" : ", ") + std::string(path_word(track->path));
-      break;
-    }
-  }
   const Node& node = scene.nodes[n];
-  const auto name = [&](const Node& of) {
-    return of.name.empty() ? "node " + std::to_string(of.source_index) : of.name;
-  };
-  if (!properties.empty()) return properties + " of " + name(node);
-  return "parent " + name(scene.nodes[std::size_t(node.parent)]);
+  for (const AnimationTrack* track : animator.tracks(n))
+    if ((node.skin < 0 || track->path == Path::weights) && differs_in(*track, segment, fps))
+      properties += (properties.empty() ? "" : ", ") + std::string(path_word(track->path));
+  if (!properties.empty()) return properties + " of " + name_of(node);
+  if (node.skin >= 0)
+    for (const int joint : scene.skins[std::size_t(node.skin)].joints)
+      if (segment.node_moves[std::size_t(joint)]) return "joint " + name_of(scene.nodes[std::size_t(joint)]);
+  return node.parent < 0 ? "its shape" : "parent " + name_of(scene.nodes[std::size_t(node.parent)]);
+}
+
+/// Nodes whose state differs between two frames. A mesh that a skin moves has the state of its joints: where
+/// its own node stands does not count.
+void set_moves(const Scene& scene, const Animator& animator, const std::vector<Affine>& first_world, double fps,
+               Segment& segment) {
+  const std::size_t count = scene.nodes.size();
+  std::vector<std::size_t> deforming;
+  for (std::size_t n = 0; n < count; ++n)
+    if (deforms(scene, scene.nodes[n])) deforming.push_back(n);
+  std::vector<Pose> first;
+  for (const std::size_t n : deforming) first.push_back(animator.pose(n, segment.first / fps, first_world));
+  std::vector<std::uint8_t> shape_moves(count, 0);
+  for (int f = segment.first + 1; f <= segment.last; ++f) {
+    const std::vector<Affine> world = animator.world_from_node(f / fps);
+    for (std::size_t n = 0; n < count; ++n)
+      if (!(world[n] == first_world[n])) segment.node_moves[n] = 1;
+    for (std::size_t d = 0; d < deforming.size(); ++d)
+      if (!shape_moves[deforming[d]] && !(animator.pose(deforming[d], f / fps, world) == first[d]))
+        shape_moves[deforming[d]] = 1;
+  }
+  for (const std::size_t n : deforming) {
+    const Node& node = scene.nodes[n];
+    const auto& primitives = scene.meshes[std::size_t(node.mesh)].primitives;
+    const bool follows_node = node.skin < 0 || node.camera >= 0 || node.light >= 0 ||
+                              std::ranges::any_of(primitives, [](const Primitive& p) { return p.influences.empty(); });
+    segment.node_moves[n] = shape_moves[n] || (follows_node && segment.node_moves[n]);
+  }
+}
+
+void set_changes(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
+  for (const AnimationTrack* track : animator.property_tracks()) {
+    if (!differs_in(*track, segment, fps)) continue;
+    const std::string kind = kind_of(track->path);
+    const std::size_t i = std::size_t(track->target);
+    std::string name = kind == "material" ? scene.materials[i].name
+                       : kind == "light"  ? scene.lights[i].name
+                                          : scene.cameras[i].name;
+    if (name.empty()) name = kind + " " + std::to_string(i);
+    segment.changes.push_back({name, std::string(path_word(track->path)) + " of " + name, kind});
+  }
 }
 
 Box3d local_box(const Mesh& mesh) {
@@ -79,24 +129,48 @@ void add_corners(Box3d& bounds, const Box3d& local, const Affine& world) {
                      corner & 4 ? local.upper.z : local.lower.z}));
 }
 
-void add_static_bounds(const Scene& scene, const std::vector<Affine>& world, Segment& segment) {
+/// Every vertex of what stands; of instances and of what has a pose the boxes.
+void add_static_bounds(const Scene& scene, const Animator& animator, const std::vector<Affine>& world, double time_s,
+                       Segment& segment) {
+  const Sharing sharing(scene);
   for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
-    if (scene.nodes[n].mesh < 0 || segment.node_moves[n]) continue;
-    for (const Primitive& primitive : scene.meshes[std::size_t(scene.nodes[n].mesh)].primitives)
-      for (const Vec3& p : primitive.positions) segment.world_bounds.add(world[n].point(Vec3d(p)));
+    const Node& node = scene.nodes[n];
+    if (node.mesh < 0 || segment.node_moves[n]) continue;
+    if (deforms(scene, node)) {
+      const PoseBounds bounds(scene, node);
+      for (const Affine& place : places(node, world[n]))
+        bounds.add_to(segment.world_bounds, animator.pose(n, time_s, world), place);
+      continue;
+    }
+    for (const Affine& place : places(node, world[n]))
+      for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)
+        if (sharing.instanced(primitive, place))
+          add_corners(segment.world_bounds, sharing.box(primitive), place);
+        else
+          for (const Vec3& p : primitive.positions) segment.world_bounds.add(place.point(Vec3d(p)));
   }
 }
 
-/// A moving mesh is bounded by its local box at every frame.
+/// A moving mesh is bounded by its box at every frame, a deforming one by those of its pose.
 void add_moving_bounds(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
-  std::vector<std::pair<std::size_t, Box3d>> moving;
-  for (std::size_t n = 0; n < scene.nodes.size(); ++n)
-    if (scene.nodes[n].mesh >= 0 && segment.node_moves[n])
-      moving.emplace_back(n, local_box(scene.meshes[std::size_t(scene.nodes[n].mesh)]));
-  if (moving.empty()) return;
+  std::vector<std::pair<std::size_t, Box3d>> rigid;
+  std::vector<std::pair<std::size_t, PoseBounds>> deforming;
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    const Node& node = scene.nodes[n];
+    if (node.mesh < 0 || !segment.node_moves[n]) continue;
+    if (deforms(scene, node))
+      deforming.emplace_back(n, PoseBounds(scene, node));
+    else
+      rigid.emplace_back(n, local_box(scene.meshes[std::size_t(node.mesh)]));
+  }
+  if (rigid.empty() && deforming.empty()) return;
   for (int f = segment.first; f <= segment.last; ++f) {
     const std::vector<Affine> world = animator.world_from_node(f / fps);
-    for (const auto& [n, box] : moving) add_corners(segment.world_bounds, box, world[n]);
+    for (const auto& [n, box] : rigid)
+      for (const Affine& place : places(scene.nodes[n], world[n])) add_corners(segment.world_bounds, box, place);
+    for (const auto& [n, bounds] : deforming)
+      for (const Affine& place : places(scene.nodes[n], world[n]))
+        bounds.add_to(segment.world_bounds, animator.pose(n, f / fps, world), place);
   }
 }
 
@@ -127,15 +201,13 @@ Segment segment_of(const Scene& scene, int frame, const TimeOptions& options) {
   segment.node_moves.assign(count, 0);
   segment.why_moves.assign(count, "");
   const std::vector<Affine> first = animator.world_from_node(segment.first / options.fps);
-  if (std::ranges::find(animator.animated(), true) != animator.animated().end())
-    for (int f = segment.first + 1; f <= segment.last; ++f) {
-      const std::vector<Affine> world = animator.world_from_node(f / options.fps);
-      for (std::size_t n = 0; n < count; ++n)
-        if (!(world[n] == first[n])) segment.node_moves[n] = 1;
-    }
+  if (animator.anything_animated()) {
+    set_moves(scene, animator, first, options.fps, segment);
+    set_changes(scene, animator, options.fps, segment);
+  }
   for (std::size_t n = 0; n < count; ++n)
     if (segment.node_moves[n]) segment.why_moves[n] = reason(scene, animator, segment, n, options.fps);
-  add_static_bounds(scene, first, segment);
+  add_static_bounds(scene, animator, first, segment.first / options.fps, segment);
   add_moving_bounds(scene, animator, options.fps, segment);
   if (!is_finite(segment.world_bounds.lower) || !is_finite(segment.world_bounds.upper))
     throw InputError(scene.path + ": nodes: transforms take the geometry beyond what numbers can hold");

@@ -8,6 +8,7 @@
 #include <bit>
 #include <deque>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "formats/error.h"
@@ -22,6 +23,9 @@ namespace {
 /// Rays leave a surface this fraction of the largest coordinate of its triangle above it: 16 ulp of float32,
 /// four times the rounding of a point made from barycentrics and of Embree's own arithmetic.
 constexpr float kOffsetScale = 0x1p-20f;
+
+/// The same for instances, of the sum that instance_offset says.
+constexpr float kInstanceOffsetScale = 2 * kOffsetScale;
 
 /// Points keep this much of each corner (4e-6 of the triangle's height away from its edges): rounding at an
 /// edge must not put a point behind the neighbouring wall, from where the next ray would leave a closed room.
@@ -42,6 +46,11 @@ struct Tree {
 
   bool exists() const { return scene != nullptr; }
 
+  /// The surface of a hit: its geometry in this tree, or that of the instance in whose own tree it was found.
+  std::uint32_t surface(std::uint32_t geometry, std::uint32_t instance) const {
+    return first_surface + (instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance);
+  }
+
   /// False only if the ray does not come near: a few operations instead of a walk through the tree. Distances are
   /// within 3 ulp and the box is 2^-18 larger than its content; 0 x infinity (a ray in a face's plane) is NaN, which
   /// min and max drop as their second argument.
@@ -60,19 +69,32 @@ struct Tree {
   }
 };
 
+/// The tree of a primitive that instances share, in its own space.
+struct SharedTree {
+  RTCScene scene = nullptr;
+  Box3d bounds;
+  float reach = 0;   ///< largest coordinate
+};
+
 /// What surface_point reads of a surface, found with one load each.
 struct SurfaceArrays {
   const std::array<std::uint32_t, 3>* triangles;
   const Vec3 *positions, *normals;   ///< normals, uvs: null if there are none
   const Vec2* uvs;
+  const Surface* instance;           ///< null if positions and normals are there
   std::uint32_t object, material;
   bool flipped;
+  float instance_offset = 0;
+
+  Vec3 position(std::uint32_t vertex) const { return instance ? instance->position(vertex) : positions[vertex]; }
+  Vec3 normal(std::uint32_t vertex) const { return instance ? instance->normal(vertex) : normals[vertex]; }
 
   explicit SurfaceArrays(const Surface& s)
       : triangles(s.primitive->triangles.data()),
         positions(s.positions.data()),
         normals(s.normals.data()),
         uvs(s.primitive->uvs.empty() ? nullptr : s.primitive->uvs.data()),
+        instance(s.instanced() ? &s : nullptr),
         object(s.object),
         material(s.material),
         flipped(s.flipped) {}
@@ -125,7 +147,8 @@ bool intersect_tree(const Tree& tree, RTCRayHit& query, Hit& hit) {
   rtcInitIntersectContext(&context);
   rtcIntersect1(tree.scene, &context, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  hit = {query.ray.tfar, tree.first_surface + query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+  hit = {query.ray.tfar, tree.surface(query.hit.geomID, query.hit.instID[0]), query.hit.primID, query.hit.u,
+         query.hit.v};
   return true;
 }
 
@@ -180,7 +203,7 @@ struct Packet {
     for (std::size_t i = 0; i < kPacket; ++i) {
       if (!active[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
       if (hits[i].surface != kNone && !(query.ray.tfar[i] < limit[i])) continue;
-      hits[i] = {query.ray.tfar[i], tree.first_surface + query.hit.geomID[i], query.hit.primID[i],
+      hits[i] = {query.ray.tfar[i], tree.surface(query.hit.geomID[i], query.hit.instID[0][i]), query.hit.primID[i],
                  query.hit.u[i], query.hit.v[i]};
     }
   }
@@ -192,6 +215,7 @@ struct Tracer::Impl {
   const SceneFrame* frame = nullptr;
   RTCDevice device = nullptr;
   Tree fixed, moving;
+  std::unordered_map<const Primitive*, SharedTree> shared_trees;
   std::vector<SurfaceArrays> surfaces;
   std::deque<AlphaSurface> alpha;   ///< of the surfaces that have a filter; they stay where they are
   mutable std::atomic<std::uint64_t> refused{0};
@@ -199,6 +223,7 @@ struct Tracer::Impl {
   ~Impl() {
     if (fixed.scene) rtcReleaseScene(fixed.scene);
     if (moving.scene) rtcReleaseScene(moving.scene);
+    for (const auto& [primitive, shared] : shared_trees) rtcReleaseScene(shared.scene);
     if (device) rtcReleaseDevice(device);
   }
 
@@ -209,6 +234,63 @@ struct Tracer::Impl {
     throw ResourceError("building the search tree: Embree error " + std::to_string(int(error)));
   }
 
+  RTCGeometry triangles_of(const Primitive& primitive, const Vec3* positions) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    // Embree reads vertices in 16-byte loads, so the last one needs padding: a copy of its own.
+    auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), primitive.positions.size()));
+    if (vertices) std::copy_n(positions, primitive.positions.size(), vertices);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, primitive.triangles.data(), 0,
+                               sizeof primitive.triangles[0], primitive.triangles.size());
+    return geometry;
+  }
+
+  const SharedTree& shared_tree(const Primitive& primitive) {
+    SharedTree& shared = shared_trees[&primitive];
+    if (shared.scene) return shared;
+    shared.scene = rtcNewScene(device);
+    rtcSetSceneBuildQuality(shared.scene, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneFlags(shared.scene, RTC_SCENE_FLAG_ROBUST);
+    const RTCGeometry geometry = triangles_of(primitive, primitive.positions.data());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(shared.scene, geometry);
+    rtcReleaseGeometry(geometry);
+    throw_on_error();
+    rtcCommitScene(shared.scene);
+    throw_on_error();
+    for (const Vec3& p : primitive.positions) shared.bounds.add(Vec3d(p));
+    shared.reach = float(max_component(max(abs(shared.bounds.lower), abs(shared.bounds.upper))));
+    return shared;
+  }
+
+  void attach_instance(Tree& tree, const Surface& surface, unsigned id) {
+    const SharedTree& shared = shared_tree(*surface.primitive);
+    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, shared.scene);
+    const Affine& m = surface.scene_from_node;
+    const float rows[12] = {float(m.row[0].x), float(m.row[0].y), float(m.row[0].z), float(m.translation.x),
+                            float(m.row[1].x), float(m.row[1].y), float(m.row[1].z), float(m.translation.y),
+                            float(m.row[2].x), float(m.row[2].y), float(m.row[2].z), float(m.translation.z)};
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(tree.scene, geometry, id);
+    rtcReleaseGeometry(geometry);
+    throw_on_error();
+    for (int corner = 0; corner < 8; ++corner)
+      tree.bounds.add(Vec3(m.point({corner & 1 ? shared.bounds.upper.x : shared.bounds.lower.x,
+                                    corner & 2 ? shared.bounds.upper.y : shared.bounds.lower.y,
+                                    corner & 4 ? shared.bounds.upper.z : shared.bounds.lower.z})));
+  }
+
+  /// Rays meet an instance in its own space: what is rounded there counts in scene space by as much as the
+  /// transform stretches, and where the instance stands is rounded as well.
+  float instance_offset(const Surface& surface) const {
+    const Affine& m = surface.scene_from_node;
+    const double stretch = std::sqrt(std::max({length2(m.row[0]), length2(m.row[1]), length2(m.row[2])}));
+    const double reach = double(shared_trees.at(surface.primitive).reach);
+    return kInstanceOffsetScale * float(max_component(abs(m.translation)) + 1.8 * stretch * reach);
+  }
+
   void build(Tree& tree, std::size_t first, std::size_t last) {
     tree.first_surface = std::uint32_t(first);
     if (first == last) return;
@@ -217,15 +299,12 @@ struct Tracer::Impl {
     rtcSetSceneFlags(tree.scene, RTC_SCENE_FLAG_ROBUST);
     for (std::size_t s = first; s < last; ++s) {
       const Surface& surface = frame->surfaces[s];
-      const auto& triangles = surface.primitive->triangles;
-      RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-      // Embree reads vertices in 16-byte loads, so the last one needs padding: a copy of its own.
-      auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
-          geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), surface.positions.size()));
-      if (vertices) std::copy(surface.positions.begin(), surface.positions.end(), vertices);
+      if (surface.instanced()) {
+        attach_instance(tree, surface, unsigned(s - first));
+        continue;
+      }
+      const RTCGeometry geometry = triangles_of(*surface.primitive, surface.positions.data());
       for (const Vec3 p : surface.positions) tree.bounds.add(p);
-      rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
-                                 sizeof triangles[0], triangles.size());
       if (const Material& material = frame->materials[surface.material]; lets_rays_pass(material)) {
         if (material.textures && material.textures->base_color)   // decoded here, not in the filter
           frame->images->pyramid(material.textures->base_color.image, TextureTransfer::srgb);
@@ -253,7 +332,10 @@ Tracer::Tracer(const SceneFrame& frame) : impl_(std::make_unique<Impl>()) {
   if (!impl_->device) throw ResourceError("Embree: cannot make a device");
   impl_->build(impl_->fixed, 0, frame.static_count);
   impl_->build(impl_->moving, frame.static_count, frame.surfaces.size());
-  for (const Surface& surface : frame.surfaces) impl_->surfaces.emplace_back(surface);
+  for (const Surface& surface : frame.surfaces) {
+    impl_->surfaces.emplace_back(surface);
+    if (surface.instanced()) impl_->surfaces.back().instance_offset = impl_->instance_offset(surface);
+  }
 }
 
 Tracer::~Tracer() = default;
@@ -327,7 +409,7 @@ bool Tracer::occluded(const Ray& ray) const {
 SurfacePoint Tracer::surface_point(const Hit& hit) const {
   const SurfaceArrays& surface = impl_->surfaces[hit.surface];
   const auto& corner = surface.triangles[hit.triangle];
-  const Vec3 a = surface.positions[corner[0]], b = surface.positions[corner[1]], c = surface.positions[corner[2]];
+  const Vec3 a = surface.position(corner[0]), b = surface.position(corner[1]), c = surface.position(corner[2]);
   float u = std::max(hit.u, kSmallestBarycentric), v = std::max(hit.v, kSmallestBarycentric);
   float w = std::max(1 - hit.u - hit.v, kSmallestBarycentric);
   const float scale = 1 / (u + v + w);
@@ -339,9 +421,9 @@ SurfacePoint Tracer::surface_point(const Hit& hit) const {
   Vec3 normal_geometric = normalize(cross(b - a, c - a));
   if (surface.flipped) normal_geometric = -normal_geometric;
   Vec3 normal = normal_geometric;
-  if (surface.normals) {
-    const Vec3 n = normalize(surface.normals[corner[0]] * w + surface.normals[corner[1]] * u +
-                             surface.normals[corner[2]] * v);
+  if (surface.normals || (surface.instance && surface.instance->smooth())) {
+    const Vec3 n =
+        normalize(surface.normal(corner[0]) * w + surface.normal(corner[1]) * u + surface.normal(corner[2]) * v);
     if (length2(n) > 0) {
       const bool behind = dot(n, normal_geometric) < 0;
       normal = {behind ? -n.x : n.x, behind ? -n.y : n.y, behind ? -n.z : n.z};
@@ -355,7 +437,8 @@ SurfacePoint Tracer::surface_point(const Hit& hit) const {
   if (const Vec2* uv = surface.uvs)
     point.uv = {uv[corner[0]].x * w + uv[corner[1]].x * u + uv[corner[2]].x * v,
                 uv[corner[0]].y * w + uv[corner[1]].y * u + uv[corner[2]].y * v};
-  point.offset = kOffsetScale * max_component(max(max(abs(a), abs(b)), abs(c)));
+  point.offset = surface.instance ? surface.instance_offset
+                                  : kOffsetScale * max_component(max(max(abs(a), abs(b)), abs(c)));
   point.surface = hit.surface;
   point.triangle = hit.triangle;
   point.object = surface.object;

@@ -70,8 +70,8 @@ Walk make_walk(const SceneFrame& frame, RTCDevice device, bool robust) {
     const Material& material = frame.materials[surface.material];
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* p = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), surface.positions.size()));
-    std::copy(surface.positions.begin(), surface.positions.end(), p);
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), surface.primitive->positions.size()));
+    for (std::uint32_t v = 0; v < surface.primitive->positions.size(); ++v) p[v] = surface.position(v);
     const auto& triangles = surface.primitive->triangles;
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                                sizeof triangles[0], triangles.size());
@@ -81,7 +81,7 @@ Walk make_walk(const SceneFrame& frame, RTCDevice device, bool robust) {
     walk.albedo.push_back(material.base_color * (1 - material.metallic));
     if (!material.emissive()) continue;
     for (const auto& t : triangles) {
-      Emitter e{surface.positions[t[0]], surface.positions[t[1]], surface.positions[t[2]], {},
+      Emitter e{surface.position(t[0]), surface.position(t[1]), surface.position(t[2]), {},
                 material.emission, material.double_sided};
       const Vec3 n = cross(e.b - e.a, e.c - e.a);
       e.normal = normalize(surface.flipped ? -n : n);

@@ -66,8 +66,8 @@ RTCScene bare_tree(const SceneFrame& frame, RTCDevice device) {
     const auto& triangles = surface.primitive->triangles;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), surface.positions.size()));
-    std::copy(surface.positions.begin(), surface.positions.end(), vertices);
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), surface.primitive->positions.size()));
+    for (std::uint32_t v = 0; v < surface.primitive->positions.size(); ++v) vertices[v] = surface.position(v);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
                                sizeof triangles[0], triangles.size());
     rtcCommitGeometry(geometry);

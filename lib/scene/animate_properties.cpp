@@ -1,0 +1,105 @@
+// lib/scene/animate_properties.cpp -- materials, lights and cameras at a time (KHR_animation_pointer).
+#include <algorithm>
+#include <numbers>
+
+#include "formats/error.h"
+#include "lib/scene/animate.h"
+
+namespace tempolux {
+namespace {
+
+using Path = AnimationTrack::Path;
+
+/// Narrowest soft edge of a spot, as of a file that has none (gltf_material.cpp).
+constexpr double kSharpestCone = 0.9999;
+
+float limited(double value, double lower, double upper = 3e38) { return float(std::clamp(value, lower, upper)); }
+
+Rgb limited_colour(const std::array<double, 4>& v, double upper = 3e38) {
+  return {limited(v[0], 0, upper), limited(v[1], 0, upper), limited(v[2], 0, upper)};
+}
+
+void check_product(const Scene& scene, const char* array, int index, const Rgb& product) {
+  if (!is_finite(product))
+    throw InputError(scene.path + ": " + array + "[" + std::to_string(index) +
+                     "]: its animation takes colour times strength beyond float32");
+}
+
+void set(Material& material, ColorFactors& emission, Path path, const std::array<double, 4>& v) {
+  switch (path) {
+    case Path::base_color:
+      material.base_color = limited_colour(v, 1);
+      material.alpha = limited(v[3], 0, 1);
+      break;
+    case Path::alpha_cutoff: material.alpha_cutoff = limited(v[0], 0); break;
+    case Path::metallic: material.metallic = limited(v[0], 0, 1); break;
+    case Path::roughness: material.roughness = limited(v[0], 0, 1); break;
+    case Path::emissive_factor: emission.color = limited_colour(v); break;
+    case Path::emissive_strength: emission.strength = limited(v[0], 0); break;
+    case Path::specular: material.specular = limited(v[0], 0, 1); break;
+    case Path::specular_color: material.specular_color = limited_colour(v); break;
+    case Path::ior: material.ior = v[0] <= 0 ? 0.0f : limited(v[0], 1); break;
+    case Path::transmission: material.transmission = limited(v[0], 0, 1); break;
+    default: break;
+  }
+}
+
+}  // namespace
+
+const char* kind_of(Path path) {
+  return path <= Path::weights ? "node" : path <= Path::transmission ? "material" : path <= Path::outer_cone ? "light" : "camera";
+}
+
+std::vector<Material> Animator::materials(double time_s) const {
+  std::vector<Material> materials = scene_->materials;
+  for (const AnimationTrack* track : property_tracks_) {
+    if (track->path > Path::transmission) continue;
+    Material& material = materials[std::size_t(track->target)];
+    ColorFactors emission = scene_->emission_factors[std::size_t(track->target)];
+    // The other factor of a product may have a track of its own: all that change the emission are looked at.
+    const bool emits = track->path == Path::emissive_factor || track->path == Path::emissive_strength;
+    for (const AnimationTrack* other : property_tracks_)
+      if (other == track || (emits && other->target == track->target &&
+                             (other->path == Path::emissive_factor || other->path == Path::emissive_strength)))
+        set(material, emission, other->path, evaluate(*other, time_s));
+    if (emits) material.emission = emission.color * emission.strength;
+    check_product(*scene_, "materials", track->target, material.emission);
+  }
+  return materials;
+}
+
+PunctualLight Animator::light(std::size_t index, double time_s) const {
+  PunctualLight light = scene_->lights[index];
+  ColorFactors factors = index < scene_->light_factors.size() ? scene_->light_factors[index] : ColorFactors{};
+  bool product = false;
+  double inner = light.inner_cone_rad, outer = light.outer_cone_rad;
+  for (const AnimationTrack* track : property_tracks_) {
+    if (std::size_t(track->target) != index) continue;
+    if (track->path < Path::light_color || track->path > Path::outer_cone) continue;
+    const std::array<double, 4> v = evaluate(*track, time_s);
+    switch (track->path) {
+      case Path::light_color: factors.color = limited_colour(v); product = true; break;
+      case Path::light_intensity: factors.strength = limited(v[0], 0); product = true; break;
+      case Path::inner_cone: inner = v[0]; break;
+      default: outer = v[0]; break;
+    }
+    outer = std::clamp(outer, 1e-4, std::numbers::pi / 2);
+    light.outer_cone_rad = float(outer);
+    light.inner_cone_rad = float(std::clamp(inner, 0.0, outer * kSharpestCone));
+  }
+  if (product) light.intensity = factors.color * factors.strength;
+  check_product(*scene_, "extensions.KHR_lights_punctual.lights", int(index), light.intensity);
+  return light;
+}
+
+Camera Animator::camera(std::size_t index, double time_s) const {
+  Camera camera = scene_->cameras[index];
+  for (const AnimationTrack* track : property_tracks_) {
+    if (std::size_t(track->target) != index) continue;
+    if (track->path == Path::yfov) camera.yfov_rad = std::clamp(evaluate(*track, time_s)[0], 1e-4, 3.14159);
+    if (track->path == Path::ymag) camera.ymag_m = std::max(evaluate(*track, time_s)[0], 1e-9);
+  }
+  return camera;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,156 @@
+// lib/scene/place_surfaces.cpp
+#include "lib/scene/place_surfaces.h"
+
+#include <algorithm>
+
+#include "formats/error.h"
+#include "lib/scene/deform.h"
+
+namespace tempolux {
+namespace {
+
+/// A copy costs 36 bytes and a share of the search tree (100) per triangle, an instance about 1 kB and a transform
+/// for every ray that enters its box.
+constexpr std::size_t kFewestTriangles = 4096;
+
+/// A ray's place in the instance's space is right to some ulp times how unevenly the transform scales (the norm of
+/// the matrix times that of its inverse: 3 for a rotation): beyond this the surface is copied.
+constexpr double kLargestCondition = 30;
+
+double norm(const Affine& m) { return std::sqrt(length2(m.row[0]) + length2(m.row[1]) + length2(m.row[2])); }
+
+bool well_conditioned(const Affine& m) {
+  return m.determinant() != 0 && norm(m) * norm(inverse(m)) <= kLargestCondition;
+}
+
+/// Further than this many times its size from the origin, what is rounded there would show in the instance.
+constexpr double kFarthest = 256;
+
+bool near_enough(const Box3d& box, const Affine& m) {
+  const double stretch = std::sqrt(std::min({length2(m.row[0]), length2(m.row[1]), length2(m.row[2])}));
+  return length(m.translation) + norm(m) * length(box.centre()) <= kFarthest * stretch * box.diagonal();
+}
+
+bool may_emit(const Scene& scene, std::uint32_t material) {
+  if (scene.materials[material].emissive()) return true;
+  for (const Animation& animation : scene.animations)
+    for (const AnimationTrack& track : animation.tracks)
+      if ((track.path == AnimationTrack::Path::emissive_factor || track.path == AnimationTrack::Path::emissive_strength) &&
+          std::uint32_t(track.target) == material)
+        return true;
+  return false;
+}
+
+/// Each point transformed in double, made relative to the origin, then rounded once.
+std::vector<Vec3> place_points(const std::vector<Vec3>& points, const Affine& scene_from_node) {
+  std::vector<Vec3> placed;
+  placed.reserve(points.size());
+  for (const Vec3& p : points) placed.push_back(Vec3(scene_from_node.point(Vec3d(p))));
+  return placed;
+}
+
+/// Empty (flat shading) if there are none or the transform is flat, which leaves normals no direction.
+std::vector<Vec3> place_normals(const std::vector<Vec3>& normals, const Affine& scene_from_node) {
+  std::vector<Vec3> placed;
+  if (scene_from_node.determinant() == 0) return placed;
+  placed.reserve(normals.size());
+  for (const Vec3& n : normals) {
+    const Vec3d unit = normalize(scene_from_node.normal(Vec3d(n)));
+    if (!(length2(unit) > 0.5 && length2(unit) < 2)) return {};
+    placed.push_back(Vec3(unit));
+  }
+  return placed;
+}
+
+void add_corners(Box3& bounds, const Box3d& local, const Affine& scene) {
+  for (int corner = 0; corner < 8; ++corner)
+    bounds.add(Vec3(
+        scene.point({corner & 1 ? local.upper.x : local.lower.x, corner & 2 ? local.upper.y : local.lower.y,
+                     corner & 4 ? local.upper.z : local.lower.z})));
+}
+
+void check_range(const Scene& scene, std::size_t n, const Surface& surface, const Sharing& sharing) {
+  Box3 box;
+  for (const Vec3& p : surface.positions) box.add(p);
+  if (surface.instanced()) add_corners(box, sharing.box(*surface.primitive), surface.scene_from_node);
+  for (const Vec3& corner : {box.lower, box.upper})
+    if (!(max_component(abs(corner)) < kMaxCoordinate))
+      throw InputError(node_place(scene, n) + ": its transform takes vertices beyond 1e15 m");
+}
+
+}  // namespace
+
+std::string node_place(const Scene& scene, std::size_t n) {
+  const Node& node = scene.nodes[n];
+  return scene.path + ": nodes[" + std::to_string(node.source_index) + "]" +
+         (node.name.empty() ? "" : " \"" + node.name + "\"");
+}
+
+Sharing::Sharing(const Scene& scene) {
+  std::vector<std::size_t> uses(scene.meshes.size(), 0);
+  for (const Node& node : scene.nodes)
+    if (node.mesh >= 0 && !deforms(scene, node))
+      uses[std::size_t(node.mesh)] += std::max<std::size_t>(node.instances.size(), 1);
+  for (std::size_t m = 0; m < uses.size(); ++m) {
+    if (uses[m] < 2) continue;
+    for (const Primitive& primitive : scene.meshes[m].primitives) {
+      if (primitive.triangles.size() < kFewestTriangles || may_emit(scene, primitive.material)) continue;
+      if (scene.materials[primitive.material].alpha_mode != Material::Alpha::opaque) continue;  // rays ask its copy
+      Box3d& box = box_[&primitive];
+      for (const Vec3& p : primitive.positions) box.add(Vec3d(p));
+    }
+  }
+}
+
+bool Sharing::instanced(const Primitive& primitive, const Affine& world_from_primitive) const {
+  const auto found = box_.find(&primitive);
+  return found != box_.end() && well_conditioned(world_from_primitive) &&
+         near_enough(found->second, world_from_primitive);
+}
+
+std::vector<Affine> places(const Node& node, const Affine& world_from_node) {
+  if (node.instances.empty()) return {world_from_node};
+  std::vector<Affine> places;
+  places.reserve(node.instances.size());
+  for (const Affine& node_from_instance : node.instances) places.push_back(world_from_node * node_from_instance);
+  return places;
+}
+
+std::vector<Surface> place_surfaces(const Scene& scene, const Animator& animator, const Sharing& sharing,
+                                    const Segment& segment, double time_s, const std::vector<Affine>& world,
+                                    bool moving) {
+  std::vector<Surface> surfaces;
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    const Node& node = scene.nodes[n];
+    if (node.mesh < 0 || (segment.node_moves[n] != 0) != moving) continue;
+    const bool deforming = deforms(scene, node);
+    const Pose pose = deforming ? animator.pose(n, time_s, world) : Pose{};
+    for (const Affine& place : places(node, world[n])) {
+      Affine scene_from_node = place;
+      scene_from_node.translation = scene_from_node.translation - segment.origin;
+      for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives) {
+        Surface surface;
+        surface.object = node.object;
+        surface.node = std::uint32_t(n);
+        surface.material = primitive.material;
+        surface.flipped = scene_from_node.determinant() < 0;
+        surface.primitive = &primitive;
+        surface.scene_from_node = scene_from_node;
+        if (deforming) {
+          Shape shape = deformed(primitive, pose, place, segment.origin);
+          surface.flipped = shape.flipped;
+          surface.positions = std::move(shape.positions);
+          surface.normals = std::move(shape.normals);
+        } else if (!sharing.instanced(primitive, place)) {
+          surface.positions = place_points(primitive.positions, scene_from_node);
+          surface.normals = place_normals(primitive.normals, scene_from_node);
+        }
+        check_range(scene, n, surface, sharing);
+        surfaces.push_back(std::move(surface));
+      }
+    }
+  }
+  return surfaces;
+}
+
+}  // namespace tempolux
