@@ -152,6 +152,7 @@ std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const Placed
     if (material.textures && material.textures->emission) {
       add_texture(hasher, scene, "emission", material.textures->emission);
       add_values(hasher, surface.primitive->uvs);
+      if (material.textures->emission.uv_set == 1) add_values(hasher, surface.primitive->uvs1);
     }
   }
   return hasher.hex();

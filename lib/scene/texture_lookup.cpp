@@ -18,7 +18,7 @@ Vec2 minus(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
 
 const std::vector<Vec2>& texture_coordinates(const Primitive& primitive, std::uint32_t uv_set) {
   static const std::vector<Vec2> none;
-  return uv_set == 0 ? primitive.uvs : none;
+  return uv_set == 0 ? primitive.uvs : uv_set == 1 ? primitive.uvs1 : none;
 }
 
 TextureSpot::Corners TextureSpot::coordinates(const Texture& texture) const {
@@ -34,7 +34,7 @@ TextureSpot::Corners TextureSpot::coordinates(const Texture& texture) const {
 }
 
 Vec3 TextureSpot::edge(int corner) const {
-  return surface_.positions[corners_[std::size_t(corner)]] - surface_.positions[corners_[0]];
+  return surface_.position(corners_[std::size_t(corner)]) - surface_.position(corners_[0]);
 }
 
 float TextureSpot::level(const Corners& corners, const TexturePyramid& pyramid) const {
@@ -127,8 +127,8 @@ Rgb mean_emission(const SceneFrame& frame, std::uint32_t surface_index, std::uin
   }
   // The triangle cut into kCuts^2 small ones like it, the value at the middle of each over its width.
   constexpr int kCuts = 8;
-  const Vec3 a = surface.positions[corner[0]];
-  const float area = 0.5f * length(cross(surface.positions[corner[1]] - a, surface.positions[corner[2]] - a));
+  const Vec3 a = surface.position(corner[0]);
+  const float area = 0.5f * length(cross(surface.position(corner[1]) - a, surface.position(corner[2]) - a));
   const float width = std::sqrt(area) / float(kCuts);
   Rgbd sum{0.0};
   for (int i = 0; i < kCuts; ++i)
