@@ -23,7 +23,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> inputs;  // [points|records] SCENE
-  std::string photons, points, records, output, keep_points;
+  std::string photons, points, records, output, keep_points, radii = "ward";
   std::uint64_t point_count = PointOptions{}.count;
   int width = 640, height = 360;
   PointOptions point;
@@ -154,6 +154,11 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--error-bound", options.placement.error_bound,
                  "radius of a record / harmonic mean distance to what it sees: smaller is finer")
       ->capture_default_str()->check(CLI::Range(1e-3, 2.0));
+  app.add_option("--radii", options.radii,
+                 "what the radius of a record follows from: ward (distances of what it sees) or hessian (second derivatives)")
+      ->capture_default_str()->check(CLI::IsMember({"ward", "hessian"}));
+  app.add_flag("--clamp-neighbours", options.placement.clamp_neighbours,
+               "no record's radius exceeds a neighbour's by more than their distance: finer near small things");
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
       ->capture_default_str()->check(CLI::PositiveNumber);
   app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
@@ -176,6 +181,7 @@ int main(int argc, char** argv) {
     const std::vector<int>& frames = tool.common().frames;
     check(options, frames);
     options.point.count = std::uint32_t(std::min<std::uint64_t>(options.point_count, 1u << 28));
+    options.gather.curvature = options.placement.by_curvature = options.radii == "hessian";
     options.point.seed = options.gather.seed = tool.common().seed_for_frame(frames.front());
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light);

@@ -7,6 +7,7 @@
 #include "lib/core/frame.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
+#include "lib/gather/hemisphere.h"
 #include "lib/material/bsdf.h"
 #include "lib/material/inside.h"
 #include "lib/material/surface_material.h"
@@ -23,9 +24,6 @@ std::uint64_t key_of(Vec3 p, Vec3 n, std::uint64_t seed) {
   for (float x : {p.x, p.y, p.z, n.x, n.y, n.z}) key = mix64(key ^ std::bit_cast<std::uint32_t>(x));
   return key;
 }
-
-/// Integral of tan over a ring's share of the projected hemisphere: asin sqrt s - sqrt(s (1 - s)).
-double ring_integral(double s) { return std::asin(std::sqrt(s)) - std::sqrt(s * (1 - s)); }
 
 constexpr std::size_t kAtOnce = 32;  ///< rays whose answers are fetched together
 constexpr int kTile = 4;             ///< sectors followed side by side: two rings of them are a packet of rays
@@ -54,16 +52,9 @@ struct Side {
 
 }  // namespace
 
-void gather_strata(int rays, int& rings, int& sectors) {
-  rings = std::max(1, int(std::lround(std::sqrt(double(rays) / M_PI))));
-  sectors = std::max(3, int(std::lround(double(rays) / rings)));
-}
-
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options)
     : tracer_(tracer), lights_(lights), points_(points), options_(options) {
   gather_strata(options.rays, rings_, sectors_);
-  for (int j = 0; j < rings_; ++j)
-    ring_tangent_.push_back(float(rings_ * (ring_integral(double(j + 1) / rings_) - ring_integral(double(j) / rings_))));
   cell_order_ = tiled_order(rings_, sectors_);
   for (const Material& material : tracer.frame().materials)
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
@@ -194,13 +185,8 @@ Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, const 
 }
 
 IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {
-  const int M = rings_, N = sectors_;
-  thread_local std::vector<Rgb> radiance_of;
-  thread_local std::vector<float> inverse_distance;
-  radiance_of.assign(std::size_t(M) * std::size_t(N), Rgb(0.0f));
-  inverse_distance.assign(radiance_of.size(), 0.0f);
-  const auto cell = [N](int j, int k) { return std::size_t(j) * std::size_t(N) + std::size_t(k); };
-
+  thread_local Hemisphere sky;
+  sky.reset(rings_, sectors_);
   const Frame frame(normal);
   const Vec3 geometric = dot(from.normal_geometric, normal) < 0 ? -from.normal_geometric : from.normal_geometric;
   const std::uint64_t key = key_of(from.position, normal, options_.seed);
@@ -214,8 +200,8 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   for (const std::uint32_t c : cell_order_) {
     const PathRandom random(key, c);
     const Vec2 u = random.get2(0, Purpose::gather);
-    const float sin2 = (float(c / std::uint32_t(N)) + u.x) / float(M);
-    const float phi = 2 * kPi * (float(c % std::uint32_t(N)) + u.y) / float(N);
+    const float sin2 = (float(c / std::uint32_t(sectors_)) + u.x) / float(rings_);
+    const float phi = 2 * kPi * (float(c % std::uint32_t(sectors_)) + u.y) / float(sectors_);
     const float sine = std::sqrt(sin2), cosine = std::sqrt(std::max(1e-6f, 1 - sin2));
     const Vec3 travel = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
     if (!(dot(travel, geometric) > 0)) continue;
@@ -229,52 +215,18 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   distance.resize(rays.size());
   radiance(rays, keys, found, distance, counts);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    radiance_of[cells[i]] = found[i];
-    inverse_distance[cells[i]] = 1 / std::max(distance[i], closest);   // 0 for a miss
+    sky.radiance[cells[i]] = found[i];
+    sky.inverse_distance[cells[i]] = 1 / std::max(distance[i], closest);   // 0 for a miss
   }
 
   IrradianceRecord record;
   record.position = from.position;
   record.normal = normal;
   record.object = from.object;
-  Rgbd sum{0.0};
-  double inverse_sum = 0;
-  std::array<Vec3d, 3> rotational{}, translational{};
-  for (int k = 0; k < N; ++k) {
-    const double middle = 2 * M_PI * (k + 0.5) / N, lower = 2 * M_PI * double(k) / N;
-    const Vec3d u{std::cos(middle), std::sin(middle), 0}, v{-std::sin(middle), std::cos(middle), 0};
-    const Vec3d v_lower{-std::sin(lower), std::cos(lower), 0};
-    Rgbd turn{0.0}, along{0.0}, across{0.0};
-    for (int j = 0; j < M; ++j) {
-      const Rgbd here(radiance_of[cell(j, k)]);
-      const double near_here = double(inverse_distance[cell(j, k)]);
-      sum += here;
-      inverse_sum += near_here;
-      turn += here * double(ring_tangent_[std::size_t(j)]);
-      const double s_lower = std::sqrt(double(j) / M), s_upper = std::sqrt(double(j + 1) / M);
-      if (j > 0) {
-        const Rgbd inner(radiance_of[cell(j - 1, k)]);
-        const double near = std::max(near_here, double(inverse_distance[cell(j - 1, k)]));
-        along += (here - inner) * (s_lower * (1 - s_lower * s_lower) * near);
-      }
-      const std::size_t before = cell(j, (k + N - 1) % N);
-      const double near = std::max(near_here, double(inverse_distance[before]));
-      across += (here - Rgbd(radiance_of[before])) * ((s_upper - s_lower) * near);
-    }
-    for (int c = 0; c < 3; ++c) {
-      rotational[std::size_t(c)] += v * (turn[c] * M_PI / (double(M) * N));
-      translational[std::size_t(c)] += u * (along[c] * 2 * M_PI / N) + v_lower * across[c];
-    }
-  }
-  record.irradiance = Rgb(sum * (M_PI / (double(M) * N)));
-  for (std::size_t c = 0; c < 3; ++c) {
-    record.rotational[c] = frame.to_world(Vec3(rotational[c]));
-    record.translational[c] = frame.to_world(Vec3(translational[c]));
-  }
-  record.radius_unclamped = inverse_sum > 0 ? float(double(M) * N / inverse_sum) : INFINITY;
-  float nearest = 0;
-  for (int k = 0; k < N; ++k) nearest = std::max(nearest, inverse_distance[cell(M - 1, k)]);
-  record.radius = nearest > 0 ? 1 / nearest : INFINITY;
+  sky.irradiance_and_gradients(frame, record);
+  if (options_.curvature) record.curvature = sky.curvature();
+  record.radius_unclamped = sky.harmonic_distance();
+  record.radius = sky.nearest_across();
   return record;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lib/core/random.h"
+#include "lib/gather/hemisphere.h"
 #include "lib/irradcache/points.h"
 #include "lib/irradcache/records.h"
 #include "lib/light/lights.h"
@@ -20,10 +21,8 @@ struct GatherOptions {
   std::uint64_t seed = 0;
   int rays = 500;                   ///< wanted; rounded to M rings x N_phi sectors with N_phi about pi M
   float near_factor = 2;            ///< hits nearer than about this many estimate radii continue one bounce
+  bool curvature = false;           ///< also IrradianceRecord::curvature
 };
-
-/// Rings M and sectors N_phi for about `rays` cells of equal weight.
-void gather_strata(int rays, int& rings, int& sectors);
 
 struct GatherCounts {
   std::uint64_t rays = 0, near_hits = 0, points_read = 0, unanswered = 0;
@@ -38,18 +37,11 @@ class FinalGather {
  public:
   FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options);
 
-  /// Irradiance at `from` over the hemisphere about `normal` (unit, on the lit side), with its gradients:
-  ///
-  ///     E     = pi/(M N) sum L_jk            cells j = 0..M-1 (rings, equal cosine-weighted area), k = 0..N-1
-  ///     dE/dn = pi/(M N) sum_k v_k sum_j T_j L_jk                                      [Ward & Heckbert 1992]
-  ///     dE/dx = sum_k { u_k 2pi/N sum_{j>=1} sin t_j- cos^2 t_j- / min(r_jk, r_j-1,k) (L_jk - L_j-1,k)
-  ///                   + v_k- sum_j (sin t_j+ - sin t_j-) / min(r_jk, r_j,k-1) (L_jk - L_j,k-1) }
-  ///
-  /// u_k at the middle of sector k, v_k 90 degrees on, v_k- at its lower edge + 90 degrees; T_j is the ring's mean
-  /// of tan t (algorithms.md 8.2: the signs are those of E(n) = E + (n_i x n) . dE/dn). radius_unclamped receives the
-  /// harmonic mean distance, radius the distance across the tangent plane to the nearest of what the outermost
-  /// ring met (limit_radius makes the validity of both). Random numbers come from the position: the record of a place does
-  /// not depend on which records were made before.
+  /// Irradiance at `from` over the hemisphere about `normal` (unit, on the lit side), with its gradients, by about
+  /// `rays` cells of equal weight (hemisphere.h). radius_unclamped receives the harmonic mean distance, radius the
+  /// distance across the tangent plane to the nearest of what the outermost ring met (limit_radius makes the
+  /// validity of both). Random numbers come from the position: the record of a place does not depend on which
+  /// records were made before.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
 
   /// Radiance arriving along rays that counts as indirect at their starts, and the distance to what each meets
@@ -75,7 +67,6 @@ class FinalGather {
   const PointLookup& points_;
   GatherOptions options_;
   int rings_ = 0, sectors_ = 0;
-  std::vector<float> ring_tangent_;   ///< T_j
   std::vector<std::uint32_t> cell_order_;
   std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: seen from behind, from in front
 };

@@ -106,8 +106,11 @@ class Placement {
       const std::lock_guard lock(mutex);
       counts_ += local;
     });
-    for (const auto& record : records)
-      if (record) store_.add(*record);
+    for (auto& record : records) {
+      if (!record) continue;
+      if (options_.clamp_neighbours) store_.clamp_with_neighbours(*record);
+      store_.add(*record);
+    }
   }
 
   const FinalGather& gather_;
@@ -122,9 +125,11 @@ class Placement {
 void limit_radius(IrradianceRecord& record, float footprint, float max_radius, const PlacementOptions& options) {
   // double: squares of gradients, whatever the strength of the light, stay finite, and its power of two changes no radius.
   const double e = double(record.irradiance.r) + double(record.irradiance.g) + double(record.irradiance.b);
+  if (options.by_curvature)
+    record.radius_unclamped = record.curvature > 0 ? float(std::sqrt(2 * e / double(record.curvature))) : INFINITY;
   double reach = double(record.radius_unclamped), slope = 0;
   for (Vec3 g : record.translational) slope += length(Vec3d(g));
-  if (slope * reach > e && slope > 0) reach = e / slope;
+  if (!options.by_curvature && slope * reach > e && slope > 0) reach = e / slope;
   const float r = std::min({options.error_bound * float(reach), record.radius, max_radius});
   record.radius_unclamped *= options.error_bound;
   record.radius = std::max(r, options.min_radius_px * footprint);

@@ -15,6 +15,8 @@ struct PlacementOptions {
   float error_bound = 0.2f;           ///< validity radius / harmonic mean distance to what is seen
   float min_radius_px = 4;            ///< a record is valid this many pixels around it at least
   float max_radius = 0;               ///< m; 0: a tenth of the scene's diagonal
+  bool clamp_neighbours = false;      ///< RecordStore::clamp_with_neighbours
+  bool by_curvature = false;          ///< R of limit_radius from second derivatives instead of distances
   float min_weight = 0.9f;           ///< sum of weights that counts as covered; a record has 1 at its own place
 };
 
@@ -43,7 +45,9 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
 ///
 ///     r = min(error_bound x min(R, |E| / |dE/dx|), nearest surface along the tangent plane, max_radius),
 ///
-/// and at least min_radius_px footprints. radius_unclamped keeps error_bound x R.
+/// and at least min_radius_px footprints. radius_unclamped keeps error_bound x R. By curvature R = sqrt(2 |E| /
+/// curvature) takes the place of both: the distance at which the second order, which gradients leave out, is as large
+/// as the irradiance itself [after Schwarzhaupt, Jensen & Jarosz 2012, one radius for all directions].
 void limit_radius(IrradianceRecord& record, float footprint, float max_radius, const PlacementOptions& options);
 
 }  // namespace tempolux

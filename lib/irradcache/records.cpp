@@ -23,6 +23,17 @@ Cell cell_at(Vec3d local, double inverse) {
   return {index(local.x), index(local.y), index(local.z)};
 }
 
+/// The cells that a validity sphere meets.
+template <class Body>
+void for_each_cell(Vec3d local, float radius, double inverse_cell, const Body& body) {
+  const double reach = double(radius) * (1 + kRounding);
+  const Cell low = cell_at(local - Vec3d{1, 1, 1} * reach, inverse_cell);
+  const Cell high = cell_at(local + Vec3d{1, 1, 1} * reach, inverse_cell);
+  for (std::int64_t x = low.x; x <= high.x; ++x)
+    for (std::int64_t y = low.y; y <= high.y; ++y)
+      for (std::int64_t z = low.z; z <= high.z; ++z) body(Cell{x, y, z});
+}
+
 std::size_t bucket_of(Cell c, std::size_t count) {
   const std::uint64_t h = std::uint64_t(c.x) * 0x9e3779b97f4a7c15ull + std::uint64_t(c.y) * 0xc2b2ae3d27d4eb4full +
                           std::uint64_t(c.z) * 0x165667b19e3779f9ull;
@@ -54,18 +65,12 @@ RecordStore::Level& RecordStore::level_of(float radius) {
 
 void RecordStore::list(Level& level, std::uint32_t record) const {
   const IrradianceRecord& r = records_[record];
-  const Vec3d local = Vec3d(r.position) - lower_;
-  const double reach = double(r.radius) * (1 + kRounding);
-  const Cell low = cell_at(local - Vec3d{1, 1, 1} * reach, level.inverse_cell);
-  const Cell high = cell_at(local + Vec3d{1, 1, 1} * reach, level.inverse_cell);
-  for (std::int64_t x = low.x; x <= high.x; ++x)
-    for (std::int64_t y = low.y; y <= high.y; ++y)
-      for (std::int64_t z = low.z; z <= high.z; ++z) {
-        std::vector<Entry>& bucket = level.buckets[bucket_of({x, y, z}, level.buckets.size())];
-        if (!bucket.empty() && bucket.back().record == record) continue;   // two cells of one hash: once
-        bucket.push_back({r.position, r.radius, r.normal, record});
-        ++level.listed;
-      }
+  for_each_cell(Vec3d(r.position) - lower_, r.radius, level.inverse_cell, [&](Cell cell) {
+    std::vector<Entry>& bucket = level.buckets[bucket_of(cell, level.buckets.size())];
+    if (!bucket.empty() && bucket.back().record == record) return;   // two cells of one hash: once
+    bucket.push_back({r.position, r.radius, r.normal, record});
+    ++level.listed;
+  });
 }
 
 bool RecordStore::add(const IrradianceRecord& record) {
@@ -89,6 +94,39 @@ bool RecordStore::add(const IrradianceRecord& record) {
   level.listed = 0;
   for (std::uint32_t member : level.members) list(level, member);
   return true;
+}
+
+/// A smaller radius: the record stays on its level and in its cells.
+void RecordStore::shrink(std::uint32_t record, float radius) {
+  const float before = records_[record].radius;
+  const auto update = [&](std::vector<Entry>& entries) {
+    for (Entry& entry : entries)
+      if (entry.record == record) entry.radius = radius;
+  };
+  if (double(before) > largest_cell_) update(everywhere_);
+  for (Level& level : levels_) {
+    if (!std::binary_search(level.members.begin(), level.members.end(), record)) continue;
+    const Vec3d local = Vec3d(records_[record].position) - lower_;
+    for_each_cell(local, before, level.inverse_cell,
+                  [&](Cell c) { update(level.buckets[bucket_of(c, level.buckets.size())]); });
+  }
+  records_[record].radius = radius;
+}
+
+void RecordStore::clamp_with_neighbours(IrradianceRecord& record) {
+  std::vector<std::pair<std::uint32_t, float>> near;
+  const auto look = [&](const std::vector<Entry>& entries) {
+    for (const Entry& entry : entries)
+      if (const float d = length(entry.position - record.position);
+          d < entry.radius && dot(entry.normal, record.normal) > options_.max_angle_cos)
+        near.emplace_back(entry.record, d);
+  };
+  const Vec3d local = Vec3d(record.position) - lower_;
+  for (const Level& level : levels_) look(level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())]);
+  look(everywhere_);
+  for (const auto& [i, d] : near) record.radius = std::min(record.radius, records_[i].radius + d);
+  for (const auto& [i, d] : near)
+    if (record.radius + d < records_[i].radius) shrink(i, record.radius + d);
 }
 
 void RecordStore::accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum,

@@ -19,6 +19,7 @@ struct IrradianceRecord {
   std::array<Vec3, 3> translational{};  ///< per channel: E(x) = E + (x - x_i) . g [W/m^3]
   float radius = 0;                     ///< m: validity, after clamping
   float radius_unclamped = 0;           ///< m: before it was limited by pixels, scene and neighbours
+  float curvature = 0;                  ///< W/m^4: size of the second derivatives (hemisphere.h); not in files
   std::uint32_t object = 0;             ///< the object it rides on
 };
 
@@ -37,6 +38,11 @@ class RecordStore {
 
   /// False, and the record is left out and counted, if one of its numbers is not finite or its radius not above 0.
   bool add(const IrradianceRecord& record);
+  /// Neighbour clamping [Krivanek et al. 2006]: what is near one record cannot be much farther from its neighbours.
+  /// For the records i that are valid where `record` is, d apart:
+  ///     r <- min(r, r_i + d),   then   r_i <- min(r_i, r + d).
+  /// To be called before add(record).
+  void clamp_with_neighbours(IrradianceRecord& record);
   std::span<const IrradianceRecord> records() const { return records_; }
   std::uint64_t refused() const { return refused_; }
 
@@ -77,6 +83,7 @@ class RecordStore {
   };
   Level& level_of(float radius);
   void list(Level& level, std::uint32_t record) const;
+  void shrink(std::uint32_t record, float radius);
   void accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
 
   Vec3d lower_;

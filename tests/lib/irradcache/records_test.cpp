@@ -217,6 +217,29 @@ TEST(RecordStore, RadiiAtBothEnds) {
   EXPECT_EQ(flat.interpolate({2, 2, 2}, {0, 1, 0}).count, 1);
 }
 
+/// A record of 0.1 m at 0.3 m from one of 1 m leaves that one 0.4 m; one of 2 m at 0.2 m from it gets 0.6 m itself.
+TEST(RecordStore, NeighboursClampEachOther) {
+  RecordStore store(box({-4, -4, -4}, {4, 4, 4}));
+  store.add(record_at({0, 0, 0}, {0, 1, 0}, 1, Rgb(1.0f)));
+  IrradianceRecord small = record_at({0.3f, 0, 0}, {0, 1, 0}, 0.1f, Rgb(1.0f));
+  store.clamp_with_neighbours(small);
+  store.add(small);
+  EXPECT_FLOAT_EQ(small.radius, 0.1f);
+  EXPECT_FLOAT_EQ(store.records()[0].radius, 0.4f);
+  IrradianceRecord large = record_at({0, 0, 0.2f}, {0, 1, 0}, 2, Rgb(1.0f));
+  store.clamp_with_neighbours(large);
+  EXPECT_FLOAT_EQ(large.radius, 0.6f);
+  // What look-ups see follows, also after the table has grown.
+  EXPECT_EQ(store.interpolate({-0.5f, 0, 0}, {0, 1, 0}).count, 0);
+  EXPECT_EQ(store.interpolate({-0.39f, 0, 0}, {0, 1, 0}).count, 1);
+  for (int i = 0; i < 3000; ++i) store.add(record_at({2 + 0.0005f * float(i), 0, 0}, {0, 1, 0}, 0.9f, Rgb(1.0f)));
+  EXPECT_EQ(store.interpolate({-0.5f, 0, 0}, {0, 1, 0}).count, 0);
+  // A record that faces another way is no neighbour.
+  IrradianceRecord wall = record_at({0, 0, 0.1f}, {1, 0, 0}, 2, Rgb(1.0f));
+  store.clamp_with_neighbours(wall);
+  EXPECT_FLOAT_EQ(wall.radius, 2);
+}
+
 TEST(RecordStore, WhatIsNotFiniteIsLeftOutAndCounted) {
   RecordStore store(box({0, 0, 0}, {1, 1, 1}));
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();

@@ -1,0 +1,55 @@
+// lib/gather/hemisphere.h -- radiance and distances over a hemisphere: irradiance, how it changes, how far it holds.
+#pragma once
+
+#include <vector>
+
+#include "lib/core/frame.h"
+#include "lib/irradcache/records.h"
+
+namespace tempolux {
+
+/// Rings M and sectors N for about `rays` cells of equal weight, N about pi M.
+void gather_strata(int rays, int& rings, int& sectors);
+
+/// Incoming radiance in cells (j, k), number j N + k: ring j holds sin^2 of the angle from the normal in [j, j+1) / M,
+/// sector k azimuths in [k, k+1) 2 pi / N. All cells contribute alike to the irradiance.
+class Hemisphere {
+ public:
+  std::vector<Rgb> radiance;             ///< W/m^2/sr
+  std::vector<float> inverse_distance;   ///< 1/m; 0: nothing there
+
+  /// All cells dark and empty.
+  void reset(int rings, int sectors);
+
+  /// Fills in, in the frame's space (z = normal):
+  ///
+  ///     E     = pi/(M N) sum L_jk
+  ///     dE/dn = pi/(M N) sum_k v_k sum_j T_j L_jk                                      [Ward & Heckbert 1992]
+  ///     dE/dx = sum_k { u_k 2pi/N sum_{j>=1} sin t_j- cos^2 t_j- / min(r_jk, r_j-1,k) (L_jk - L_j-1,k)
+  ///                   + v_k- sum_j (sin t_j+ - sin t_j-) / min(r_jk, r_j,k-1) (L_jk - L_j,k-1) }
+  ///
+  /// u_k at the middle of sector k, v_k 90 degrees on, v_k- at its lower edge + 90 degrees; T_j is the ring's mean
+  /// of tan t (algorithms.md 8.2: the signs are those of E(n) = E + (n_i x n) . dE/dn).
+  void irradiance_and_gradients(const Frame& frame, IrradianceRecord& record) const;
+
+  /// Sum over channels of the mean size of the second derivatives of E along the tangent plane, (|l1| + |l2|) / 2 of
+  /// their eigenvalues, W/m^4. Every border between cells is taken for a straight edge at the nearer distance r, as
+  /// the gradient takes it, and differentiated once more:
+  ///
+  ///     between rings, along u_k u_k: 2pi/N cos^2 t (3 sin^2 t - cos^2 t) / r^2 (L_jk - L_j-1,k)
+  ///     between sectors, u v + v u:   3/2 (sin^2 t_j+ - sin^2 t_j-) / r^2 (L_jk - L_j,k-1)
+  float curvature() const;
+
+  /// Harmonic mean of the distances, m; infinity if there is nothing.
+  float harmonic_distance() const;
+  /// Of what the outermost ring met, the nearest, m; infinity if nothing.
+  float nearest_across() const;
+
+ private:
+  std::size_t cell(int j, int k) const { return std::size_t(j) * std::size_t(sectors_) + std::size_t(k); }
+
+  int rings_ = 0, sectors_ = 0;
+  std::vector<double> ring_tangent_;   ///< T_j
+};
+
+}  // namespace tempolux
