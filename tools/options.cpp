@@ -152,6 +152,10 @@ void Tool::common_options(unsigned flags) {
         ->type_name("FILE");
     left_out(
         app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
+    app.add_option("--max-texture", common.max_texture, "reduce images of textures to this many pixels on a side")
+        ->type_name("N")
+        ->check(CLI::Range(1, 16384))
+        ->capture_default_str();
     left_out(app.add_flag("--allow-outside", common.allow_outside,
                           "follow file names that leave the scene's folder"));
   }

@@ -10,6 +10,7 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   GltfOptions options;
   options.allow_outside = common.allow_outside;
   options.animation = common.animation;
+  options.textures.max_side = common.max_texture;
   scene_ = load_gltf(path, options);
   if (needs & light) require_lights(scene_);
   if (needs & a_camera) scene_.camera_node(common.camera);
@@ -20,6 +21,12 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   time_.light_units = common.light_units;
   tool.say(path + ": light units " + common.light_units + ": punctual lights " +
            (common.light_units == "spec" ? "divided by 683" : "as they stand, factor 1"));
+}
+
+SceneInput::~SceneInput() {
+  if (!scene_.images) return;
+  tool_.stats().count("textures", double(scene_.images->decoded_count()));
+  tool_.stats().count("texture_bytes", double(scene_.images->decoded_bytes()));
 }
 
 void SceneInput::enter_segment(int frame) {

@@ -22,6 +22,10 @@ class SceneInput {
   enum Needs : unsigned { nothing = 0, light = 1, a_camera = 2 };
   SceneInput(Tool& tool, const std::string& path, unsigned needs);
 
+  /// Counts the textures that were looked at, for stats.
+  ~SceneInput();
+  SceneInput(const SceneInput&) = delete;
+
   const Scene& scene() const { return scene_; }
   const TimeOptions& time() const { return time_; }
   /// The scene at a frame; frames beyond the animation hold its end, with one warning.

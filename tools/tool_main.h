@@ -58,6 +58,7 @@ struct Common {
   std::string stats_file, dep_file;      ///< "": none
   std::vector<std::string> state_files;  ///< listed in the depfile instead of the scene's files
   std::uint64_t max_memory_bytes = 0;    ///< 0: no limit
+  int max_texture = 16384;               ///< pixels on a side
   bool allow_stale = false, allow_outside = false, quiet = false, no_clobber = false;
   int verbose = 0;
 

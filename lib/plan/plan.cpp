@@ -11,6 +11,7 @@
 #include "formats/hash.h"
 #include "lib/light/lights.h"
 #include "lib/material/bsdf.h"
+#include "lib/material/surface_material.h"
 #include "lib/scene/animate.h"
 
 namespace tempolux {
@@ -199,7 +200,8 @@ void plan_stages(const Scene& scene, Plan& plan) {
     bool is_diffuse = false, is_specular = false;
     for (const std::vector<Material>& materials : at_frames) {
       const Bsdf bsdf(materials[material]);
-      is_diffuse = is_diffuse || bsdf.has_diffuse();
+      is_diffuse = is_diffuse || bsdf.has_diffuse() ||
+                   (materials[material].textures && may_have_lambert(materials[material]));
       is_specular = is_specular || bsdf.has_specular();
     }
     diffuse += is_diffuse;
