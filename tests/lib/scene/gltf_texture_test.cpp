@@ -124,7 +124,10 @@ TEST(GltfTexture, AlphaModesAndUnlit) {
 }
 
 TEST(GltfTexture, TheMaterialsHashKnowsTheBytesAndHowTheyAreLaidOn) {
-  const auto hash = [](const GltfMaker& maker) { return materials_hash(maker.load()); };
+  const auto hash = [](const GltfMaker& maker) {
+    const Scene scene = maker.load();
+    return materials_hash(scene, scene.materials);
+  };
   const GltfMaker maker = textured({{"uri", data_uri(small_png())}});
   const std::string first = hash(maker);
   GltfMaker other = maker;
