@@ -253,7 +253,9 @@ TEST(Tracer, AnInstanceIsTheSameSurfaceAsACopy) {
       // the same hit is the same point to the last bit; a hit found in the instance's space is off by some ulp
       EXPECT_TRUE(p.position == r.position && p.normal == r.normal && p.normal_geometric == r.normal_geometric);
       differing += a.triangle != b.triangle;
-      if (a.triangle == b.triangle) EXPECT_LT(length(p.position - q.position), 1e-5f * size + 1e-6f * length(inside));
+      if (a.triangle == b.triangle) {
+        EXPECT_LT(length(p.position - q.position), 1e-5f * size + 1e-6f * length(inside));
+      }
     }
     EXPECT_LE(differing, 100) << size;  // rays along edges
   }
