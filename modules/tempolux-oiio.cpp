@@ -1,4 +1,4 @@
-// tempolux-oiio -- reads Radiance HDR, JPEG and TIFF through OpenImageIO; opened by lib/image/any_io.cpp at
+// tempolux-oiio -- reads JPEG and TIFF through OpenImageIO; opened by lib/image/any_io.cpp at
 // need.
 //
 // A shared object of its own because linking Debian's OpenImageIO costs 0.4 s and 130 MB at every start.
@@ -28,7 +28,7 @@ std::int32_t read(ImageModuleRequest& request) {
   using namespace tempolux;
   const auto bad = [&](const std::string& text) { return fail(request, image_module_bad_input, text); };
   const std::string format = request.format;
-  if (format != "hdr" && format != "jpeg" && format != "tiff")
+  if (format != "jpeg" && format != "tiff")
     return bad("format " + format + " is not one this module opens");
 
   // Limits before any file is touched. No plugin folders, no threads of its own.

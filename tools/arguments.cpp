@@ -218,6 +218,21 @@ void parse_size(const std::string& text, int& width, int& height) {
   width = w;
 }
 
+std::array<float, 3> parse_color(const std::string& text) {
+  std::array<float, 3> color{};
+  std::string_view rest = text;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const std::string_view part = rest.substr(0, rest.find(','));
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), color[channel]);
+    if (error != std::errc{} || end != part.data() + part.size() || !(color[channel] >= 0 && color[channel] <= 1e30f))
+      bad(text, "not a colour; write R,G,B, three numbers from 0 on, such as 0.2,0.3,0.5, or one for grey");
+    if (channel == 0 && part.size() == rest.size()) return {color[0], color[0], color[0]};
+    rest.remove_prefix(std::min(rest.size(), part.size() + 1));
+  }
+  if (!rest.empty() || text.back() == ',') bad(text, "not a colour; write R,G,B, such as 0.2,0.3,0.5");
+  return color;
+}
+
 std::vector<std::string> parse_list(const std::string& text, const std::vector<std::string>& allowed) {
   std::string known;
   for (const std::string& word : allowed) known += (known.empty() ? "" : ", ") + word;

@@ -1,6 +1,7 @@
 // tools/arguments.h -- what stands on a command line, as values: frames, names, counts, sizes, lists.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ std::uint64_t parse_bytes(const std::string& text);
 
 /// "640x360". Throws InputError; each from 1 to 65536.
 void parse_size(const std::string& text, int& width, int& height);
+
+/// "0.2,0.3,0.5" or "1" for all three: finite, from 0 to 1e30. Throws InputError.
+std::array<float, 3> parse_color(const std::string& text);
 
 /// "direct,caustic": words of `allowed`, at least one, none twice; returned in the order of `allowed`, so
 /// that equal sets are equal lists. Throws InputError naming the unknown word and the words there are.

@@ -102,6 +102,39 @@ std::string version_text(const std::string& tool) {
          libraries + '\n';
 }
 
+void Tool::environment_options() {
+  CLI::App& app = state_->app;
+  Common& common = state_->common;
+  CLI::Option* file =
+      app.add_option("--environment", common.environment,
+                     "latitude-longitude map of the light around the scene, .hdr or .exr: its middle is +Z, its top +Y; "
+                     "maps made for Blender's axes want --environment-rotation 90")
+          ->type_name("FILE");
+  CLI::Option* color = parsed_option(app, "--environment-color", "the same light from all around, W/m^2/sr, instead of a map",
+                                     "", [&common](const std::string& text) { common.environment_color = parse_color(text); })
+                           ->type_name("R,G,B")
+                           ->excludes(file);
+  const auto needs_one = [file, color](const CLI::Option* option) {
+    if (option->count() > 0 && file->count() == 0 && color->count() == 0)
+      throw CLI::RequiresError(option->get_name(), "--environment or --environment-color");
+  };
+  CLI::Option* strength = app.add_option("--environment-strength", common.environment_strength,
+                                         "factor of its radiance: what a pixel of value 1 emits, W/m^2/sr")
+                              ->type_name("X")
+                              ->capture_default_str()
+                              ->check(number_between(0, 1e30, "from 0 to 1e30"));
+  CLI::Option* rotation =
+      app.add_option("--environment-rotation", common.environment_rotation_deg,
+                     "turns the map about +Y, from +Z towards +X, degrees")
+          ->type_name("DEG")
+          ->capture_default_str()
+          ->check(number_between(-1e6, 1e6, "from -1000000 to 1000000"));
+  app.parse_complete_callback([=] {
+    needs_one(strength);
+    needs_one(rotation);
+  });
+}
+
 void Tool::common_options(unsigned flags) {
   CLI::App& app = state_->app;
   Common& common = state_->common;
@@ -147,6 +180,7 @@ void Tool::common_options(unsigned flags) {
         ->type_name("UNITS")
         ->capture_default_str()
         ->check(CLI::IsMember({"raw", "spec"}));
+    environment_options();
     left_out(app.add_option("--state", common.state_files,
                             "state files of scene-plan, listed by --depfile instead of the scene's files"))
         ->type_name("FILE");

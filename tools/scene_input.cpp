@@ -12,6 +12,7 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   options.animation = common.animation;
   options.textures.max_side = common.max_texture;
   scene_ = load_gltf(path, options);
+  add_environment();
   if (needs & light) require_lights(scene_);
   if (needs & a_camera) scene_.camera_node(common.camera);
   for (const std::string& warning : scene_.warnings) tool.warn(warning);
@@ -27,6 +28,22 @@ SceneInput::~SceneInput() {
   if (!scene_.images) return;
   tool_.stats().count("textures", double(scene_.images->decoded_count()));
   tool_.stats().count("texture_bytes", double(scene_.images->decoded_bytes()));
+}
+
+void SceneInput::add_environment() {
+  const Common& common = tool_.common();
+  const EnvironmentOptions options{common.environment_strength, common.environment_rotation_deg};
+  if (common.environment_color) {
+    const auto& color = *common.environment_color;
+    scene_.environment =
+        std::make_shared<const Environment>(uniform_environment(Rgb(color[0], color[1], color[2]), options));
+  } else if (!common.environment.empty()) {
+    scene_.environment = std::make_shared<const Environment>(load_environment(common.environment, options));
+    scene_.files.push_back(common.environment);
+  }
+  if (!scene_.environment) return;
+  for (const std::string& warning : scene_.environment->warnings) scene_.warnings.push_back(warning);
+  if (!scene_.environment->emits()) tool_.warn(scene_.environment->path + ": is black: it lights nothing");
 }
 
 void SceneInput::enter_segment(int frame) {

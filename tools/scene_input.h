@@ -34,6 +34,7 @@ class SceneInput {
   const EmissionTable& emission(int frame);
 
  private:
+  void add_environment();
   void enter_segment(int frame);
 
   Tool& tool_;

@@ -12,6 +12,7 @@
 //     }
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -38,7 +39,7 @@ enum ExitCode {
 };
 
 enum CommonOptions : unsigned {
-  uses_scene = 1,   ///< --fps --segment --animation --light-units --state --allow-stale --allow-outside
+  uses_scene = 1,   ///< --fps --segment --animation --light-units --environment... --state --allow-stale --allow-outside
   uses_seed = 2,    ///< --seed --seed-mode
   uses_camera = 4,  ///< --camera
   uses_frames = 8,  ///< --frame N or --frames SPEC, into Common::frames
@@ -55,6 +56,9 @@ struct Common {
   int segment_length = 24;
   std::string light_units = "raw";
   std::string animation;  ///< name of the one to play; "": all
+  std::string environment;                              ///< file; "": none
+  std::optional<std::array<float, 3>> environment_color;
+  double environment_strength = 1, environment_rotation_deg = 0;
   std::string stats_file, dep_file;      ///< "": none
   std::vector<std::string> state_files;  ///< listed in the depfile instead of the scene's files
   std::uint64_t max_memory_bytes = 0;    ///< 0: no limit
@@ -111,6 +115,8 @@ class Tool {
   const std::string& name() const;
 
  private:
+  void environment_options();
+
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -13,6 +13,7 @@
 #include "formats/error.h"
 #include "lib/image/byte_file.h"
 #include "lib/image/exr_io.h"
+#include "lib/image/hdr_io.h"
 #include "lib/image/module.h"
 #include "lib/image/png_io.h"
 
@@ -21,7 +22,7 @@ namespace {
 
 constexpr const char* kModuleFile = "tempolux-oiio.so";
 
-/// "exr", "png", or OpenImageIO's name of a format the module may open; "" for everything else.
+/// "exr", "hdr", "png", or OpenImageIO's name of a format the module may open; "" for everything else.
 std::string format_of(const ByteFile& file) {
   std::array<char, 11> start{};
   file.read_at(0, start.data(), std::size_t(std::min<std::uint64_t>(start.size(), file.size())));
@@ -134,6 +135,7 @@ std::vector<std::string> default_module_folders() {
 Image load_image(const std::string& path, const ImageReadOptions& options) {
   const std::string format = format_of(ByteFile(path));
   if (format == "exr") return load_exr(path, {options.max_pixels, false});
+  if (format == "hdr") return load_hdr(path, options.max_pixels);
   if (format == "png") return load_png(path, options.max_pixels);
   if (format.empty())
     throw InputError(

@@ -1,5 +1,5 @@
-// lib/image/any_io.h -- images of any format we read: EXR and PNG here, others through a module opened at
-// need.
+// lib/image/any_io.h -- images of any format we read: EXR, PNG and Radiance HDR here, others through a module
+// opened at need.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct ImageReadOptions {
 };
 
 /// Reads an image as linear Rec. 709 R, G, B (and whatever else an EXR has). The first bytes decide the
-/// format, not the name: OpenEXR and PNG are read here, Radiance HDR, JPEG and TIFF by the module
+/// format, not the name: OpenEXR, PNG and Radiance HDR are read here, JPEG and TIFF by the module
 /// tempolux-oiio.so, which is loaded the first time and stays; everything else is refused. Samples of 8 or 16
 /// bits are sRGB and become linear, float samples are linear already; "tempolux:source" says which. One
 /// channel is grey.

@@ -11,7 +11,7 @@ inline constexpr std::uint32_t kImageModuleAbi = 1;
 struct ImageModuleRequest {
   std::uint32_t abi;  ///< kImageModuleAbi; another: refused
   const char* path;
-  const char* format;  ///< OpenImageIO's name: "hdr", "jpeg" or "tiff"; nothing else is opened
+  const char* format;  ///< OpenImageIO's name: "jpeg" or "tiff"; nothing else is opened
   std::uint64_t max_pixels;
   std::uint32_t max_channels;
   /// Called once, when the size is known and allowed: width*height*channels floats, row 0 on top, channels of

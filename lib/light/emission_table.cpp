@@ -1,5 +1,6 @@
 // The emission table of a segment, and the slots it stands for.
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "lib/core/check.h"
@@ -9,6 +10,9 @@
 
 namespace tempolux {
 namespace {
+
+constexpr double kPiD = std::numbers::pi;
+constexpr double kLeastShare = 0.2;  ///< of the environment, and of all other lights
 
 double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }
 
@@ -25,6 +29,16 @@ void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vect
     for (std::uint32_t t = 0; t < surface.primitive->triangles.size(); ++t) join(TriangleLight(frame, s, t).flux());
   }
   for (const PlacedLight& placed : frame.lights) join(punctual_flux(placed.light, table.sphere_radius));
+}
+
+/// Adds the environment's weight to those of all other slots.
+void add_environment(const EmissionTable& table, std::vector<double>& weights) {
+  const double disc = kPiD * table.sphere_radius * table.sphere_radius;
+  double weight = emission_weight(table.environment->integral() * disc), others = 0;
+  for (const double w : weights) others += w;
+  if (weight > 0 && others > 0)
+    weight = std::clamp(weight, others * kLeastShare / (1 - kLeastShare), others * (1 - kLeastShare) / kLeastShare);
+  weights.push_back(weight);
 }
 
 /// Whether the flux of any slot may differ between two frames.
@@ -56,6 +70,10 @@ EmissionTable build_emission_table(std::span<const SceneFrame> frames) {
   for (const SceneFrame& frame : frames) {
     TEMPOLUX_CHECK(frame.surfaces.size() == any.surfaces.size() && frame.lights.size() == any.lights.size());
     join_weights(frame, table, weights);
+  }
+  if (any.environment) {
+    table.environment = std::make_shared<const EnvironmentLight>(*any.environment);
+    add_environment(table, weights);
   }
   double total = 0;
   for (const double w : weights) total += w;

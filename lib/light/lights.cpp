@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 #include "formats/error.h"
@@ -88,25 +89,33 @@ struct Lights::Impl {
   std::vector<std::uint32_t> tree_index;  // by slot: its light in the tree, kNone: emits nothing
   std::vector<std::uint32_t> tree_slot;   // and back
   std::vector<std::uint32_t> suns;        // indices of directional lights that shine
+  std::shared_ptr<const EnvironmentLight> environment;
+  double environment_weight = 0;  // irradiance by the environment, the mean over all normals; 0: none or black
   LightTree tree{{}};
 
   Impl(const SceneFrame& frame_, const EmissionTable& table);
   void add_slots(const EmissionTable& table);
   void build_tree();
 
-  double sun_share(Vec3 point, Vec3 normal, double& total) const;
-  bool sample_sun(Vec3 point, Vec3 normal, double u, double share, double total, LightSample& s) const;
+  double distant_share(Vec3 point, Vec3 normal, double& total) const;
+  bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
+                      LightSample& s) const;
+  bool sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const;
+  double disc_area() const { return std::numbers::pi * sphere_radius * sphere_radius; }
+  float distance_beyond() const { return float(sphere_radius > 0 ? 2 * sphere_radius : 1); }
   bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;
   /// Radiance of a point of a slot's triangle, by barycentrics.
   Rgb emitted_at(std::size_t slot, double b1, double b2) const {
     return triangles[slot].emitted_at(*frame, slots[slot].surface, slots[slot].triangle, b1, b2);
   }
   Rgbd emit_triangle(std::size_t slot, const double u[4], PhotonEmission& e) const;
+  Rgbd emit_environment(const double u[4], PhotonEmission& e) const;
   void emit_punctual(const PlacedLight& placed, const double u[4], PhotonEmission& e) const;
 };
 
 Lights::Impl::Impl(const SceneFrame& frame_, const EmissionTable& table)
-    : frame(&frame_), sphere_centre(Vec3(table.sphere_centre)), sphere_radius(table.sphere_radius) {
+    : frame(&frame_), sphere_centre(Vec3(table.sphere_centre)), sphere_radius(table.sphere_radius), environment(table.environment) {
+  if (environment) environment_weight = max_component(environment->integral()) / 4;
   add_slots(table);
   build_tree();
 }
@@ -123,6 +132,7 @@ void Lights::Impl::add_slots(const EmissionTable& table) {
   }
   for (std::uint32_t i = 0; i < frame->lights.size(); ++i)
     slots.push_back({slot_kind(frame->lights[i].light.kind), kNone, 0, i, 0});
+  if (environment) slots.push_back({EmissionSlot::Kind::environment, kNone, 0, kNone, 0});
   TEMPOLUX_CHECK(slots.size() == table.probability.size());
   double sum = 0;
   cumulative.reserve(slots.size());
@@ -140,6 +150,7 @@ void Lights::Impl::build_tree() {
       if (!triangles[i].emits()) continue;
       bounds.push_back(bounds_of(triangles[i]));
     } else {
+      if (slots[i].kind == EmissionSlot::Kind::environment) continue;
       const PlacedLight& placed = frame->lights[slots[i].light];
       if (!(max_component(placed.light.intensity) > 0)) continue;
       if (slots[i].kind == EmissionSlot::Kind::directional) {
@@ -155,7 +166,7 @@ void Lights::Impl::build_tree() {
 }
 
 Lights::Lights(const SceneFrame& frame, const EmissionTable& table)
-    : impl_(std::make_unique<Impl>(frame, table)) {}
+    : impl_(std::make_unique<Impl>(frame, table)), environment_(impl_->environment.get()) {}
 Lights::~Lights() = default;
 Lights::Lights(Lights&&) noexcept = default;
 
@@ -168,24 +179,29 @@ Rgbd Lights::total_flux() const {
   for (const TriangleLight& t : impl_->triangles) sum += t.flux();
   for (const PlacedLight& placed : impl_->frame->lights)
     sum += punctual_flux(placed.light, impl_->sphere_radius);
+  if (environment_) sum += environment_->integral() * impl_->disc_area();
   return sum;
 }
 
-/// Probability of choosing a directional light: its share of an estimate of the irradiance, at least a fifth
-/// for either kind that can be seen at all. total: the directional lights' weights.
-double Lights::Impl::sun_share(Vec3 point, Vec3 normal, double& total) const {
-  total = 0;
-  if (suns.empty()) return 0;
+/// Probability of choosing a light from infinitely far: their share of an estimate of the irradiance, at least a
+/// fifth for either kind that can be seen at all. total: the weights of the environment and the directional lights.
+double Lights::Impl::distant_share(Vec3 point, Vec3 normal, double& total) const {
+  total = environment_weight;
+  if (suns.empty() && !(total > 0)) return 0;
   for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
   if (!(total > 0)) return 0;
   const double others = tree.importance(point, normal);
   return others > 0 ? std::clamp(total / (total + others), 0.2, 0.8) : 1;
 }
 
-bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double share, double total,
-                              LightSample& s) const {
-  const PlacedLight* chosen = nullptr;
+/// u in [0, 1) chooses among them: the environment first.
+bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
+                                  LightSample& s) const {
   double weight = 0, left = u * total;
+  if (left < environment_weight)
+    return sample_environment(point, u_float, left / environment_weight, share * environment_weight / total, s);
+  left -= environment_weight;
+  const PlacedLight* chosen = nullptr;
   for (const std::uint32_t i : suns) {
     const double w = sun_weight(frame->lights[i], normal);
     if (!(w > 0)) continue;
@@ -196,10 +212,25 @@ bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double share, d
   }
   if (!chosen) return false;
   s.wi = -chosen->direction;
-  s.position = point + s.wi * float(sphere_radius > 0 ? 2 * sphere_radius : 1);
+  s.position = point + s.wi * distance_beyond();
   s.radiance = Rgb(Rgbd(chosen->light.intensity) / (share * weight / total));
   s.delta = true;
   return true;
+}
+
+/// u_float: what u comes from. Where its 24 bits are used up, bits of the other coordinate take their place.
+bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const {
+  const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
+  EnvironmentLight::Sample found;
+  if (!environment->sample(std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
+                           std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53), found))
+    return false;
+  const double pdf = found.pdf_solid_angle * probability;
+  s.wi = found.direction;
+  s.position = point + s.wi * distance_beyond();
+  s.radiance = Rgb(Rgbd(found.radiance) / pdf);
+  s.pdf_solid_angle = float(pdf);
+  return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
 }
 
 /// A point or spot light.
@@ -232,9 +263,12 @@ bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool 
   const Impl& m = *this;
   sample = {};
   double total = 0;
-  const double share = m.sun_share(point, normal, total);
-  if (u_choice < share)
-    return m.sample_sun(point, normal, u_choice / share, share, total, sample) && is_finite(sample.radiance);
+  const double share = m.distant_share(point, normal, total);
+  if (u_choice < share) {
+    // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
+    return m.sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, total, sample) &&
+           is_finite(sample.radiance);
+  }
   if (m.tree.empty()) return false;
   LightTree::Choice choice;
   const float left = to_float(stretch(u_choice, share, 1 - share));
@@ -270,8 +304,17 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
   if (!(on_triangle > 0)) return 0;
   double total = 0;
-  const double share = m.sun_share(point, normal, total);
+  const double share = m.distant_share(point, normal, total);
   const float pdf = float(on_triangle * (1 - share) * m.tree.probability(point, normal, light));
+  return pdf < INFINITY ? pdf : 0;
+}
+
+float Lights::pdf_environment(Vec3 point, Vec3 normal, Vec3 direction) const {
+  if (!(impl_->environment_weight > 0)) return 0;
+  double total = 0;
+  const double share = impl_->distant_share(point, normal, total);
+  const float pdf =
+      float(environment_->pdf_solid_angle(direction) * share * impl_->environment_weight / total);
   return pdf < INFINITY ? pdf : 0;
 }
 
@@ -319,6 +362,20 @@ void Lights::Impl::emit_punctual(const PlacedLight& placed, const double u[4], P
   e.origin = sphere_centre + frame_of_light.to_world({disc.x * r, disc.y * r, -r});
 }
 
+/// Returns radiance / density x pi R^2.
+Rgbd Lights::Impl::emit_environment(const double u[4], PhotonEmission& e) const {
+  EnvironmentLight::Sample from;
+  if (!environment->sample(u[0], u[1], from)) {
+    e.travel = {0, -1, 0};
+    return {};
+  }
+  const Vec2 disc = sample_disc_concentric({to_float(u[2]), to_float(u[3])});
+  const float r = float(sphere_radius);
+  e.travel = -from.direction;
+  e.origin = sphere_centre + Frame(e.travel).to_world({disc.x * r, disc.y * r, -r});
+  return Rgbd(from.radiance) * (disc_area() / from.pdf_solid_angle);
+}
+
 PhotonEmission Lights::emit(const double u[4]) const {
   const Impl& m = *impl_;
   TEMPOLUX_CHECK(!m.slots.empty());
@@ -334,6 +391,8 @@ PhotonEmission Lights::emit(const double u[4]) const {
   Rgbd flux;
   if (slot < m.triangles.size()) {
     flux = m.emit_triangle(slot, stretched, e);
+  } else if (m.slots[slot].kind == EmissionSlot::Kind::environment) {
+    flux = m.emit_environment(stretched, e);
   } else {
     const PlacedLight& placed = m.frame->lights[m.slots[slot].light];
     flux = punctual_flux(placed.light, m.sphere_radius);

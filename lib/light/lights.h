@@ -8,16 +8,17 @@
 #include <vector>
 
 #include "lib/core/vec.h"
+#include "lib/light/environment_light.h"
 #include "lib/scene/at_frame.h"
 #include "lib/scene/surface_point.h"
 
 namespace tempolux {
 
 /// One slot of the emission table: an emissive triangle (both sides, twice the flux, if its material is
-/// double sided) or a punctual light. Slots and probabilities are frozen over a segment: a lamp that dims or
+/// double sided), a punctual light, or the environment. Slots and probabilities are frozen over a segment: a lamp that dims or
 /// moves keeps its slot and changes the photon's weight.
 struct EmissionSlot {
-  enum class Kind : std::uint8_t { triangle, point, spot, directional };
+  enum class Kind : std::uint8_t { triangle, point, spot, directional, environment };
   Kind kind = Kind::triangle;
   std::uint32_t surface = kNone, triangle = 0;  ///< of a triangle
   std::uint32_t light = kNone;                  ///< index into SceneFrame::lights
@@ -25,15 +26,18 @@ struct EmissionSlot {
 };
 
 /// What is frozen over a segment. Slots are the triangles of `surfaces`, one after the other, then the
-/// frame's punctual lights; probability is proportional to the maximum flux over the segment's frames
+/// frame's punctual lights, then the environment if there is one; probability is proportional to the maximum flux over the segment's frames
 /// (luminance, but at least 5 % of the largest channel, so that blue lamps count; a directional light's flux
-/// is its irradiance times the area pi R^2 of the scene sphere's disc). A triangle whose emission a texture
-/// makes vary counts with its mean.
+/// is its irradiance times the area pi R^2 of the scene sphere's disc, the environment's pi R^2 times the integral
+/// of its radiance). Most light from outside may never come in, or what is inside may hardly matter: where there
+/// is an environment besides other lights, either gets at least a fifth. A triangle whose emission a
+/// texture makes vary counts with its mean.
 struct EmissionTable {
   std::vector<std::uint32_t> surfaces;  ///< that emit at some frame: indices into SceneFrame::surfaces
   std::vector<double> probability;      ///< by slot, sums to 1; equal if nothing ever emits
   Vec3d sphere_centre{};                ///< scene sphere over the segment, scene space, m
   double sphere_radius = 0;
+  std::shared_ptr<const EnvironmentLight> environment;  ///< nullptr: none; its Environment must outlive it
 };
 
 /// Of all frames of the segment if something that emits moves, else of one.
@@ -44,9 +48,9 @@ EmissionTable build_emission_table(std::span<const SceneFrame> frames);
 
 struct LightSample {
   Vec3 wi{};                  ///< unit, from the point towards the light
-  Vec3 position{};            ///< on the light; for directional lights beyond the scene
+  Vec3 position{};            ///< on the light; for directional lights and the environment beyond the scene
   float position_offset = 0;  ///< m: the shadow ray ends this far before position
-  Rgb radiance{0.0f};         ///< L / pdf of an area light, I / d^2 or E of a delta light: multiply by f cos
+  Rgb radiance{0.0f};         ///< L / pdf of an area light or the environment, I / d^2 or E of a delta light: multiply by f cos
   float pdf_solid_angle = 0;  ///< [1/sr], choice included; 0 if delta
   bool delta = false;
 };
@@ -69,7 +73,7 @@ class Lights {
   bool empty() const;
   std::size_t count() const;
   const std::vector<EmissionSlot>& slots() const;
-  /// Flux of all lights [W]; directional lights by the scene sphere's disc.
+  /// Flux of all lights [W]; directional lights and the environment by the scene sphere's disc.
   Rgbd total_flux() const;
 
   /// Chooses a light for the point (u_choice; by an importance that knows distance and orientation, in
@@ -88,21 +92,31 @@ class Lights {
   /// from the back of a one-sided emitter.
   Rgb emitted(const SurfacePoint& hit, Vec3 wo, float width) const;
 
+  bool has_environment() const { return environment_ != nullptr; }
+  /// Radiance that arrives from `direction` (unit) where nothing is in the way; only with an environment.
+  Rgb environment(Vec3 direction) const { return environment_->radiance(direction); }
+  /// Density per solid angle with which sample() at (point, normal) would have chosen this direction of the
+  /// environment; only with one.
+  float pdf_environment(Vec3 point, Vec3 normal, Vec3 direction) const;
+
   /// A photon from the frozen table: u[0] chooses the slot and, stretched, is the first coordinate on it,
   /// u[1] the second; u[2], u[3] the direction (of a two-sided triangle the lower half of u[2] leaves the
   /// front). Point and spot lights have no place to choose and take u[0], u[1] for the direction, directional
-  /// lights for the place on the scene sphere's disc. All maps keep neighbours together. Not for an empty
+  /// lights for the place on the scene sphere's disc; the environment takes them for the direction and u[2], u[3]
+  /// for the place on the disc. All maps keep neighbours together. Not for an empty
   /// table.
   ///
   /// flux = (what the slot emits at this frame) / probability: the mean over u is total_flux(). Triangle: pi
   /// L A (twice if two-sided), by the cosine; point: 4 pi I, uniform; spot: as its intensity; directional: E
-  /// pi R^2, origin on the disc of radius R outside the scene. Zero flux for what emits nothing at this
+  /// pi R^2, origin on the disc of radius R outside the scene; environment: the same with radiance / density of
+  /// the direction for E. Zero flux for what emits nothing at this
   /// frame. InputError if flux / probability is beyond float32.
   PhotonEmission emit(const double u[4]) const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  const EnvironmentLight* environment_ = nullptr;
 };
 
 }  // namespace tempolux

@@ -233,6 +233,7 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   Plan plan;
   const Node& camera = scene.nodes.at(std::size_t(camera_node));
   plan.camera = camera.name.empty() ? "node " + std::to_string(camera.source_index) : camera.name;
+  if (scene.environment) plan.environment = scene.environment->path;
   plan.time = options;
   std::set<int> seen;
   for (const int frame : frames)

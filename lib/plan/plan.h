@@ -50,6 +50,7 @@ struct Stage {
 
 struct Plan {
   std::string camera;               ///< name of the camera's node
+  std::string environment;          ///< file of the light around the scene, or its option; "": none
   TimeOptions time;
   std::vector<int> frames;          ///< those asked for, in the order asked, each once
   std::vector<PlannedSegment> segments;  ///< by first frame

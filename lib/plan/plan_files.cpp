@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -85,6 +86,7 @@ std::string plan_json(const Plan& plan, const std::string& scene_name, const std
                {"light_units", plan.time.light_units},
                {"frames", plan.frames},
                {"photon_kinds", plan.photon_kinds}};
+  if (!plan.environment.empty()) json["environment"] = std::filesystem::path(plan.environment).filename().string();
   json["stages"] = Json::array();
   for (const Stage& stage : plan.stages)
     json["stages"].push_back({{"stage", stage.name}, {"needed", stage.needed}, {"because", stage.because}});

@@ -63,6 +63,15 @@ void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, co
   result[layer] += throughput * emitted * weight;
 }
 
+/// The environment where the ray leaves the scene, weighed likewise.
+void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter& last, const Rgb& throughput,
+                     Layer layer, Layers& result) {
+  const float weight =
+      last.weighed ? mis_power(last.pdf_solid_angle, scene.lights.pdf_environment(last.position, last.normal, direction))
+                   : 1.0f;
+  result[layer] += throughput * scene.lights.environment(direction) * weight;
+}
+
 }  // namespace
 
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
@@ -77,7 +86,10 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
 
   for (std::uint32_t bounce = 0;; ++bounce) {
     Hit hit;
-    if (!scene.tracer.intersect(ray, hit)) break;
+    if (!scene.tracer.intersect(ray, hit)) {
+      if (scene.lights.has_environment()) add_environment(scene, ray.direction, last, throughput, path.layer(), result);
+      break;
+    }
     result.coverage = 1;
     SurfacePoint point = scene.tracer.surface_point(hit);
     const Vec3 wo = -ray.direction;

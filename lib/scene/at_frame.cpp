@@ -94,6 +94,7 @@ SceneFrame SegmentScene::at(int frame) const {
   at.images = scene_->images;
   for (std::size_t c = 0; c < scene_->cameras.size(); ++c) at.cameras.push_back(animator_->camera(c, at.time_s));
   at.lights = place_lights(*scene_, *animator_, at.time_s, segment_.origin, world, options_);
+  at.environment = scene_->environment.get();
   at.origin = segment_.origin;
   at.bounds = bounds_;
   at.world_from_node = world;

@@ -119,7 +119,7 @@ struct SceneHashes {
   std::string camera;                       ///< never part of an identity
   std::string static_geometry;              ///< of the segment
   std::string moving_geometry;              ///< at this frame
-  std::string lights;                       ///< punctual lights and which triangles emit what, at this frame
+  std::string lights;                       ///< punctual lights, which triangles emit what at this frame, environment
   std::string materials;
   std::string media;
 };
@@ -135,6 +135,7 @@ struct SceneFrame {
   std::vector<Material> materials;          ///< evaluated
   std::shared_ptr<const TextureImages> images;   ///< of the materials' textures; null: there are none
   std::vector<PlacedLight> lights;
+  const Environment* environment = nullptr; ///< the scene's; nullptr: none
   Vec3d origin{};                           ///< world = origin + scene space
   Box3 bounds;                              ///< of the whole segment, scene space
   std::vector<Affine> world_from_node;      ///< per node, at this frame

@@ -28,6 +28,7 @@ int Scene::camera_node(const std::string& name) const {
 }
 
 void require_lights(const Scene& scene) {
+  if (scene.environment && scene.environment->emits()) return;
   const auto emits = [&](const Primitive& primitive) {
     return scene.materials[primitive.material].emissive();
   };
@@ -43,7 +44,7 @@ void require_lights(const Scene& scene) {
   throw InputError(
       scene.path +
       ": lights: nothing in the scene emits light; in Blender's glTF exporter tick Include > Punctual "
-      "Lights, and note that it leaves out area lights and the world: use emissive meshes instead");
+      "Lights, and note that it leaves out area lights and the world: use emissive meshes, and --environment FILE.hdr");
 }
 
 }  // namespace tempolux

@@ -14,6 +14,7 @@
 #include "lib/core/affine.h"
 #include "lib/core/vec.h"
 #include "lib/image/texture_wrap.h"
+#include "lib/scene/environment.h"
 
 namespace tempolux {
 
@@ -191,6 +192,7 @@ struct Scene {
   std::shared_ptr<const TextureImages> images;  ///< those that a material's texture names; null: there are none
   std::vector<Camera> cameras;
   std::vector<PunctualLight> lights;
+  std::shared_ptr<const Environment> environment;  ///< nullptr: none. glTF has none, callers set it
   std::vector<Skin> skins;
   std::vector<ColorFactors> emission_factors, light_factors;  ///< by material, by light, at rest
   std::vector<Animation> animations;        ///< all play together (GltfOptions::animation chose them)
@@ -204,8 +206,8 @@ struct Scene {
   int camera_node(const std::string& name) const;
 };
 
-/// Throws InputError, with the exporter box to tick, unless something in the scene emits: a punctual light
-/// or an emissive material on some triangle. For tools that cannot work without light.
+/// Throws InputError, with the exporter box to tick, unless something in the scene emits: a punctual light,
+/// an emissive material on some triangle, or its environment. For tools that cannot work without light.
 void require_lights(const Scene& scene);
 
 }  // namespace tempolux

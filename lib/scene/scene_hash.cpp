@@ -155,6 +155,7 @@ std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const Placed
       if (material.textures->emission.uv_set == 1) add_values(hasher, surface.primitive->uvs1);
     }
   }
+  if (scene.environment) hasher.add(std::string_view(scene.environment->hash));
   return hasher.hex();
 }
 

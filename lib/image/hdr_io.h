@@ -1,0 +1,21 @@
+// lib/image/hdr_io.h -- Radiance pictures (.hdr, .pic) to linear colour.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "lib/image/image.h"
+
+namespace tempolux {
+
+/// Reads a Radiance picture of FORMAT 32-bit_rle_rgbe, stored line by line from the top left (-Y H +X W), flat
+/// or run-length encoded either way, as linear R, G, B. A pixel of bytes (r, g, b, e) is (r, g, b) 2^(e - 136),
+/// zero where e is 0, divided by the product of the header's EXPOSURE lines (Ward, "Real Pixels", Graphics
+/// Gems II, 1991; the reference manual's page on the picture format). Never NaN, infinite or negative.
+///
+/// Sizes are checked against max_pixels and the file's bytes before anything is allocated by them. Throws
+/// InputError "FILE: byte N: WHAT; REMEDY" for XYZE colours, another order of pixels, and what is damaged or
+/// truncated.
+Image load_hdr(const std::string& path, std::uint64_t max_pixels);
+
+}  // namespace tempolux

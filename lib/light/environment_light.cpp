@@ -1,0 +1,180 @@
+#include "lib/light/environment_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lib/core/parallel.h"
+
+namespace tempolux {
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+constexpr double kUnits = 4294967295.0;  ///< what cells of a row share, less one each
+
+double lerp(double a, double b, double t) { return a + (b - a) * t; }
+
+/// x in [0, 1] with density in proportion to a (1 - x) + b x; uniform if both are 0.
+double sample_linear(double a, double b, double u) {
+  if (!(a + b > 0)) return u;
+  // The root of (b - a) x^2 / 2 + a x = u (a + b) / 2 in the form that does not cancel.
+  const double x = u * (a + b) / (a + std::sqrt(lerp(a * a, b * b, u)));
+  return std::clamp(x, 0.0, 1.0);
+}
+
+}  // namespace
+
+Rgb EnvironmentLight::Corners::radiance(double x, double y) const {
+  const float fx = float(x), fy = float(y);
+  return (upper_left * (1 - fx) + upper_right * fx) * (1 - fy) + (lower_left * (1 - fx) + lower_right * fx) * fy;
+}
+
+double EnvironmentLight::Corners::luminance(double x, double y) const {
+  const auto l = [](const Rgb& pixel) { return tempolux::luminance(Rgbd(pixel)); };
+  return lerp(lerp(l(upper_left), l(upper_right), x), lerp(l(lower_left), l(lower_right), x), y);
+}
+
+EnvironmentLight::EnvironmentLight(const Environment& environment)
+    : environment_(environment), width_(std::uint32_t(environment.width)), height_(std::uint32_t(environment.height)) {
+  integrate();
+  build_distribution();
+}
+
+double EnvironmentLight::polar(std::uint32_t row) const {
+  return row == 0 ? 0 : row > height_ ? kPiD : (row - 0.5) * kPiD / height_;
+}
+
+EnvironmentLight::Corners EnvironmentLight::corners(std::uint32_t row, std::uint32_t column) const {
+  const std::size_t upper = std::size_t(row == 0 ? 0 : row - 1) * width_;
+  const std::size_t lower = std::size_t(std::min(row, height_ - 1)) * width_;
+  const std::size_t right = column + 1 == width_ ? 0 : column + 1;
+  const std::vector<Rgb>& pixels = environment_.radiance;
+  return {pixels[upper + column], pixels[upper + right], pixels[lower + column], pixels[lower + right]};
+}
+
+/// The mean over a row is that of its pixels whatever the latitude; over latitude the hat functions are integrated
+/// with the sine: int (1 - t) sin = cos a - (sin b - sin a) / (b - a), int t sin = (sin b - sin a) / (b - a) - cos b.
+void EnvironmentLight::integrate() {
+  std::vector<double> weight(height_, 0.0);
+  for (std::uint32_t row = 0; row <= height_; ++row) {
+    const double a = polar(row), b = polar(row + 1), slope = (std::sin(b) - std::sin(a)) / (b - a);
+    weight[row == 0 ? 0 : row - 1] += std::cos(a) - slope;
+    weight[std::min(row, height_ - 1)] += slope - std::cos(b);
+  }
+  std::vector<Rgbd> mean(height_);
+  parallel_chunks(height_, 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t y = first; y < last; ++y) {
+      Rgbd sum;
+      for (std::uint32_t x = 0; x < width_; ++x) sum += Rgbd(environment_.radiance[y * width_ + x]);
+      mean[y] = sum / double(width_);
+    }
+  });
+  for (std::uint32_t y = 0; y < height_; ++y) integral_ += mean[y] * (2 * kPiD * weight[y]);
+}
+
+void EnvironmentLight::build_distribution() {
+  std::vector<double> row_weight(height_ + 1);
+  cell_end_.resize(std::size_t(height_ + 1) * width_);
+  parallel_chunks(height_ + 1, 16, [&](std::size_t first, std::size_t last) {
+    std::vector<double> weight(width_);
+    for (std::size_t row = first; row < last; ++row) {
+      double sum = 0;
+      for (std::uint32_t x = 0; x < width_; ++x)
+        sum += weight[x] = corners(std::uint32_t(row), x).luminance(0.5, 0.5);
+      const double a = polar(std::uint32_t(row)), b = polar(std::uint32_t(row) + 1);
+      row_weight[row] = sum * (std::cos(a) - std::cos(b));
+      const double scale = sum > 0 ? (kUnits - width_) / sum : 0;
+      std::uint32_t end = 0;
+      for (std::uint32_t x = 0; x < width_; ++x) {
+        if (weight[x] > 0) end += std::uint32_t(weight[x] * scale) + 1;
+        cell_end_[row * width_ + x] = end;
+      }
+    }
+  });
+  double total = 0, sum = 0;
+  for (const double w : row_weight) total += w;
+  row_end_.reserve(row_weight.size());
+  for (const double w : row_weight) row_end_.push_back(total > 0 ? (sum += w) / total : 0);
+}
+
+EnvironmentLight::Place EnvironmentLight::place_of(Vec3 direction) const {
+  const Vec3d d(direction);
+  const double polar_angle = std::atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y);
+  const double longitude = std::atan2(d.x, d.z) - environment_.rotation_rad;
+  // Columns from the first centre, in [0, width).
+  double along = (0.5 - longitude / (2 * kPiD)) * width_ - 0.5;
+  along -= std::floor(along / width_) * width_;
+  const double down = polar_angle / kPiD * height_ + 0.5;  // rows of cells, the caps at their lower and upper half
+  Place place{std::min(std::uint32_t(down), height_), std::min(std::uint32_t(along), width_ - 1), 0, 0};
+  place.x = std::clamp(along - place.column, 0.0, 1.0);
+  place.y = std::clamp(down - place.row, 0.0, 1.0);
+  return place;
+}
+
+Rgb EnvironmentLight::radiance(Vec3 direction) const {
+  const Place place = place_of(direction);
+  return corners(place.row, place.column).radiance(place.x, place.y);
+}
+
+double EnvironmentLight::probability(std::uint32_t row, std::uint32_t column) const {
+  const double of_row = row_end_[row] - (row > 0 ? row_end_[row - 1] : 0);
+  const std::uint32_t* ends = &cell_end_[std::size_t(row) * width_];
+  const std::uint32_t all = ends[width_ - 1], cell = ends[column] - (column > 0 ? ends[column - 1] : 0);
+  return all > 0 ? of_row * cell / all : 0;
+}
+
+/// A cap is uniform over its area, all else bilinear over longitude and latitude.
+double EnvironmentLight::pdf(const Place& place, double sin_polar) const {
+  const double of_cell = probability(place.row, place.column);
+  if (!(of_cell > 0)) return 0;
+  const Corners at = corners(place.row, place.column);
+  const double a = polar(place.row), b = polar(place.row + 1), width = 2 * kPiD / width_;
+  const double shape = at.luminance(place.x, place.y) / at.luminance(0.5, 0.5);
+  const double area = polar_cap(place.row) ? std::cos(a) - std::cos(b) : (b - a) * sin_polar;
+  return of_cell * shape / (area * width);
+}
+
+bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
+  if (!(row_end_.back() > 0)) return false;
+  const auto row_at = std::upper_bound(row_end_.begin(), row_end_.end() - 1, u1);
+  std::uint32_t row = std::uint32_t(row_at - row_end_.begin());
+  while (row > 0 && !(row_end_[row] > row_end_[row - 1])) --row;
+  const double row_first = row > 0 ? row_end_[row - 1] : 0;
+  const std::uint32_t* ends = &cell_end_[std::size_t(row) * width_];
+  const double units = u2 * ends[width_ - 1];
+  const std::uint32_t* cell_at = std::upper_bound(ends, ends + width_ - 1, std::uint32_t(units));
+  const auto column = std::uint32_t(cell_at - ends);
+  const double first = column > 0 ? ends[column - 1] : 0;
+
+  // In the cell: along it first, by the luminances of its left and right side, then across.
+  const Corners at = corners(row, column);
+  Place place{row, column, 0, 0};
+  const double along = std::clamp((units - first) / (ends[column] - first), 0.0, 1.0);
+  const double across = std::clamp((u1 - row_first) / (row_end_[row] - row_first), 0.0, 1.0);
+  place.x = sample_linear(at.luminance(0, 0.5), at.luminance(1, 0.5), along);
+  const double a = polar(row), b = polar(row + 1);
+  double angle;
+  if (polar_cap(row)) {
+    // Uniform in the cosine, held as its versine: from the pole that the cap surrounds.
+    const double half = std::sqrt(row == 0 ? across : 1 - across) * std::sin(0.5 * (b - a));
+    angle = row == 0 ? 2 * std::asin(half) : kPiD - 2 * std::asin(half);
+    place.y = (angle - a) / (b - a);
+    if (row == 0) place.y = 0.5 + 0.5 * place.y;
+  } else {
+    place.y = sample_linear(at.luminance(place.x, 0), at.luminance(place.x, 1), across);
+    angle = lerp(a, b, place.y);
+  }
+  const double longitude = (0.5 - (column + 0.5 + place.x) / width_) * 2 * kPiD + environment_.rotation_rad;
+  const double sine = std::sin(angle);
+  sample.direction = Vec3(Vec3d{std::sin(longitude) * sine, std::cos(angle), std::cos(longitude) * sine});
+  sample.radiance = at.radiance(place.x, place.y);
+  sample.pdf_solid_angle = pdf(place, sine);
+  return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY;
+}
+
+double EnvironmentLight::pdf_solid_angle(Vec3 direction) const {
+  const Vec3d d(direction);
+  return pdf(place_of(direction), std::sqrt(d.x * d.x + d.z * d.z));
+}
+
+}  // namespace tempolux

@@ -1,0 +1,65 @@
+// lib/light/environment_light.h -- an environment as a light: radiance by direction, and directions by radiance.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lib/core/vec.h"
+#include "lib/scene/environment.h"
+
+namespace tempolux {
+
+/// Between the centres of four neighbouring pixels lies a cell, in which radiance is bilinear in longitude and
+/// latitude; the cells of the first and last row reach to the poles. A cell is drawn in proportion to the mean
+/// luminance at its corners times its solid angle, a direction in it in proportion to its bilinear luminance: what is
+/// drawn with density zero is black, and radiance / density is the same everywhere but for colour and for the sine of
+/// the polar angle, which the cell's mean stands for.
+class EnvironmentLight {
+ public:
+  /// The environment must outlive it. Memory: 4 bytes per pixel.
+  explicit EnvironmentLight(const Environment& environment);
+
+  /// Arriving from `direction` (unit), W/m^2/sr.
+  Rgb radiance(Vec3 direction) const;
+  /// Integral of radiance over all directions [W/m^2], closed form.
+  Rgbd integral() const { return integral_; }
+
+  struct Sample {
+    Vec3 direction{};            ///< unit, towards where the light comes from
+    Rgb radiance{0.0f};
+    double pdf_solid_angle = 0;  ///< [1/sr]
+  };
+  /// u1 chooses the row of cells and, stretched, the place across it; u2 the cell and the place along it. In [0, 1).
+  /// False if nothing is emitted.
+  bool sample(double u1, double u2, Sample& sample) const;
+  /// Density per solid angle of sample() at `direction`, to the rounding of its own arithmetic.
+  double pdf_solid_angle(Vec3 direction) const;
+
+ private:
+  /// A place in the map: cell (row, column) and where in it, in [0, 1].
+  struct Place {
+    std::uint32_t row, column;
+    double x, y;
+  };
+  struct Corners {
+    const Rgb &upper_left, &upper_right, &lower_left, &lower_right;
+    Rgb radiance(double x, double y) const;
+    double luminance(double x, double y) const;
+  };
+  Place place_of(Vec3 direction) const;
+  Corners corners(std::uint32_t row, std::uint32_t column) const;
+  double polar(std::uint32_t row) const;  ///< angle from +Y of a row's upper edge
+  bool polar_cap(std::uint32_t row) const { return row == 0 || row == height_; }
+  double probability(std::uint32_t row, std::uint32_t column) const;
+  double pdf(const Place& place, double sin_polar) const;
+  void integrate();
+  void build_distribution();
+
+  const Environment& environment_;
+  std::uint32_t width_, height_;
+  Rgbd integral_{0.0};
+  std::vector<double> row_end_;           ///< cumulative probability of the height + 1 rows of cells
+  std::vector<std::uint32_t> cell_end_;   ///< within each row: cumulative, of the row's last; every cell that emits has 1
+};
+
+}  // namespace tempolux

@@ -1,0 +1,97 @@
+// lib/scene/environment.cpp
+#include "lib/scene/environment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "formats/error.h"
+#include "formats/hash.h"
+#include "lib/image/any_io.h"
+
+namespace tempolux {
+namespace {
+
+/// Sums over the sphere, areas and probabilities must stay below float32's 3.4e38.
+constexpr double kMostRadiance = 1e30;
+
+std::string pixel_place(std::size_t pixel, int width) {
+  return "pixel (" + std::to_string(pixel % std::size_t(width)) + ", " + std::to_string(pixel / std::size_t(width)) + ")";
+}
+
+std::string content_hash(const Environment& environment) {
+  static_assert(sizeof(Rgb) == 12);
+  Hasher hasher;
+  hasher.add(std::string_view("environment 1"));
+  hasher.add(std::uint32_t(environment.width));
+  hasher.add(std::uint32_t(environment.height));
+  hasher.add_array(std::span<const Rgb>(environment.radiance));
+  hasher.add(environment.rotation_rad);
+  return hasher.hex();
+}
+
+/// Value times strength, negative ones counted and set to 0.
+class Scale {
+ public:
+  Scale(const Environment& environment, double strength) : environment_(environment), strength_(strength) {}
+
+  float operator()(float value, std::size_t pixel) {
+    if (value < 0 && negative_++ == 0) first_negative_ = pixel;
+    const double radiance = std::max(0.0, double(value) * strength_);
+    if (!(radiance <= kMostRadiance))
+      throw InputError(environment_.path + ": " + pixel_place(pixel, environment_.width) +
+                       ": its radiance is beyond 1e30; lower --environment-strength");
+    return float(radiance);
+  }
+  void warn(std::vector<std::string>& warnings) const {
+    if (negative_ > 0)
+      warnings.push_back(environment_.path + ": " + std::to_string(negative_) + " negative values, the first at " +
+                         pixel_place(first_negative_, environment_.width) + ", are taken as 0");
+  }
+
+ private:
+  const Environment& environment_;
+  double strength_;
+  std::uint64_t negative_ = 0;
+  std::size_t first_negative_ = 0;
+};
+
+}  // namespace
+
+bool Environment::emits() const {
+  return std::ranges::any_of(radiance, [](const Rgb& pixel) { return max_component(pixel) > 0; });
+}
+
+Environment load_environment(const std::string& path, const EnvironmentOptions& options) {
+  ImageReadOptions read;
+  read.max_pixels = options.max_pixels;
+  Image image = load_image(path, read);
+  Environment environment;
+  environment.path = path;
+  environment.width = image.width;
+  environment.height = image.height;
+  // Turns whole circles off: equal light has an equal hash.
+  environment.rotation_rad = std::remainder(options.rotation_deg, 360.0) * std::numbers::pi / 180;
+  environment.radiance.resize(image.pixel_count());
+  Scale scale(environment, options.strength);
+  const auto planes = image.rgb("");
+  for (std::size_t i = 0; i < environment.radiance.size(); ++i)
+    environment.radiance[i] = {scale((*planes[0])[i], i), scale((*planes[1])[i], i), scale((*planes[2])[i], i)};
+  scale.warn(environment.warnings);
+  environment.hash = content_hash(environment);
+  return environment;
+}
+
+Environment uniform_environment(Rgb color, const EnvironmentOptions& options) {
+  Environment environment;
+  environment.path = "--environment-color";
+  Scale scale(environment, options.strength);
+  if (!is_finite(color) || std::min({color.r, color.g, color.b}) < 0)
+    throw InputError("--environment-color: a colour is three numbers from 0 on, as 0.2,0.3,0.5");
+  environment.radiance = {{scale(color.r, 0), scale(color.g, 0), scale(color.b, 0)}};
+  environment.hash = content_hash(environment);
+  return environment;
+}
+
+}  // namespace tempolux
