@@ -3,6 +3,7 @@
 #include <functional>
 #include <set>
 
+#include "formats/error.h"
 #include "tests/lib/scene/gltf_maker.h"
 
 namespace tempolux {
@@ -198,6 +199,27 @@ TEST(SceneHash, ReexportedEqualDependsOnNoMemoryOrTime) {
   const SceneHashes first = scene_at_frame(a, segment_of(a, 0, {}), 0, {}).hashes,
                     later = scene_at_frame(a, segment_of(a, 40, {}), 40, {}).hashes;
   EXPECT_EQ(changed(first, later), Names{"camera"});  // only the camera walks, in both segments
+}
+
+TEST(SceneHash, EnvironmentIsALight) {
+  const auto under = [](float radiance) {
+    Scene scene = room().load();
+    scene.environment = std::make_shared<const Environment>(uniform_environment(Rgb(radiance), {}));
+    return scene_at_frame(scene, segment_of(scene, 5, {}), 5, {}).hashes;
+  };
+  EXPECT_EQ(changed(hashes(room()), under(1)), Names{"lights"});
+  EXPECT_EQ(changed(under(1), under(2)), Names{"lights"});
+}
+
+TEST(SceneHash, EnvironmentIsLightEnough) {
+  GltfMaker maker;
+  maker.add_node({{"mesh", maker.add_triangle()}});
+  Scene scene = maker.load();
+  EXPECT_THROW(require_lights(scene), InputError);
+  scene.environment = std::make_shared<const Environment>(uniform_environment(Rgb(1.0f), {}));
+  EXPECT_NO_THROW(require_lights(scene));
+  scene.environment = std::make_shared<const Environment>(uniform_environment(Rgb(0.0f), {}));
+  EXPECT_THROW(require_lights(scene), InputError);
 }
 
 }  // namespace
