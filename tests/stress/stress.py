@@ -20,6 +20,7 @@ import time
 import family_bad
 import family_caches
 import family_energy
+import family_environment
 import family_geometry
 import family_images
 import family_light
@@ -29,8 +30,8 @@ import family_scale
 import family_time
 from session import CASES, FULL, LONG, SHORT, Failed, Session
 
-ORDER = [m.__name__ for m in (family_scale, family_light, family_energy, family_geometry, family_photons, family_caches,
-                              family_images, family_numbers, family_time, family_bad)]
+ORDER = [m.__name__ for m in (family_scale, family_light, family_environment, family_energy, family_geometry,
+                              family_photons, family_caches, family_images, family_numbers, family_time, family_bad)]
 CASES.sort(key=lambda case: ORDER.index(case[3].__module__))
 COLUMNS = ["case", "quantity", "expected", "got", "error", "seconds", "verdict"]
 
