@@ -67,7 +67,8 @@ void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, co
 void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter& last, const Rgb& throughput,
                      Layer layer, Layers& result) {
   const float weight =
-      last.weighed ? mis_power(last.pdf_solid_angle, scene.lights.pdf_environment(last.position, last.normal, direction))
+      last.weighed ? mis_power(last.pdf_solid_angle, last.light_share * scene.lights.pdf_environment(
+                                                                            last.position, last.normal, direction))
                    : 1.0f;
   result[layer] += throughput * scene.lights.environment(direction) * weight;
 }
