@@ -33,6 +33,8 @@ add_test(NAME pipelines.plan_refuses COMMAND sh tests/pipelines/plan_refuses.sh 
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.drop_kind COMMAND sh tests/pipelines/drop_kind.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+add_test(NAME pipelines.environment COMMAND sh tests/pipelines/environment.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.scenes COMMAND sh tests/pipelines/scenes.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAKE_BINARY_DIR}
@@ -40,7 +42,7 @@ add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAK
 set_tests_properties(pipelines.installed PROPERTIES TIMEOUT 300 RUN_SERIAL ON)
 add_test(NAME pipelines.leaving_out COMMAND sh tests/pipelines/leaving_out.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.rerun pipelines.leaving_out pipelines.plan_example pipelines.plan_refuses pipelines.drop_kind pipelines.scenes
+set_tests_properties(pipelines.rerun pipelines.leaving_out pipelines.plan_example pipelines.plan_refuses pipelines.drop_kind pipelines.environment pipelines.scenes
                      PROPERTIES TIMEOUT 300)
 
 add_test(NAME cli.no_heavy_libraries COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cli/no_heavy_libraries.sh ${CMAKE_BINARY_DIR}/bin)
