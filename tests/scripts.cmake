@@ -42,8 +42,8 @@ add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAK
 set_tests_properties(pipelines.installed PROPERTIES TIMEOUT 300 RUN_SERIAL ON)
 add_test(NAME pipelines.leaving_out COMMAND sh tests/pipelines/leaving_out.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.rerun pipelines.leaving_out pipelines.plan_example pipelines.plan_refuses pipelines.drop_kind pipelines.environment pipelines.scenes
-                     PROPERTIES TIMEOUT 300)
+set_tests_properties(pipelines.rerun pipelines.leaving_out pipelines.plan_example pipelines.plan_refuses
+                     pipelines.drop_kind pipelines.environment pipelines.scenes PROPERTIES TIMEOUT 300)
 
 add_test(NAME cli.no_heavy_libraries COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cli/no_heavy_libraries.sh ${CMAKE_BINARY_DIR}/bin)
 

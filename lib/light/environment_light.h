@@ -59,7 +59,7 @@ class EnvironmentLight {
   std::uint32_t width_, height_;
   Rgbd integral_{0.0};
   std::vector<double> row_end_;           ///< cumulative probability of the height + 1 rows of cells
-  std::vector<std::uint32_t> cell_end_;   ///< within each row: cumulative, of the row's last; every cell that emits has 1
+  std::vector<std::uint32_t> cell_end_;   ///< cumulative within each row; what emits has 1 at least
 };
 
 }  // namespace tempolux

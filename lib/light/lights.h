@@ -26,7 +26,8 @@ struct EmissionSlot {
 };
 
 /// What is frozen over a segment. Slots are the triangles of `surfaces`, one after the other, then the
-/// frame's punctual lights, then the environment if there is one; probability is proportional to the maximum flux over the segment's frames
+/// frame's punctual lights, then the environment if there is one; probability is proportional to the maximum flux over
+/// the segment's frames
 /// (luminance, but at least 5 % of the largest channel, so that blue lamps count; a directional light's flux
 /// is its irradiance times the area pi R^2 of the scene sphere's disc, the environment's pi R^2 times the integral
 /// of its radiance). Most light from outside may never come in, or what is inside may hardly matter: where there

@@ -58,7 +58,7 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
   result.totals.emitted_flux = to_array(emitted);
   result.totals.escaped_flux = to_array(escaped);
   // What lossless walls absorb is 0 in the mean, and what roulette gives and takes may leave it below.
-  result.totals.absorbed_flux = to_array({std::max(absorbed.r, 0.0), std::max(absorbed.g, 0.0), std::max(absorbed.b, 0.0)});
+  for (double& flux : result.totals.absorbed_flux = to_array(absorbed)) flux = std::max(flux, 0.0);
   writer.finish(result.totals);
   return result;
 }

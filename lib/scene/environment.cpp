@@ -17,7 +17,8 @@ namespace {
 constexpr double kMostRadiance = 1e30;
 
 std::string pixel_place(std::size_t pixel, int width) {
-  return "pixel (" + std::to_string(pixel % std::size_t(width)) + ", " + std::to_string(pixel / std::size_t(width)) + ")";
+  const std::size_t w = std::size_t(width);
+  return "pixel (" + std::to_string(pixel % w) + ", " + std::to_string(pixel / w) + ")";
 }
 
 std::string content_hash(const Environment& environment) {

@@ -33,7 +33,8 @@ def plate(s):
 def chain(s, path, size, spp, *environment, photons="100k"):
     """The frame of the photon chain: photon-trace, irradcache-build, frame-render."""
     map_, cache = s.photons(path, photons, *environment)["path"], s.path(".irradcache")
-    s.done(s.run("irradcache-build", path, "--photons", map_, "--size", f"{size[0]}x{size[1]}", "-o", cache, *environment))
+    s.done(s.run("irradcache-build", path, "--photons", map_, "--size", f"{size[0]}x{size[1]}", "-o", cache,
+                 *environment))
     return s.render(path, size, spp, "--photons", map_, "--irradcache", cache, *environment)
 
 
