@@ -249,16 +249,16 @@ struct Output::State : std::streambuf {
     return traits_type::not_eof(c);
   }
 
-  /// All bytes are on the disk and the file is closed after this.
-  void finish_file() {
+  /// All bytes are written (sync: on the disk) and the file is closed after this.
+  void finish_file(bool sync) {
     flush_buffer();
-    if (fsync(file) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS)
+    if (sync && fsync(file) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS)
       fail(path, "write failed", errno);
     const int closed = file > STDERR_FILENO ? close(file) : 0;
     file = -1;
     if (closed != 0) fail(path, "write failed", errno);
   }
-  void rename_into_place() {
+  void rename_into_place(bool sync) {
     const unsigned flags = no_clobber ? RENAME_NOREPLACE : 0;
     int result = renameat2(AT_FDCWD, temporary->path(), AT_FDCWD, target.c_str(), flags);
     if (result != 0 && flags == 0 && (errno == EINVAL || errno == ENOSYS))
@@ -267,6 +267,7 @@ struct Output::State : std::streambuf {
       throw InputError(path + ": exists; leave out --no-clobber to replace it");
     if (result != 0) fail(path, "cannot rename the finished file", errno);
     temporary->release();
+    if (!sync) return;
     const std::string folder = std::filesystem::path(target).parent_path().string();
     const int handle = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (handle < 0) return;  // a folder that may be written but not read
@@ -300,8 +301,14 @@ std::ostream& Output::stream() { return state_->stream; }
 void Output::write(const void* data, std::size_t size) { state_->put(static_cast<const char*>(data), size); }
 
 void Output::commit() {
-  state_->finish_file();
-  if (state_->temporary) state_->rename_into_place();
+  state_->finish_file(true);
+  if (state_->temporary) state_->rename_into_place(true);
+  state_->note(Ledger::Line::Stage::committed);
+}
+
+void Output::commit_unsynced() {
+  state_->finish_file(false);
+  if (state_->temporary) state_->rename_into_place(false);
   state_->note(Ledger::Line::Stage::committed);
 }
 

@@ -38,6 +38,9 @@ class Output {
   /// Flush, fsync, close (checked), rename, fsync the folder. Throws ResourceError, and InputError under
   /// no_clobber if the name has been taken meanwhile. Nothing may be written after it.
   void commit();
+  /// commit() without the two fsyncs, which cost a disk's turn each: for many small files that are compared with what
+  /// they should hold and made again if a power cut took them.
+  void commit_unsynced();
   /// commit(), unless a file of the same bytes is there already: that one stays untouched, its time stamp
   /// too, so that make has nothing to do. Returns true if the file was replaced.
   bool commit_if_changed();

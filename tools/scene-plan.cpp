@@ -33,13 +33,14 @@ void make_folder(const std::string& folder) {
   if (error) throw ResourceError(folder + ": cannot create this folder: " + error.message());
 }
 
-/// Returns true if the file was new or different.
+/// Returns true if the file was new or different. There are thousands of them in a long range, all compared with what
+/// they should hold whenever there is a plan: not synced one by one.
 bool write_if_changed(const std::string& path, const std::string& content) {
   std::ifstream present(path, std::ios::binary);
   if (present && std::string(std::istreambuf_iterator<char>(present), {}) == content) return false;
   tools::Output output(path, false, tools::Output::Kind::text);
   output.write(content.data(), content.size());
-  output.commit();
+  output.commit_unsynced();
   return true;
 }
 

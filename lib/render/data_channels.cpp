@@ -28,7 +28,8 @@ class OtherFrame {
     for (std::size_t s = 0; s < here.surfaces.size(); ++s) {
       const auto& candidates = by_node[here.surfaces[s].node];
       const std::size_t r = rank[here.surfaces[s].node]++;
-      if (r < candidates.size() && candidates[r]->primitive == here.surfaces[s].primitive)
+      if (r < candidates.size() &&
+          candidates[r]->primitive->triangles.size() == here.surfaces[s].primitive->triangles.size())
         there_[s] = candidates[r];
     }
   }

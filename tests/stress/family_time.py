@@ -107,8 +107,7 @@ def lamp_out(s):
 
 @case("time", "10^4 frames")
 def ten_thousand(s):
-    """Of a tiny scene whose block moves in every frame: linear in the frames, 1 ms of CPU each is the bound (each file
-    is synced before it gets its name, so the seconds are those of the disk)."""
+    """Of a tiny scene whose block moves in every frame: linear in the frames, 1 ms of CPU each is the bound."""
     n = s.pick(2000, 10000)
     keys = [f / 24 for f in range(n)]
     scene = stage(s, lambda scene, block, lamp: scene.animate(block, "translation", keys,
