@@ -1,0 +1,225 @@
+#!/usr/bin/env python3
+"""Scenes made by others, path-traced and by the photon chain: does each render, and do the layers agree?
+
+    python3 tests/bench/found.py                        all of ../shared/scenes/found/gltf: about ten minutes on two cores
+    python3 tests/bench/found.py --only 'Fox|17_ior'    some of them
+
+A file without a camera is copied to a temporary folder and gets one that sees all of it, and a ground below; a file without
+a light gets a lamp. Where things stand (skins, morphs, instances) is learnt from a few photons of a sun. Prints a table;
+writes found.json and sheet.png (path tracer left, photon chain right, each pair at its own exposure) to --out.
+A layer agrees if its means differ by less than 1.5 %, or 1.5 standard errors more, or by less than 0.1 % of the picture's.
+"""
+import argparse
+import json
+import math
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
+import exr
+from furnish import Asset, furnished, with_sun
+from measure import Bench, Missing, figure
+
+LAYERS = ("emission", "specular", "direct", "caustic", "indirect")
+FRAME = 10
+SEEDS = (1, 2)
+
+
+class Refused(Exception):
+    """A tool ended with another code than 0: (code, first line of its message)."""
+
+
+class Found:
+    """How the scenes are rendered, and what is kept."""
+
+    def __init__(self, bench, folder, size, spp, photons):
+        self.bench, self.folder, self.size, self.spp, self.photons = bench, folder, size, spp, photons
+        self.pictures = bench.out / "found"
+        self.pictures.mkdir(exist_ok=True)
+
+    def tool(self, name, *arguments):
+        """Its statistics and its warnings; Refused if it ends badly."""
+        stats = self.folder / "stats.json"
+        command = [self.bench.bin / name, *arguments, "--stats", stats]
+        done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+        lines = done.stderr.splitlines()
+        if done.returncode != 0:
+            raise Refused(done.returncode, next((line for line in lines if name in line), done.stderr[:200]))
+        return json.loads(stats.read_text()), [line for line in lines if "warning" in line]
+
+    def usable(self, file):
+        """(scene with camera and light, what it was given)"""
+        asset = Asset(file)
+        if asset.has_camera and asset.has_light:
+            return file, ""
+        if not asset.gltf.get("meshes"):
+            return furnished(asset, self.folder / "furnished", [-2] * 3, [2] * 3)
+        sun = with_sun(asset, self.folder / "sun")
+        photons = self.folder / "sun.photons"
+        self.tool("photon-trace", sun, "--frame", FRAME, "--photons", "20k", "-q", "-o", photons)
+        bounds = json.loads(self.bench.run([self.bench.bin / "tempolux-info", "--json", photons]).stdout)["bounds_m"]
+        return furnished(asset, self.folder / "furnished", bounds["min"], bounds["max"])
+
+    def by_paths(self, scene, size, spp, *options):
+        image = self.folder / "path.exr"
+        stats, warnings = self.tool("frame-render", scene, "--frame", FRAME, "--size", size, "--integrator", "path", "--spp", spp,
+                                    "--halves", "--channels", "RGBA,layers", "--compression", "none", "-o", image, *options)
+        return image, stats["cpu_s"], warnings
+
+    def by_photons(self, scene, size, photons, seed, *options):
+        photon_map, points, cache, image = (self.folder / f"chain.{end}" for end in ("photons", "irradpoints", "irradcache", "exr"))
+        common = [scene, "--frame", FRAME, "-q", "--seed", seed, *options]
+        runs = [self.tool("photon-trace", *common, "--photons", photons, "-o", photon_map),
+                self.tool("irradcache-build", *common, "--photons", photon_map, "--keep-points", points, "--size", size, "-o", cache),
+                self.tool("frame-render", *common, "--size", size, "--irradcache", cache, "--points", points, "--photons",
+                          photon_map, "--channels", "RGBA,layers", "--compression", "none", "-o", image)]
+        return image, sum(stats["cpu_s"] for stats, _ in runs)
+
+    def compare(self, file):
+        """A row: both ways, layer by layer."""
+        row = {"file": file.name, "layers": {}}
+        try:
+            scene, row["given"] = self.usable(file)
+            image, row["path_cpu_s"], row["warnings"] = self.by_paths(scene, self.size, self.spp)
+            path = exr.read(image)
+            halves = [exr.read(image.with_name(f"path_{h}.exr")) for h in "ab"]
+            chain, row["chain_cpu_s"] = [], 0
+            for seed in SEEDS:
+                image, cpu = self.by_photons(scene, self.size, self.photons, seed)
+                chain.append(exr.read(image))
+                row["chain_cpu_s"] += cpu / len(SEEDS)
+        except Refused as refusal:
+            row["exit"], row["message"] = refusal.args
+            return row
+        row["exit"] = 0
+        row["not_finite"] = path.not_finite() + chain[0].not_finite()
+        for layer in LAYERS:
+            row["layers"][layer] = layer_row(layer, path, halves, chain)
+        scale = brightness(path)
+        row["pictures"] = [self.shown(file.stem, way, image, scale) for way, image in (("path", path), ("photons", chain[0]))]
+        return row
+
+    def shown(self, stem, way, image, scale):
+        """The picture at an exposure of its own, for the sheet."""
+        path = self.pictures / f"{stem}-{way}.exr"
+        exr.write(path, image.width, image.height, {c: [v * scale for v in image.channels[c]] for c in "RGB"})
+        return path
+
+    def same_for_threads(self, file):
+        """Are the bytes of photons, cache and frames the same for 1, 2, 3 and 7 threads?"""
+        scene, _ = self.usable(file)
+        found = set()
+        for threads in (1, 2, 3, 7):
+            images = [self.by_paths(scene, "64x36", 4, "--threads", threads)[0],
+                      self.by_photons(scene, "64x36", "20k", 1, "--threads", threads)[0]]
+            files = images + [self.folder / "chain.photons", self.folder / "chain.irradcache"]
+            found.add(b"".join(f.read_bytes().replace(f"--threads {threads}".encode(), b"") for f in files))
+        return len(found) == 1
+
+
+def layer_row(layer, path, halves, chain):
+    """Means of all three colours together, standard errors, and whether they agree."""
+    def mean(image, name=layer):
+        values = image.rgb(name)
+        return math.fsum(values) / len(values)
+    a, b = (half.rgb(layer) for half in halves)
+    pixels = len(a) / 3
+    # Pixels are independent, the colours of one are not: three times the variance of independent values.
+    path_error = math.sqrt(3 * math.fsum((x - y) ** 2 for x, y in zip(a, b)) / 4) / (3 * pixels)
+    seeds = [mean(image) for image in chain]
+    chain_error = abs(seeds[0] - seeds[1]) / 2
+    ours, theirs, error = mean(path), sum(seeds) / len(seeds), math.hypot(path_error, chain_error)
+    whole = mean(path, "")
+    agrees = abs(theirs - ours) <= max(0.015 * abs(ours) + 1.5 * error, 0.001 * whole)
+    return {"path": ours, "path_error": path_error, "chain": theirs, "chain_error": chain_error, "agrees": agrees}
+
+
+def brightness(image):
+    """What brings all but two in a hundred values of a picture below 0.9."""
+    values = sorted(image.rgb())
+    return 0.9 / max(values[int(0.98 * (len(values) - 1))], 1e-9)
+
+
+def expected_refusal(file, row):
+    """What a file requires and nothing here reads (compression by Draco or meshopt, for example) is refused by name."""
+    required = Asset(file).gltf.get("extensionsRequired", [])
+    return row["exit"] == 2 and any(f"{name} is not supported" in row["message"] for name in required)
+
+
+def table_rows(name, row):
+    """Strings: the file's line, one for each layer that is not black."""
+    if row["exit"] != 0:
+        return [[name, f"exit {row['exit']}: {row['message']}", "", "", "", ""]]
+    cpu = f"{row['path_cpu_s']:.1f}, {row['chain_cpu_s']:.1f}"
+    lines = [[name, "rendered" + (f" ({row['given']})" if row["given"] else ""), "", "", "", cpu]]
+    for layer, r in row["layers"].items():
+        if r["path"] or r["chain"]:
+            relative = f"{100 * (r['chain'] / r['path'] - 1):+.2f} %" if r["path"] else "-"
+            lines.append(["", layer, f"{r['path']:.4g} ± {r['path_error']:.1g}", f"{r['chain']:.4g} ± {r['chain_error']:.1g}",
+                          relative + ("" if r["agrees"] else " (!)"), ""])
+    return lines
+
+
+def found(bench, _=None, only="", size="320x180", spp=64, photons="300k"):
+    """The figure: every found scene, by both ways."""
+    folder = bench.project / ".." / "shared" / "scenes" / "found" / "gltf"
+    if not folder.is_dir():
+        raise Missing("../shared/scenes/found/gltf is absent")
+    if bench.quick:
+        only, size, spp, photons = only or "CornellBox|BoxDraco", bench.size, 4, "10k"
+    files = sorted(p for p in folder.rglob("*.gl*") if p.suffix in (".gltf", ".glb") and re.search(only, str(p)))
+    rows, lines, notes, good, pictures, rendered = {}, [], [], True, [], []
+    with tempfile.TemporaryDirectory(dir=bench.out) as temporary:
+        work = Found(bench, Path(temporary), size, spp, photons)
+        for file in files:
+            name = str(file.relative_to(folder))
+            row = rows[name] = work.compare(file)
+            for line in table_rows(name, row):
+                print("  ".join(line), flush=True)
+                lines.append(line)
+            notes += [f"{name}: {warning}" for warning in row.get("warnings", [])]
+            if row["exit"] != 0:
+                good = good and expected_refusal(file, row)
+                continue
+            good = good and not row["not_finite"] and all(r["agrees"] for r in row["layers"].values())
+            pictures += row.pop("pictures")
+            rendered.append(file)
+        for file in rendered[::max(1, len(rendered) // 5)][:1 if bench.quick else 5]:
+            same = work.same_for_threads(file)
+            good = good and same
+            notes.append(f"{file.name}: {'the same' if same else 'OTHER'} bytes with 1, 2, 3 and 7 threads.")
+    (bench.out / "found-layers.json").write_text(json.dumps(rows, indent=1))
+    if pictures:
+        bench.run([bench.bin / "tempolux-info", "--sheet", bench.out / "found.png", "--columns", 6, "--exposure", 0, *pictures])
+    return figure("Scenes made by others, path tracer and photon chain",
+                  "all render or are refused by name; means of layers within 1.5 %; the same bytes for any number of threads",
+                  ["file, layer", "", "path tracer, mean", "photon chain, mean", "chain / path - 1", "CPU s, path and chain"],
+                  lines, None if bench.quick or only else good, notes)
+
+
+def main():
+    project = Path(__file__).resolve().parents[2]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=project / "build" / "release", help="build folder [build/release]")
+    parser.add_argument("--out", type=Path, default=project / "out" / "found", help="sheet, table as JSON [out/found]")
+    parser.add_argument("--only", default="", help="regular expression: files whose path it is found in")
+    parser.add_argument("--size", default="320x180", help="[320x180]")
+    parser.add_argument("--spp", type=int, default=64, help="samples per pixel of the path tracer [64]")
+    parser.add_argument("--photons", default="300k", help="[300k]")
+    args = parser.parse_args()
+    bench = Bench(args.build.resolve(), args.out.resolve(), project, False, 0)
+    try:
+        result = found(bench, None, args.only, args.size, args.spp, args.photons)
+    except Missing as reason:
+        print(f"left out: {reason}")
+        return 0
+    print("\n".join(result["notes"]))
+    print(f"asked: {result['asked']}: {'met' if result['met'] else 'not judged' if result['met'] is None else 'NOT met'}")
+    return 1 if result["met"] is False else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

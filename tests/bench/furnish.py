@@ -1,0 +1,137 @@
+"""Copies of glTF files that lack a camera or a light, with what they lack."""
+import base64
+import json
+import math
+import shutil
+import struct
+
+
+class Asset:
+    """A glTF file in parts."""
+
+    def __init__(self, path):
+        data = path.read_bytes()
+        self.path, self.binary = path, b""
+        if data[:4] == b"glTF":
+            size, = struct.unpack_from("<I", data, 12)
+            self.gltf, self.binary = json.loads(data[20:20 + size]), data[20 + size:]     # with the header of the chunk
+        else:
+            self.gltf = json.loads(data)
+
+    @property
+    def has_camera(self):
+        return any("camera" in node for node in self.gltf["nodes"])
+
+    @property
+    def has_light(self):
+        return (any("KHR_lights_punctual" in node.get("extensions", {}) for node in self.gltf["nodes"])
+                or any(any(m.get("emissiveFactor", [])) for m in self.gltf.get("materials", [])))
+
+    def copied(self, folder):
+        """Another one in a new folder, beside copies of the files it names."""
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(self.path.parent, folder)
+        for file in [folder, *folder.rglob("*")]:
+            file.chmod(0o755)
+        return Asset(folder / self.path.name)
+
+    def save(self):
+        text = json.dumps(self.gltf).encode()
+        if self.path.suffix == ".glb":
+            text += b" " * (-len(text) % 4)
+            size = 20 + len(text) + len(self.binary)
+            text = struct.pack("<4sIII4s", b"glTF", 2, size, len(text), b"JSON") + text + self.binary
+        self.path.write_bytes(text)
+        return self.path
+
+    # ---- what is added
+
+    def use(self, extension):
+        used = self.gltf.setdefault("extensionsUsed", [])
+        if extension not in used:
+            used.append(extension)
+
+    def node(self, **node):
+        nodes = self.gltf["nodes"]
+        nodes.append(node)
+        scene = self.gltf.get("scenes", [{}])[self.gltf.get("scene", 0)]
+        scene.setdefault("nodes", []).append(len(nodes) - 1)
+
+    def sun(self, direction):
+        self.use("KHR_lights_punctual")
+        lights = self.gltf.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {}).setdefault("lights", [])
+        lights.append({"type": "directional", "intensity": 3})
+        self.node(name="AddedSun", matrix=looking([0, 0, 0], direction), extensions={"KHR_lights_punctual": {"light": len(lights) - 1}})
+
+    def quad(self, name, corners, material):
+        """Corners counter-clockwise from the front."""
+        data = struct.pack("<12f6H", *(x for corner in corners for x in corner), 0, 1, 2, 0, 2, 3)
+        g = self.gltf
+        buffers, views, accessors = (g.setdefault(key, []) for key in ("buffers", "bufferViews", "accessors"))
+        if self.path.suffix == ".glb" and not buffers:
+            raise ValueError(f"{self.path}: no buffer")
+        buffers.append({"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()})
+        views += [{"buffer": len(buffers) - 1, "byteOffset": start, "byteLength": size} for start, size in ((0, 48), (48, 12))]
+        accessors += [{"bufferView": len(views) - 2, "componentType": 5126, "type": "VEC3", "count": 4,
+                       "min": [min(c) for c in zip(*corners)], "max": [max(c) for c in zip(*corners)]},
+                      {"bufferView": len(views) - 1, "componentType": 5123, "type": "SCALAR", "count": 6}]
+        self.use("KHR_materials_specular")
+        self.use("KHR_materials_emissive_strength")
+        g.setdefault("materials", []).append(
+            {"name": name, "doubleSided": False, **material, "extensions": {"KHR_materials_specular": {"specularFactor": 0},
+                                                                            **material.get("extensions", {})}})
+        g.setdefault("meshes", []).append({"primitives": [{"attributes": {"POSITION": len(accessors) - 2},
+                                                           "indices": len(accessors) - 1, "material": len(g["materials"]) - 1}]})
+        self.node(name=name, mesh=len(g["meshes"]) - 1)
+
+
+def looking(eye, forward):
+    """Matrix of a node at `eye` whose -z points `forward`, its y upwards."""
+    def unit(v):
+        length = math.sqrt(sum(x * x for x in v))
+        return [x / length for x in v]
+
+    def cross(a, b):
+        return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    z = unit([-x for x in forward])
+    x = unit(cross([0, 1, 0], z))
+    return [*x, 0, *cross(z, x), 0, *z, 0, *eye, 1]
+
+
+def with_sun(asset, folder):
+    """A copy with a sun from the upper front right: what it lights tells where things are. All is matte in it."""
+    copy = asset.copied(folder)
+    g = copy.gltf
+    g["materials"] = [{"doubleSided": True, "pbrMetallicRoughness": {"metallicFactor": 0}}]    # stores photons wherever it is lit
+    for mesh in g.get("meshes", []):
+        for primitive in mesh["primitives"]:
+            primitive["material"] = 0
+            primitive.get("extensions", {}).pop("KHR_materials_variants", None)
+    copy.sun([-0.5, -0.8, -0.6])
+    return copy.save()
+
+
+def furnished(asset, folder, lower, upper):
+    """A copy with a camera on a scene between two corners, ground and lamp if it lacks them; and the names of what was added."""
+    copy, added = asset.copied(folder), []
+    centre = [(a + b) / 2 for a, b in zip(lower, upper)]
+    r = max(1e-6, math.dist(lower, upper) / 2)
+
+    def place(*v):
+        return [c + r * x for c, x in zip(centre, v)]
+    if not asset.has_camera:
+        eye = place(0.9, 0.9, 2.9)
+        copy.gltf.setdefault("cameras", []).append({"type": "perspective", "perspective": {"yfov": 0.66, "znear": 0.001 * r}})
+        copy.node(name="AddedCamera", camera=len(copy.gltf["cameras"]) - 1, matrix=looking(eye, [c - e for c, e in zip(centre, eye)]))
+        y = lower[1] - 0.01 * r
+        x, z, side = centre[0], centre[2], 5 * r
+        copy.quad("AddedGround", [[x - side, y, z + side], [x + side, y, z + side], [x + side, y, z - side], [x - side, y, z - side]],
+                  {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0}})
+        added += ["camera", "ground"]
+    if not asset.has_light:
+        # A square of side r at height 2.5 r, facing down: radiance 20 gives the ground about 3 W/m^2.
+        copy.quad("AddedLamp", [place(-0.9, 2.5, 0.4), place(-0.9, 2.5, 1.4), place(0.1, 2.5, 1.4), place(0.1, 2.5, 0.4)][::-1],
+                  {"emissiveFactor": [1, 1, 1], "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1]},
+                   "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 20}}})
+        added.append("lamp")
+    return copy.save(), "given " + ", ".join(added)
