@@ -144,10 +144,16 @@ void add_light_options(tools::Tool& tool, Options& options) {
   app.add_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light");
   app.add_option("--points", options.light.points,
                  ".irradpoints file, or a pattern: what missing records are gathered from (else points made from --photons)");
-  app.add_option("--neighbours", options.light.photon_light.neighbours, "photons per density estimate")
+  app.add_option("--neighbours", options.light.photon_light.neighbours, "photons per density estimate of indirect light")
       ->capture_default_str()->check(CLI::Range(2, kMaxNeighbours));
   app.add_option("--max-radius", options.light.photon_light.max_radius,
-                 "farthest photon used, m; 0: a twentieth of the scene's diagonal")
+                 "farthest photon used for it, m; 0: a twentieth of the scene's diagonal")
+      ->capture_default_str()->check(CLI::NonNegativeNumber);
+  app.add_option("--caustic-neighbours", options.light.photon_light.caustic_neighbours,
+                 "photons per density estimate of caustic light: fewer are sharper, more are smoother")
+      ->capture_default_str()->check(CLI::Range(2, kMaxNeighbours));
+  app.add_option("--caustic-radius", options.light.photon_light.caustic_radius,
+                 "farthest caustic photon used, m; 0: a sixtieth of the scene's diagonal")
       ->capture_default_str()->check(CLI::NonNegativeNumber);
   app.add_option("--rays", options.light.gather.rays, "gather rays for a missing record")
       ->capture_default_str()->check(CLI::Range(1, 1 << 20));

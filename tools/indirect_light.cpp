@@ -18,7 +18,7 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
     const Vec3d origin{map.header.origin[0], map.header.origin[1], map.header.origin[2]};
     PhotonLightOptions photon_light = options.photon_light;
     photon_light.caustic_only = !options.irradcache.empty();
-    photons_ = std::make_unique<PhotonLight>(map.photons, origin - frame.origin, frame.bounds, photon_light);
+    photons_ = std::make_unique<PhotonLight>(tracer, map.photons, origin - frame.origin, photon_light);
   }
   if (options.irradcache.empty()) return;
   tool.stats().phase("read cache");

@@ -60,6 +60,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   tool.stats().count("photons", double(result.totals.photon_count));
   tool.stats().count("paths", double(result.path_count));
   tool.stats().count("rays", double(result.ray_count));
+  tool.stats().count("specular_rays", double(result.specular_ray_count));
   tool.stats().count("bytes_written", double(result.byte_count));
   tool.stats().count("refused_rays", double(tracer.refused_ray_count()));
 }

@@ -18,6 +18,8 @@ constexpr int kRim = 16;           ///< places on the rim that are looked at fir
 constexpr float kFlat = 0.005f;    ///< of the radius: how far off the plane the rim of a flat disc may lie
 constexpr int kMostProbes = 32;    ///< times area_probes
 constexpr int kMostInColumn = 8;   ///< surfaces on top of each other
+constexpr std::size_t kFirstTested = 4;   ///< photons of a sampled estimate
+constexpr int kProbesIfOpen = 3;          ///< of its area, if these can be reached
 
 }  // namespace
 
@@ -52,26 +54,34 @@ PointDensity::PointDensity(const Tracer& tracer, std::vector<formats::Photon> ph
   for (const Material& material : tracer.frame().materials) stores_.push_back(may_have_lambert(material));
 }
 
-Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& random, float& radius) const {
-  radius = 0;
-  if (!facing_.any_near(point.position, point.normal, kMinCos)) return Rgb(0.0f);
-  const PhotonQuery query{point.position, point.normal, options_.max_radius, kMinCos, kFlattening, kAllKinds};
-  thread_local NeighbourList found;
+/// The k nearest, or all within max_radius.
+PointDensity::Disc PointDensity::find(Vec3 position, Vec3 normal, NeighbourList& found) const {
+  if (!facing_.any_near(position, normal, kMinCos)) return {};
+  const PhotonQuery query{position, normal, options_.max_radius, kMinCos, kFlattening, kAllKinds};
   index_.find_nearest(query, options_.neighbours, found);
-  if (found.count() == 0) return Rgb(0.0f);
-  const bool full = int(found.count()) == options_.neighbours;
-  const std::size_t farthest = full ? found.farthest() : found.count();
-  radius = full ? std::sqrt(found.distance2()[farthest]) : options_.max_radius;
-  if (!(radius > 4 * reach_.offset())) {  // closer than coordinates can tell: the plain rule copes
-    const IrradianceOptions plain{.neighbours = options_.neighbours,
+  if (found.count() == 0) return {};
+  if (int(found.count()) < options_.neighbours) return {options_.max_radius, found.count()};
+  const std::size_t farthest = found.farthest();
+  return {std::sqrt(found.distance2()[farthest]), farthest};
+}
+
+/// For radii closer than coordinates can tell.
+Rgb PointDensity::plain(Vec3 position, Vec3 normal, float& radius, NeighbourList& found) const {
+  const IrradianceOptions options{.neighbours = options_.neighbours,
                                   .max_radius = options_.max_radius,
                                   .min_cos = kMinCos,
                                   .flattening = kFlattening};
-    const IrradianceEstimate estimate =
-        estimate_irradiance(index_, point.position, point.normal, plain, found);
-    radius = estimate.radius;
-    return Rgb(estimate.irradiance);
-  }
+  const IrradianceEstimate estimate = estimate_irradiance(index_, position, normal, options, found);
+  radius = estimate.radius;
+  return Rgb(estimate.irradiance);
+}
+
+Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& random, float& radius) const {
+  thread_local NeighbourList found;
+  const auto [found_radius, farthest] = find(point.position, point.normal, found);
+  radius = float(found_radius);
+  if (radius == 0) return Rgb(0.0f);
+  if (!(radius > 4 * reach_.offset())) return plain(point.position, point.normal, radius, found);
   const bool whole = open_and_flat(point, radius, random.get1(2, Purpose::points));
   // In a whole disc what lies in its plane can be reached; a sheet close above it may still be another
   // side's.
@@ -90,7 +100,50 @@ Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& rando
   }
   if (!any) return Rgb(0.0f);
   const double inverse =
-      whole ? 1 / (double(kPi) * double(radius) * double(radius)) : inverse_area(point, radius, random);
+      whole ? 1 / (double(kPi) * double(radius) * double(radius))
+            : inverse_area(point, radius, options_.area_probes, Draw::spread, random);
+  return Rgb(Rgbd{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)} * inverse);
+}
+
+Rgb PointDensity::estimate_sampled(Vec3 position, Vec3 normal, const PathRandom& random) const {
+  thread_local NeighbourList found;
+  const auto [found_radius, farthest] = find(position, normal, found);
+  float radius = float(found_radius);
+  if (radius == 0) return Rgb(0.0f);
+  if (!(radius > 4 * reach_.offset())) return plain(position, normal, radius, found);
+
+  thread_local std::vector<std::uint32_t> photons;
+  photons.clear();
+  Rgbd all{0.0};
+  for (std::size_t i = 0; i < found.count(); ++i) {
+    if (i == farthest) continue;
+    photons.push_back(found.photons()[i]);
+    all += Rgbd(index_.flux(photons.back()));
+  }
+  const std::size_t n = photons.size(), first = std::min(n, kFirstTested);
+  const auto reached = [&](std::uint32_t photon) {
+    return reach_(position, normal, index_.position(photon), index_.normal(photon));
+  };
+  bool open = true;
+  for (std::size_t i = 0; i < first && open; ++i) {   // drawn without replacement [Fisher & Yates]
+    const std::size_t drawn = i + std::size_t(random.get1(std::uint32_t(i), Purpose::gather) * float(n - i));
+    std::swap(photons[i], photons[std::min(drawn, n - 1)]);
+    open = reached(photons[i]);
+  }
+  Rgbd flux = all;
+  if (!open) {
+    flux = Rgbd{0.0};
+    std::size_t out = 0;
+    for (const std::uint32_t photon : photons)
+      if (reached(photon)) flux += Rgbd(index_.flux(photon));
+      else ++out;
+    if (out == n) return Rgb(0.0f);
+    double none = 1;
+    for (std::size_t i = 0; i < first; ++i) none *= std::max(0.0, double(n - i) - double(out)) / double(n - i);
+    flux = (flux - all * none) / (1 - none);
+  }
+  const IrradiancePoint point{position, normal};
+  const double inverse = inverse_area(point, radius, open ? kProbesIfOpen : options_.area_probes, Draw::independent, random);
   return Rgb(Rgbd{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)} * inverse);
 }
 
@@ -112,17 +165,19 @@ bool PointDensity::open_and_flat(const IrradiancePoint& point, float radius, flo
 }
 
 /// 1 / area that can be reached, 1/m^2; 0 if there is none. Columns along the normal are drawn over the disc
-/// until a fixed number m of them arrives: the mean of (number drawn) / m is exactly 1 / (share that arrives)
-/// [inverse binomial sampling, Haldane 1945], where m / (a fixed number drawn) would be too small in the
-/// mean.
-double PointDensity::inverse_area(const IrradiancePoint& point, float radius,
+/// until a fixed number m of them arrives: the mean of (number drawn) / m is exactly 1 / (share that arrives) if they
+/// are independent [inverse binomial sampling, Haldane 1945], where m / (a fixed number drawn) would be too small in
+/// the mean. Spread evenly they are less noisy, but the mean is low by up to 1 / (2 m): m arrive as soon as m - 1/2 are
+/// to be expected.
+double PointDensity::inverse_area(const IrradiancePoint& point, float radius, int probes, Draw draw,
                                   const PathRandom& random) const {
   const Frame frame(point.normal);
   const std::uint64_t key = random.bits(1, Purpose::points);
   int arrived = 0, drawn = 0;
   double surface = 0;  // m^2 per m^2 of the disc, summed
-  while (arrived < options_.area_probes && drawn < kMostProbes * options_.area_probes) {
-    const Vec2 d = sample_disc_concentric(sobol_owen_2d(std::uint32_t(drawn++), key));
+  while (arrived < probes && drawn < kMostProbes * probes) {
+    const auto i = std::uint32_t(drawn++);
+    const Vec2 d = sample_disc_concentric(draw == Draw::spread ? sobol_owen_2d(i, key) : random.get2(i, Purpose::place));
     const float height = radius / kFlattening * std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y));
     const float here = column(point, (frame.tangent * d.x + frame.bitangent * d.y) * radius, height);
     arrived += here > 0;

@@ -202,6 +202,7 @@ void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
     flux *= 1 / survival;
     batch.absorbed += Rgbd(before) - Rgbd(flux);
     (next.diffuse ? diffuse_seen : specular_seen) = true;
+    batch.specular_ray_count += !next.diffuse;
     if (solid && !next.diffuse) inside.scatter(point.material, front, next.transmitted);
     ray = spawn_ray(point, travel);
   }

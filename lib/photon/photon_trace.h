@@ -33,6 +33,7 @@ struct PhotonBatch {
   formats::PhotonBlock block;                ///< of one group
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};   ///< W; emitted = escaped + absorbed up to rounding
   std::uint64_t ray_count = 0, path_count = 0;
+  std::uint64_t specular_ray_count = 0;      ///< of the rays: those that an event S sent
 };
 
 /// Traces photons through one frame. Photon i starts at point i of a scrambled Halton sequence and draws all

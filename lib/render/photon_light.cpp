@@ -1,11 +1,14 @@
 #include "lib/render/photon_light.h"
 
+#include <bit>
 #include <vector>
 
 namespace tempolux {
 namespace {
 
-PhotonIndex index_of_kind(std::span<const formats::Photon> photons, formats::PathKind kind, Vec3d shift) {
+constexpr int kAreaProbes = 8;   ///< few: a pixel takes the mean of as many estimates
+
+std::vector<formats::Photon> of_kind(std::span<const formats::Photon> photons, formats::PathKind kind, Vec3d shift) {
   std::vector<formats::Photon> chosen;
   for (const formats::Photon& photon : photons) {
     if (photon.kind != kind) continue;
@@ -14,28 +17,38 @@ PhotonIndex index_of_kind(std::span<const formats::Photon> photons, formats::Pat
     if (!(shift == Vec3d{}))
       p = {float(double(p[0]) + shift.x), float(double(p[1]) + shift.y), float(double(p[2]) + shift.z)};
   }
-  return PhotonIndex(chosen);
+  return chosen;
 }
 
 }  // namespace
 
-PhotonLight::PhotonLight(std::span<const formats::Photon> photons, Vec3d photon_shift, const Box3& bounds,
-                         const PhotonLightOptions& options)
-    : caustic_(index_of_kind(photons, formats::PathKind::caustic, photon_shift)),
-      indirect_(options.caustic_only ? PhotonIndex()
-                                     : index_of_kind(photons, formats::PathKind::indirect, photon_shift)) {
+PhotonLight::PhotonLight(const Tracer& tracer, std::span<const formats::Photon> photons, Vec3d photon_shift,
+                         const PhotonLightOptions& options) {
   options_.neighbours = options.neighbours;
-  options_.max_radius = options.max_radius > 0 ? options.max_radius : 0.05f * bounds.diagonal();
+  options_.max_radius = options.max_radius > 0 ? options.max_radius : 0.05f * tracer.frame().bounds.diagonal();
+  if (!options.caustic_only) indirect_ = PhotonIndex(of_kind(photons, formats::PathKind::indirect, photon_shift));
+  std::vector<formats::Photon> caustic = of_kind(photons, formats::PathKind::caustic, photon_shift);
+  if (caustic.empty()) return;
+  const float radius = options.caustic_radius > 0 ? options.caustic_radius : tracer.frame().bounds.diagonal() / 60;
+  const DensityOptions density{.neighbours = options.caustic_neighbours, .max_radius = radius, .area_probes = kAreaProbes};
+  caustic_ = std::make_unique<PointDensity>(tracer, std::move(caustic), density);
 }
 
-Rgb PhotonLight::estimate(const PhotonIndex& index, Vec3 position, Vec3 normal) const {
-  if (index.size() == 0) return Rgb(0.0f);
+/// Its random numbers are drawn for the place: the same for any order of look-ups, others in the next sample.
+Rgb PhotonLight::caustic(Vec3 position, Vec3 normal) const {
+  if (!caustic_) return Rgb(0.0f);
+  const std::uint64_t xy = std::uint64_t(std::bit_cast<std::uint32_t>(position.x)) << 32 | std::bit_cast<std::uint32_t>(position.y);
+  return caustic_->estimate_sampled(position, normal, PathRandom(xy, std::bit_cast<std::uint32_t>(position.z)));
+}
+
+Rgb PhotonLight::indirect(Vec3 position, Vec3 normal) const {
+  if (indirect_.size() == 0) return Rgb(0.0f);
   thread_local NeighbourList scratch;
-  return Rgb(estimate_irradiance(index, position, normal, options_, scratch).irradiance);
+  return Rgb(estimate_irradiance(indirect_, position, normal, options_, scratch).irradiance);
 }
 
 DiffuseLight::Irradiance PhotonLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3) const {
-  return {estimate(caustic_, surface.position, geometric), estimate(indirect_, surface.position, geometric)};
+  return {caustic(surface.position, geometric), indirect(surface.position, geometric)};
 }
 
 }  // namespace tempolux

@@ -1,35 +1,42 @@
 // lib/render/photon_light.h -- the photon map seen directly: irradiance by density for the renderer.
 #pragma once
 
+#include <memory>
+
 #include "lib/density/irradiance_estimate.h"
+#include "lib/gather/point_density.h"
 #include "lib/render/path_tracer.h"
 
 namespace tempolux {
 
 struct PhotonLightOptions {
-  int neighbours = 50;            ///< k of the density estimate
+  int neighbours = 50;            ///< k of the density estimate of indirect light
   float max_radius = 0;           ///< m; 0: a twentieth of the scene's diagonal
+  int caustic_neighbours = 20;    ///< fewer: caustics have edges, and a pixel averages several estimates
+  float caustic_radius = 0;       ///< m; 0: a sixtieth of the scene's diagonal
   bool caustic_only = false;      ///< indirect light comes from elsewhere: index the caustic photons alone
 };
 
 /// Caustic and indirect irradiance from the photons of a map, each kind by its own k nearest. Biased: light is
-/// blurred over the radius of the estimate and lost at edges and corners within it; the bias falls with the
-/// photons' number.
+/// blurred over the radius of the estimate, and indirect light is lost at edges and corners within it; the bias falls
+/// with the photons' number. Caustic light is divided by the area that can be reached (PointDensity::estimate_sampled):
+/// right on slender things too, where it is uniform over them. Without caustic photons nothing is built for them.
 class PhotonLight : public DiffuseLight {
  public:
   /// `photon_shift` is added to photon positions to bring them into scene space (the file's origin minus the
   /// frame's).
-  PhotonLight(std::span<const formats::Photon> photons, Vec3d photon_shift, const Box3& bounds,
+  PhotonLight(const Tracer& tracer, std::span<const formats::Photon> photons, Vec3d photon_shift,
               const PhotonLightOptions& options);
 
   Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const override;
-  Rgb caustic(Vec3 position, Vec3 normal) const { return estimate(caustic_, position, normal); }
-  std::size_t photon_count() const { return caustic_.size() + indirect_.size(); }
+  Rgb caustic(Vec3 position, Vec3 normal) const;
+  std::size_t photon_count() const { return (caustic_ ? caustic_->photon_count() : 0) + indirect_.size(); }
 
  private:
-  Rgb estimate(const PhotonIndex& index, Vec3 position, Vec3 normal) const;
+  Rgb indirect(Vec3 position, Vec3 normal) const;
 
-  PhotonIndex caustic_, indirect_;
+  std::unique_ptr<PointDensity> caustic_;   ///< null: no photon is of that kind
+  PhotonIndex indirect_;
   IrradianceOptions options_;
 };
 

@@ -59,12 +59,14 @@ grep -q irradpoints "$work/frame.d" && bad 'no record is missing: points were re
   bad 'no mirror, no glass: a caustic layer that is not 0'
 
 # A mirror brings caustic photons, and without one there are none of them even where they are asked for.
-tool photon-trace "$work/walk.glb" --photons 5k --kinds caustic,indirect -o "$work/matte.photons"
+tool photon-trace "$work/walk.glb" --photons 5k --kinds caustic,indirect -o "$work/matte.photons" --stats "$work/matte.json"
+[ "$(count specular_rays "$work/matte.json")" = 0 ] || bad 'no mirror, no glass: specular rays'
 [ "$(kinds "$work/matte.photons")" = 'indirect ' ] || bad "no mirror, no glass: photons of kinds $(kinds "$work/matte.photons")"
 edit "$work/still.glb" "$work/mirror.glb" mirror
 tool scene-plan "$work/mirror.glb" --frames 0 -o "$work/mirror"
 grep -q '^plan_kinds := caustic,indirect$' "$work/mirror/plan.mk" || bad 'a mirror: no caustic photons planned'
-tool photon-trace "$work/mirror.glb" --photons 5k --kinds caustic,indirect -o "$work/mirror.photons"
+tool photon-trace "$work/mirror.glb" --photons 5k --kinds caustic,indirect -o "$work/mirror.photons" --stats "$work/mirror.json"
+[ "$(count specular_rays "$work/mirror.json")" -gt 0 ] || bad 'a mirror: no specular ray is counted'
 [ "$(kinds "$work/mirror.photons")" = 'caustic indirect ' ] || bad "a mirror: photons of kinds $(kinds "$work/mirror.photons")"
 
 # Libraries, those opened while running among them: the loader's own list.

@@ -31,6 +31,7 @@ void add_box(HandMadeScene& scene, Vec3 l, Vec3 u, const Material& m) {
 struct Stored {
   double direct = 0, caustic = 0, indirect = 0, emitted = 0, gone = 0;   ///< W, green
   std::size_t caustic_count = 0;
+  std::uint64_t specular_rays = 0;
 };
 Stored trace(HandMadeScene& scene, std::uint64_t count, std::uint32_t object) {
   const SceneFrame& frame = scene.frame();
@@ -49,6 +50,7 @@ Stored trace(HandMadeScene& scene, std::uint64_t count, std::uint32_t object) {
       sum.caustic_count += photon.kind == formats::PathKind::caustic;
     }
     sum.emitted += batch.emitted.g;
+    sum.specular_rays += batch.specular_ray_count;
     sum.gone += batch.absorbed.g + batch.escaped.g;
   }
   return sum;
@@ -95,13 +97,60 @@ TEST(Caustics, RoughGlassLosesNoPhotons) {
   }
 }
 
-/// Nothing but matte surfaces: no photon of kind caustic.
+/// Flux through a glass ball of radius 1 onto the screen of radius 2.5 at y = -3, by quadrature over the light of a lamp of
+/// 1 W/sr at (0, d, 0). All angles within a sphere are one: of what enters, (1 - F) F^(p-1) (1 - F) leaves after p - 1
+/// reflections inside, p = 0 is F. In its plane the path turns by 2 (i - r) and by pi - 2 r at each reflection.
+double ball_onto_screen(double d) {
+  constexpr int kSteps = 100000;
+  const double least = std::sqrt(1 - 1 / (d * d));   // mu of the grazing ray
+  double sum = 0;
+  for (int k = 0; k < kSteps; ++k) {
+    const double mu = least + (1 - least) * (k + 0.5) / kSteps, theta = std::acos(mu);
+    const double i = std::asin(std::min(1.0, d * std::sin(theta))), r = std::asin(std::sin(i) / 1.5);
+    const double ci = std::cos(i), cr = std::cos(r);
+    const double rs = (ci - 1.5 * cr) / (ci + 1.5 * cr), rp = (1.5 * ci - cr) / (1.5 * ci + cr), f = (rs * rs + rp * rp) / 2;
+    // Of the place: the angle from +y where the ray meets the ball; it steps by pi - 2 r along each chord.
+    for (int p = 0; p < 12; ++p) {
+      const double at = (i - theta) + p * (M_PI - 2 * r), x = std::sin(at), y = std::cos(at);
+      // The way out makes the angle i with the normal there, on the side it came along.
+      const double out = at + i, dx = std::sin(out), dy = std::cos(out);
+      if (!(dy < 0)) continue;
+      const double t = (-3 - y) / dy, where = x + t * dx;
+      if (std::abs(where) < 2.5) sum += (p == 0 ? f : (1 - f) * (1 - f) * std::pow(f, p - 1)) * 2 * M_PI * (1 - least) / kSteps;
+    }
+  }
+  return sum;
+}
+
+/// A lamp 1.5 m from a ball of 32768 triangles: its beam comes out about parallel. 13 % of 400000 photons meet the ball:
+/// sigma 0.2 % (and triangles inscribed are 0.02 % less); asked 1 %.
+TEST(Caustics, BallPassesWhatFresnelSays) {
+  HandMadeScene scene;
+  scene.add_sphere({0, 0, 0}, 1, 64, glass(0), false, false);
+  scene.add_quad({-9, -3, 9}, {9, -3, 9}, {9, -3, -9}, {-9, -3, -9}, matte(Rgb(0.0f)));
+  scene.add_point_light({0, 1.5f, 0}, Rgb(1.0f));
+  const SceneFrame& frame = scene.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  PhotonOptions options;
+  options.photon_count = 400000;
+  const PhotonTracer photons(tracer, lights, options);
+  double screen = 0;
+  for (std::size_t b = 0; b < photons.batch_count(); ++b)
+    for (const formats::Photon& photon : photons.trace(b).block.photons)
+      if (photon.kind == formats::PathKind::caustic && std::hypot(photon.position[0], photon.position[2]) < 2.5f)
+        screen += double(photon.flux[1]);
+  EXPECT_NEAR(screen / ball_onto_screen(1.5), 1, 0.01);
+}
+
+/// Nothing but matte surfaces: no photon of kind caustic, no ray that an event S sent.
 TEST(Caustics, MatteScenesHaveNone) {
   HandMadeScene scene;
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.7f)));
   scene.add_point_light({0, 0, 0}, Rgb(1.0f));
   const Stored stored = trace(scene, 20000, 0);
   EXPECT_EQ(stored.caustic_count, 0u);
+  EXPECT_EQ(stored.specular_rays, 0u);
   EXPECT_GT(stored.direct, 0);
 }
 

@@ -194,7 +194,7 @@ TEST(FrameRenderer, PhotonLayersAgreeWithPathLayers) {
     const PhotonBatch batch = tracer.trace(b);
     photons.insert(photons.end(), batch.block.photons.begin(), batch.block.photons.end());
   }
-  const PhotonLight light(photons, {}, c.frame.bounds, {});
+  const PhotonLight light(c.tracer, photons, {}, {});
   options.diffuse_light = &light;
   const RenderedFrame direct = render_frame(c.render_scene(), c.view, options);
 
