@@ -107,8 +107,9 @@ class Bench:
         return self.cached("reference", name, [scene, *options], ["_a.exr", "_b.exr"], make)
 
     def compare(self, frame, halves, output, layer=None, *options):
-        """aqm-compare against reference halves; its JSON, kept in `output`."""
-        self.run([self.bin / "aqm-compare", frame, "--reference-halves", *halves, "--json", output, "-q",
+        """aqm-compare against reference halves; its JSON, kept in `output`. A reference may be from an older version, whose
+        hashes of the same scene may differ."""
+        self.run([self.bin / "aqm-compare", frame, "--reference-halves", *halves, "--json", output, "-q", "--allow-stale",
                   *(["--layer", layer] if layer else []), *options])
         return json.loads(Path(output).read_text())
 
