@@ -35,6 +35,8 @@ add_test(NAME pipelines.drop_kind COMMAND sh tests/pipelines/drop_kind.sh $<TARG
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.environment COMMAND sh tests/pipelines/environment.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+add_test(NAME pipelines.textured_room COMMAND python3 -B tests/pipelines/textured_room.py $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.scenes COMMAND sh tests/pipelines/scenes.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAKE_BINARY_DIR}
@@ -43,7 +45,7 @@ set_tests_properties(pipelines.installed PROPERTIES TIMEOUT 300 RUN_SERIAL ON)
 add_test(NAME pipelines.leaving_out COMMAND sh tests/pipelines/leaving_out.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.rerun pipelines.leaving_out pipelines.plan_example pipelines.plan_refuses
-                     pipelines.drop_kind pipelines.environment pipelines.scenes PROPERTIES TIMEOUT 300)
+                     pipelines.drop_kind pipelines.environment pipelines.scenes pipelines.textured_room PROPERTIES TIMEOUT 300)
 
 add_test(NAME cli.no_heavy_libraries COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cli/no_heavy_libraries.sh ${CMAKE_BINARY_DIR}/bin)
 

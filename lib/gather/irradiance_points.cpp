@@ -100,7 +100,8 @@ std::vector<formats::Photon> of_kind(std::span<const formats::Photon> photons, f
 }  // namespace
 
 float point_spacing(const SceneFrame& frame, const PointOptions& options) {
-  return float(std::sqrt(storing_area(frame) / std::max(1u, options.count)));
+  const double area = storing_area(frame);
+  return area > 0 ? float(std::sqrt(area / std::max(1u, options.count))) : 1.0f;
 }
 
 std::vector<IrradiancePoint> place_points(const SceneFrame& frame, const PointOptions& options) {

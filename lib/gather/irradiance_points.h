@@ -23,7 +23,7 @@ struct PointOptions {
   int area_probes = 32;         ///< that must arrive in a disc cut by walls or edges
 };
 
-/// Mean distance of neighbouring points, m: square root of the area each stands for.
+/// Mean distance of neighbouring points, m: square root of the area each stands for; 1 where no surface stores light.
 float point_spacing(const SceneFrame& frame, const PointOptions& options);
 
 /// Points uniform by area on both sides of every surface that has a Lambert lobe, without irradiance yet. The

@@ -5,7 +5,7 @@
     python3 tests/bench/found.py --only 'Fox|17_ior'    some of them
 
 A file without a camera is copied to a temporary folder and gets one that sees all of it, and a ground below; a file without
-a light gets a lamp. Where things stand (skins, morphs, instances) is learnt from a few photons of a sun. Prints a table;
+a light gets a lamp and a dim sky. Where things stand (skins, morphs, instances) is learnt from a few photons of a sun. Prints a table;
 writes found.json and sheet.png (path tracer left, photon chain right, each pair at its own exposure) to --out.
 A layer agrees if its means differ by less than 1.5 %, or 1.5 standard errors more, or by less than 0.1 % of the picture's.
 """
@@ -37,7 +37,7 @@ class Found:
 
     def __init__(self, bench, folder, size, spp, photons):
         self.bench, self.folder, self.size, self.spp, self.photons = bench, folder, size, spp, photons
-        self.pictures = bench.out / "found"
+        self.sky, self.pictures = [], bench.out / "found"
         self.pictures.mkdir(exist_ok=True)
 
     def tool(self, name, *arguments):
@@ -51,10 +51,13 @@ class Found:
         return json.loads(stats.read_text()), [line for line in lines if "warning" in line]
 
     def usable(self, file):
-        """(scene with camera and light, what it was given)"""
+        """(scene with camera and light, what it was given); sets the sky"""
+        self.sky = []
         asset = Asset(file)
         if asset.has_camera and asset.has_light:
             return file, ""
+        if not asset.has_light:
+            self.sky = ["--environment-color", "0.1,0.12,0.15"]
         if not asset.gltf.get("meshes"):
             return furnished(asset, self.folder / "furnished", [-2] * 3, [2] * 3)
         sun = with_sun(asset, self.folder / "sun")
@@ -66,12 +69,12 @@ class Found:
     def by_paths(self, scene, size, spp, *options):
         image = self.folder / "path.exr"
         stats, warnings = self.tool("frame-render", scene, "--frame", FRAME, "--size", size, "--integrator", "path", "--spp", spp,
-                                    "--halves", "--channels", "RGBA,layers", "--compression", "none", "-o", image, *options)
+                                    "--halves", "--channels", "RGBA,layers", "--compression", "none", "-o", image, *self.sky, *options)
         return image, stats["cpu_s"], warnings
 
     def by_photons(self, scene, size, photons, seed, *options):
         photon_map, points, cache, image = (self.folder / f"chain.{end}" for end in ("photons", "irradpoints", "irradcache", "exr"))
-        common = [scene, "--frame", FRAME, "-q", "--seed", seed, *options]
+        common = [scene, "--frame", FRAME, "-q", "--seed", seed, *self.sky, *options]
         runs = [self.tool("photon-trace", *common, "--photons", photons, "-o", photon_map),
                 self.tool("irradcache-build", *common, "--photons", photon_map, "--keep-points", points, "--size", size, "-o", cache),
                 self.tool("frame-render", *common, "--size", size, "--irradcache", cache, "--points", points, "--photons",

@@ -68,8 +68,6 @@ class Asset:
         data = struct.pack("<12f6H", *(x for corner in corners for x in corner), 0, 1, 2, 0, 2, 3)
         g = self.gltf
         buffers, views, accessors = (g.setdefault(key, []) for key in ("buffers", "bufferViews", "accessors"))
-        if self.path.suffix == ".glb" and not buffers:
-            raise ValueError(f"{self.path}: no buffer")
         buffers.append({"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()})
         views += [{"buffer": len(buffers) - 1, "byteOffset": start, "byteLength": size} for start, size in ((0, 48), (48, 12))]
         accessors += [{"bufferView": len(views) - 2, "componentType": 5126, "type": "VEC3", "count": 4,
@@ -124,7 +122,7 @@ def furnished(asset, folder, lower, upper):
         copy.gltf.setdefault("cameras", []).append({"type": "perspective", "perspective": {"yfov": 0.66, "znear": 0.001 * r}})
         copy.node(name="AddedCamera", camera=len(copy.gltf["cameras"]) - 1, matrix=looking(eye, [c - e for c, e in zip(centre, eye)]))
         y = lower[1] - 0.01 * r
-        x, z, side = centre[0], centre[2], 5 * r
+        x, z, side = centre[0], centre[2], 3 * r
         copy.quad("AddedGround", [[x - side, y, z + side], [x + side, y, z + side], [x + side, y, z - side], [x - side, y, z - side]],
                   {"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0}})
         added += ["camera", "ground"]
