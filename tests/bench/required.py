@@ -7,6 +7,7 @@ import math
 import os
 
 import gathering
+from found import found
 from measure import Missing, big, figure, median, percent, quantity, timed, wait_for_quiet
 
 
@@ -236,4 +237,4 @@ def object_table(objects):
 
 
 FIGURES = {"path-tracer": path_tracer, "photon-rate": photon_rate, "photon-growth": photon_growth, "nearest": nearest,
-           "threads": threads, "start": start, "reading": reading, "references": references} | gathering.FIGURES
+           "threads": threads, "start": start, "reading": reading, "references": references, "found": found} | gathering.FIGURES
