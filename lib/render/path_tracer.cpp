@@ -26,8 +26,12 @@ void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, const Rg
   if (!x.bsdf.has_diffuse() && !specular) return;
   // Rough glass passes on light from behind: the side is drawn, the other's light is left to other samples.
   const float share_beyond = x.bsdf.light_share_beyond();
-  const bool beyond = share_beyond > 0 && random.get1(bounce, Purpose::light_choice) < share_beyond;
-  const float share = beyond ? share_beyond : 1 - share_beyond;
+  bool beyond = false;
+  float share = 1;
+  if (share_beyond > 0) [[unlikely]] {
+    beyond = random.get1(bounce, Purpose::light_choice) < share_beyond;
+    share = beyond ? share_beyond : 1 - share_beyond;
+  }
   LightSample light;
   if (!scene.lights.sample(x.surface.position, beyond ? -x.normal : x.normal, random.get2(bounce, Purpose::light_point), light)) return;
   if (beyond ? !x.sees_beyond(light.wi) : !x.sees(light.wi)) return;
@@ -95,7 +99,7 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     SurfacePoint point = scene.tracer.surface_point(hit);
     const Vec3 wo = -ray.direction;
     const bool front = dot(point.normal_geometric, wo) > 0;
-    if (inside.any() || (is_solid_glass(scene.frame().materials[point.material]) && !front))
+    if (inside.any() || (!front && is_solid_glass(scene.frame().materials[point.material])))
       throughput *= inside.transmittance_to(scene.frame().materials, point.material, front, hit.t);
     cone.advance(hit.t);
     add_emission(scene, point, wo, last, throughput, path.layer(), cone.width, result);
