@@ -16,6 +16,8 @@ class Settings:
     pixels: tuple = ()        # of frame-render
     steps: bool = False       # points and records by two processes, as Makefile.example does; else by one
 
+    caustics: bool = False    # pixels read the photons too: scenes with mirrors or glass
+
     def text(self):
         return " ".join(map(str, ("photons", self.photons, *self.points, *self.records, *self.pixels)))
 
@@ -63,6 +65,8 @@ def frame(bench, name, seed, settings, size=None, fresh=False):
         try:
             light(bench, name, stem, seed, settings, size, keep)
             spare = ["--points", keep[1]] if settings.steps else ["--photons", keep[0]]
+            if settings.steps and settings.caustics:
+                spare += ["--photons", keep[0]]
             bench.run([tools[2], scene, "--frame", number, "--irradcache", keep[2], *spare, "--seed", seed, "--size", size,
                        *settings.pixels, "--channels", "RGBA,layers,id", "-q", "-o", f"{files}.exr",
                        "--stats", f"{files}.json"])
@@ -70,7 +74,7 @@ def frame(bench, name, seed, settings, size=None, fresh=False):
             for file in keep:
                 file.unlink(missing_ok=True)
     image, *stats = bench.cached("frames", f"{name}-chain-{settings.photons}-{seed}",
-                                 [scene, *tools, number, seed, size, settings.steps, settings.text()], suffixes, make, fresh)
+                                 [scene, *tools, number, seed, size, settings.steps, settings.caustics, settings.text()], suffixes, make, fresh)
     return image, stats
 
 

@@ -6,6 +6,7 @@ taken out; costs are CPU seconds of all processes.
 import json
 import math
 
+import atrium
 import chain
 from chain import Settings
 from measure import big, figure, median, percent, quantity
@@ -262,4 +263,4 @@ def growth(bench, _):
 
 
 FIGURES = {"gather-quality": gather_quality, "gather-speed-error": gather_speed_error, "cornell": cornell, "large": large,
-           "hall": hall, "gather-rays": gather_rays, "growth": growth}
+           "hall": hall, "gather-rays": gather_rays, "growth": growth} | atrium.FIGURES
