@@ -40,17 +40,18 @@ def read(bench, file):
 
 
 def without_caustics(bench, image, halves):
-    """(MSE, relMSE) of the image without its caustic layer: the mean of (x - a)(x - b), a and b the halves without
-    theirs; relMSE divides by ((a + b) / 2)^2 + 0.01, per channel."""
+    """(MSE, relMSE) of the image without its caustic layer as aqm-compare has them: with a and b the halves without
+    theirs and r their mean, the mean of (x - a)(x - b), and of that over r^2 + (mean r / 10)^2, channels averaged."""
     frames = [read(bench, file) for file in (image, *halves)]
-    square, relative, count = 0.0, 0.0, 0
-    for c in "RGB":
-        x, a, b = ([v - w for v, w in zip(f[c], f[f"caustic.{c}"])] for f in frames)
-        products = [(p - q) * (p - r) for p, q, r in zip(x, a, b)]
-        square += sum(products)
-        relative += sum(d / (0.25 * (q + r) ** 2 + 0.01) for d, q, r in zip(products, a, b))
-        count += len(products)
-    return square / count, relative / count
+    x, a, b = ([[v - w for v, w in zip(f[c], f[f"caustic.{c}"])] for c in "RGB"] for f in frames)
+    squares, scales, total = [0.0] * len(x[0]), [0.0] * len(x[0]), 0.0
+    for planes in zip(x, a, b):
+        for i, (p, q, r) in enumerate(zip(*planes)):
+            squares[i] += (p - q) * (p - r) / 3
+            scales[i] += (0.5 * (q + r)) ** 2 / 3
+            total += 0.5 * (q + r) / 3
+    soft = (0.1 * total / len(squares)) ** 2
+    return mean(squares), mean(s / (r + soft) for s, r in zip(squares, scales))
 
 
 def quality(bench, _):
