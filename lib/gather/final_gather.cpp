@@ -224,6 +224,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   record.normal = normal;
   record.object = from.object;
   sky.irradiance_and_gradients(frame, record);
+  record.lit_cells = sky.lit_cells();
   if (options_.curvature) record.curvature = sky.curvature();
   record.radius_unclamped = sky.harmonic_distance();
   record.radius = sky.nearest_across();

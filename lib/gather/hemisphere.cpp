@@ -95,10 +95,23 @@ float Hemisphere::curvature() const {
   return float(size);
 }
 
+float Hemisphere::lit_cells() const {
+  double sum = 0, square = 0;
+  for (const Rgb& l : radiance) {
+    const double value = double(l.r) + double(l.g) + double(l.b);
+    sum += value;
+    square += value * value;
+  }
+  return square > 0 ? float(sum * sum / square) : 0.0f;
+}
+
 float Hemisphere::harmonic_distance() const {
-  double sum = 0;
-  for (const float inverse : inverse_distance) sum += double(inverse);
-  return sum > 0 ? float(double(inverse_distance.size()) / sum) : INFINITY;
+  double sum = 0, hits = 0;
+  for (const float inverse : inverse_distance) {
+    sum += double(inverse);
+    hits += inverse > 0;
+  }
+  return sum > 0 ? float(hits / sum) : INFINITY;
 }
 
 float Hemisphere::nearest_across() const {

@@ -40,7 +40,10 @@ class Hemisphere {
   ///     between sectors, u v + v u:   3/2 (sin^2 t_j+ - sin^2 t_j-) / r^2 (L_jk - L_j,k-1)
   float curvature() const;
 
-  /// Harmonic mean of the distances, m; infinity if there is nothing.
+  /// How many cells carry the light: (sum L)^2 / sum L^2 over the cells' mean channel; 0 in the dark.
+  float lit_cells() const;
+  /// Harmonic mean of the distances of what is there, m; infinity if there is nothing. The sky does not count: the light
+  /// gathered comes from the rest, however little of the hemisphere it fills, and changes as one moves by it.
   float harmonic_distance() const;
   /// Of what the outermost ring met, the nearest, m; infinity if nothing.
   float nearest_across() const;

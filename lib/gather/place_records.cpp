@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kBatch = 256;
 constexpr int kCoarsest = 16;
+constexpr float kFewCells = 8, kEnoughCells = 32;   ///< lit cells: gradients are left out; count in full
 
 std::vector<std::size_t> shuffled(std::vector<std::size_t> pixels) {
   std::sort(pixels.begin(), pixels.end(), [](std::size_t a, std::size_t b) {
@@ -127,6 +128,11 @@ void limit_radius(IrradianceRecord& record, float footprint, float max_radius, c
   const double e = double(record.irradiance.r) + double(record.irradiance.g) + double(record.irradiance.b);
   if (options.by_curvature)
     record.radius_unclamped = record.curvature > 0 ? float(std::sqrt(2 * e / double(record.curvature))) : INFINITY;
+  // Of light that a handful of rays found gradients say nothing. Were they to shrink the radius, records whose rays missed
+  // that light would outweigh those that met it: a small bright thing over a wide floor came out 75 % dark.
+  const float trust = std::clamp((record.lit_cells - kFewCells) / (kEnoughCells - kFewCells), 0.0f, 1.0f);
+  for (Vec3& g : record.translational) g *= trust;
+  for (Vec3& g : record.rotational) g *= trust;
   double reach = double(record.radius_unclamped), slope = 0;
   for (Vec3 g : record.translational) slope += length(Vec3d(g));
   if (!options.by_curvature && slope * reach > e && slope > 0) reach = e / slope;

@@ -43,6 +43,9 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
 
 /// Sets a gathered record's radius from its harmonic mean distance:
 ///
+/// The gradients of a record that fewer than 32 of its rays make out (lit_cells) are reduced, to nothing at 8: they are
+/// noise, and a radius that follows from them would depend on the light that happened to be found.
+///
 ///     r = min(error_bound x min(R, |E| / |dE/dx|), nearest surface along the tangent plane, max_radius),
 ///
 /// and at least min_radius_px footprints. radius_unclamped keeps error_bound x R. By curvature R = sqrt(2 |E| /

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,6 +20,7 @@ struct IrradianceRecord {
   std::array<Vec3, 3> translational{};  ///< per channel: E(x) = E + (x - x_i) . g [W/m^3]
   float radius = 0;                     ///< m: validity, after clamping
   float radius_unclamped = 0;           ///< m: before it was limited by pixels, scene and neighbours
+  float lit_cells = INFINITY;           ///< how many gather rays carry the irradiance (hemisphere.h); not in files
   float curvature = 0;                  ///< W/m^4: size of the second derivatives (hemisphere.h); not in files
   std::uint32_t object = 0;             ///< the object it rides on
 };

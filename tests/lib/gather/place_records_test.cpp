@@ -63,6 +63,20 @@ struct Room {
   }
 };
 
+/// A record whose light was found by 4 of its rays has no gradients, one by 100 keeps them, whatever they are.
+TEST(LimitRadius, GradientsOfAFewRaysAreNoise) {
+  for (const auto& [cells, kept] : {std::pair{4.0f, 0.0f}, std::pair{20.0f, 0.5f}, std::pair{100.0f, 1.0f}}) {
+    IrradianceRecord record;
+    record.irradiance = Rgb(1.0f);
+    record.translational[0] = record.rotational[1] = {0.01f, 0, 0};
+    record.radius = record.radius_unclamped = 1;
+    record.lit_cells = cells;
+    limit_radius(record, 0, 10, PlacementOptions{});
+    EXPECT_FLOAT_EQ(record.translational[0].x, 0.01f * kept);
+    EXPECT_FLOAT_EQ(record.rotational[1].x, 0.01f * kept);
+  }
+}
+
 TEST(PlaceRecords, EveryPixelIsCoveredAndASecondTimeNothingIsAdded) {
   const Room room;
   RecordStore store(room.frame->bounds);
