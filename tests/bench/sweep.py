@@ -19,7 +19,7 @@ def photon_counts(bench):
 
 
 def sample_counts(bench):
-    return [1, 4] if bench.quick else [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024]
+    return [1, 4] if bench.quick else [1, 2, 4, 8, 16, 32, 64, 128, 256]
 
 
 def growing_neighbours(photons):
@@ -107,7 +107,8 @@ def measure(bench, peers):
         for curve, values, make in curves(bench):
             print(f"  {name}: {curve}", flush=True)
             for x in values:
-                for seed in ([1] if bench.quick or x >= 3 * 10**6 or (curve == "path tracing" and x > 16) else [1, 2]):
+                for seed in ([1] if bench.quick or (curve == "path tracing" and x > 16) or curve.startswith("gathering") or x > 10**5
+                             else [1, 2]):
                     image, stats = make(name, x, seed)
                     for layer in LAYERS[name]:
                         title = f"{name}, indirect light alone" if layer else f"{name}, {FRAMES[name]}"
