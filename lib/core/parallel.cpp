@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace tempolux {
 
@@ -49,19 +50,26 @@ void parallel_chunks(std::size_t count, std::size_t chunk_size,
 void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
                       const std::function<std::shared_ptr<void>(std::size_t)>& make,
                       const std::function<void(std::size_t, void*)>& take) {
-  using Item = std::pair<std::size_t, std::shared_ptr<void>>;
+  // What is made is kept here, not in TBB's tokens: a pipeline that an exception cancels drops those it has queued
+  // without destroying them. Those in flight are consecutive, so each has a place of its own.
+  const std::size_t places = std::max<std::size_t>(1, in_flight);
+  std::vector<std::shared_ptr<void>> made(places);
   std::size_t next = 0;
   tbb::parallel_pipeline(
-      std::max<std::size_t>(1, in_flight),
-      tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
-                                          [&](tbb::flow_control& control) {
-                                            if (next == chunk_count) control.stop();
-                                            return next < chunk_count ? next++ : next;
-                                          }) &
-          tbb::make_filter<std::size_t, Item>(tbb::filter_mode::parallel,
-                                              [&](std::size_t i) { return Item{i, make(i)}; }) &
-          tbb::make_filter<Item, void>(tbb::filter_mode::serial_in_order,
-                                       [&](Item item) { take(item.first, item.second.get()); }));
+      places, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
+                                                  [&](tbb::flow_control& control) {
+                                                    if (next == chunk_count) control.stop();
+                                                    return next < chunk_count ? next++ : next;
+                                                  }) &
+                  tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel,
+                                                             [&](std::size_t i) {
+                                                               made[i % places] = make(i);
+                                                               return i;
+                                                             }) &
+                  tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, [&](std::size_t i) {
+                    const std::shared_ptr<void> item = std::move(made[i % places]);
+                    take(i, item.get());
+                  }));
 }
 
 }  // namespace tempolux
