@@ -61,5 +61,8 @@ function(tempolux_test source)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
+  if(TEMPOLUX_SANITIZE)  # ten times slower, at a load that need not be low
+    math(EXPR ARG_TIMEOUT "${ARG_TIMEOUT} * 5")
+  endif()
   set_tests_properties(${test} PROPERTIES TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "skipped: all")
 endfunction()
