@@ -249,6 +249,12 @@ struct Output::State : std::streambuf {
     return traits_type::not_eof(c);
   }
 
+  void commit(bool sync) {
+    finish_file(sync);
+    if (temporary) rename_into_place(sync);
+    note(Ledger::Line::Stage::committed);
+  }
+
   /// All bytes are written (sync: on the disk) and the file is closed after this.
   void finish_file(bool sync) {
     flush_buffer();
@@ -300,17 +306,8 @@ std::ostream& Output::stream() { return state_->stream; }
 
 void Output::write(const void* data, std::size_t size) { state_->put(static_cast<const char*>(data), size); }
 
-void Output::commit() {
-  state_->finish_file(true);
-  if (state_->temporary) state_->rename_into_place(true);
-  state_->note(Ledger::Line::Stage::committed);
-}
-
-void Output::commit_unsynced() {
-  state_->finish_file(false);
-  if (state_->temporary) state_->rename_into_place(false);
-  state_->note(Ledger::Line::Stage::committed);
-}
+void Output::commit() { state_->commit(true); }
+void Output::commit_unsynced() { state_->commit(false); }
 
 bool Output::commit_if_changed() {
   state_->flush_buffer();

@@ -117,6 +117,8 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
                            GatherCounts& counts) const {
   const Bsdf& bsdf = *met.bsdf;
   const bool specular = bsdf.has_specular();
+  std::optional<Side> side;
+  if (specular) side.emplace(met.hit, met.geometric, met.wo);
   const PathRandom random(key, std::uint64_t(depth));
   Rgb result{0.0f};
   if (bsdf.has_diffuse()) {
@@ -124,7 +126,7 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
       ++counts.unanswered;
     } else {
       ++counts.points_read;
-      const Rgb rho = bsdf.diffuse_reflectance(specular ? Side(met.hit, met.geometric, met.wo).wo_local.z : 1);
+      const Rgb rho = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1);
       // A random threshold between half and one and a half times the near distance: no seam where it begins.
       const float near = options_.near_factor * point->radius;
       const bool is_near = depth == 0 && met.distance < 1.5f * near &&
@@ -134,12 +136,11 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
   }
   if (!specular || depth >= kDeepestSpecular) return result;
   // Other lobes: one sampled direction, by roulette on its weight; the Lambert lobe was read above.
-  const Side side(met.hit, met.geometric, met.wo);
   const MaterialValues& material = tracer_.frame().materials[met.hit.material];
   const bool front = dot(met.hit.normal_geometric, met.wo) > 0, solid = is_solid_glass(material);
-  const auto next = bsdf.sample(side.wo_local, random.get1(2, Purpose::lobe), random.get2(2, Purpose::scatter));
+  const auto next = bsdf.sample(side->wo_local, random.get1(2, Purpose::lobe), random.get2(2, Purpose::scatter));
   if (next.diffuse || is_black(next.weight)) return result;
-  const Vec3 travel = side.frame.to_world(next.wi);
+  const Vec3 travel = side->frame.to_world(next.wi);
   if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, met.geometric) <= 0) return result;
   const float survival = std::min(0.95f, max_component(next.weight));
   if (!(random.get1(2, Purpose::roulette) < survival)) return result;

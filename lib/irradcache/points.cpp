@@ -49,6 +49,15 @@ Vec3 bin_direction(std::uint32_t bin) {
   return normalize(n);
 }
 
+/// Asks for points about `position` that face the same way as `normal`.
+PhotonQuery facing(Vec3 position, Vec3 normal) {
+  PhotonQuery query;
+  query.point = position;
+  query.normal = normal;
+  query.min_cos = kSameSide;
+  return query;
+}
+
 }  // namespace
 
 /// The points nearest to the middle of a cell: among them its hits look for one that they can reach. Not
@@ -103,10 +112,7 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
 /// The nearest point of the object among the nearest few, else the nearest of all.
 std::uint32_t PointLookup::search(Vec3 position, Vec3 normal, std::uint32_t object) const {
   thread_local NeighbourList found;
-  PhotonQuery query;
-  query.point = position;
-  query.normal = normal;
-  query.min_cos = kSameSide;
+  const PhotonQuery query = facing(position, normal);
   const auto same = [&](std::uint32_t i) { return index_.object(i) == std::uint16_t(object); };
   index_.find_nearest(query, 1, found);
   if (found.count() == 0) return 0;
@@ -132,10 +138,7 @@ std::uint32_t PointLookup::search_cell(Vec3 middle, std::uint32_t bin, std::uint
 bool PointLookup::cut(Vec3 middle, std::uint32_t nearest) const {
   thread_local NeighbourList found;
   const IrradiancePoint& point = points_[nearest];
-  PhotonQuery query;
-  query.point = middle;
-  query.normal = point.normal;
-  query.min_cos = kSameSide;
+  PhotonQuery query = facing(middle, point.normal);
   query.max_radius = length(point.position - middle) + kCellDiagonal * cell_;
   index_.find_within(query, found);
   for (std::uint32_t i : found.photons())
@@ -150,10 +153,7 @@ bool PointLookup::separated(std::uint32_t i) const {
   if (const std::uint8_t known = separated_[i].load(std::memory_order_relaxed)) return known == 2;
   thread_local NeighbourList found;
   const IrradiancePoint& point = points_[i];
-  PhotonQuery query;
-  query.point = point.position;
-  query.normal = point.normal;
-  query.min_cos = kSameSide;
+  PhotonQuery query = facing(point.position, point.normal);
   query.max_radius = kNeighbourhood * spacing_;
   index_.find_within(query, found);
   bool all = true;
@@ -172,10 +172,7 @@ std::uint32_t PointLookup::remember_crowd(Vec3 middle, Vec3 normal, std::uint32_
   const std::uint32_t number = crowd_count_.fetch_add(1, std::memory_order_relaxed);
   if (number >= points_.size()) return 0;
   thread_local NeighbourList found;
-  PhotonQuery query;
-  query.point = middle;
-  query.normal = normal;
-  query.min_cos = kSameSide;
+  const PhotonQuery query = facing(middle, normal);
   index_.find_nearest(query, PointCrowd::kMost, found);
   found.sort_by_distance();
   PointCrowd& crowd = crowds_[number];
@@ -218,10 +215,7 @@ std::uint32_t PointLookup::reachable_in(const PointCrowd& crowd, const Question&
 /// The same without a crowd, or where none of it can be reached; in the end as search().
 std::uint32_t PointLookup::search_reachable(const Question& q) const {
   thread_local NeighbourList found;
-  PhotonQuery query;
-  query.point = q.position;
-  query.normal = q.normal;
-  query.min_cos = kSameSide;
+  const PhotonQuery query = facing(q.position, q.normal);
   for (int candidates : {kCandidates, kMoreCandidates}) {
     index_.find_nearest(query, candidates, found);
     found.sort_by_distance();
