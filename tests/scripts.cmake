@@ -27,6 +27,8 @@ endforeach()
 # Stages together, run by make at the top of the tree.
 add_test(NAME pipelines.rerun COMMAND sh tests/pipelines/rerun.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+add_test(NAME pipelines.make_asks COMMAND sh tests/pipelines/make_asks.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.plan_example COMMAND sh tests/pipelines/plan_example.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.plan_refuses COMMAND sh tests/pipelines/plan_refuses.sh $<TARGET_FILE_DIR:scene-plan>
@@ -44,7 +46,7 @@ add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAK
 set_tests_properties(pipelines.installed PROPERTIES TIMEOUT 300 RUN_SERIAL ON)
 add_test(NAME pipelines.leaving_out COMMAND sh tests/pipelines/leaving_out.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.rerun pipelines.leaving_out pipelines.plan_example pipelines.plan_refuses
+set_tests_properties(pipelines.rerun pipelines.make_asks pipelines.leaving_out pipelines.plan_example pipelines.plan_refuses
                      pipelines.drop_kind pipelines.environment pipelines.scenes pipelines.textured_room PROPERTIES TIMEOUT 300)
 
 add_test(NAME cli.no_heavy_libraries COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cli/no_heavy_libraries.sh ${CMAKE_BINARY_DIR}/bin)

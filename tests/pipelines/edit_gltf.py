@@ -6,7 +6,7 @@ OUT may be a .glb, or a .gltf that gets its buffer as a .bin file beside it.
   same                  nothing: keys in another order, other white space, buffer contents moved
   camera-from FRAME     the camera stands one centimetre higher from FRAME on
   emission FACTOR       all emissive materials are FACTOR times as bright
-  lamp [FRAME]          a lamp that moves through frames 0 to 3; one centimetre higher at FRAME
+  lamp [FRAME]          a lamp that moves through frames 0 to 5; one centimetre higher at FRAME
   still                 no animation
   mirror                the first material that emits nothing is a perfect mirror
   drop NAME             without the key NAME at the top level (cameras, for example)
@@ -88,7 +88,7 @@ def lamp(gltf, binary, lifted=None):
     node = len(gltf["nodes"]) - 1
     gltf["scenes"][0]["nodes"].append(node)
     animate(gltf, binary, node,
-            {f: [0.1 * f, 1 + (0.01 if str(f) == lifted else 0), 0.5] for f in range(4)})
+            {f: [0.1 * f, 1 + (0.01 if str(f) == lifted else 0), 0.5] for f in range(6)})
 
 
 def still(gltf, binary):

@@ -63,7 +63,9 @@ before=$(cat "$work/plan/state/lights.0000") static=$(cat "$work/plan/state/stat
 "$bin/scene-plan" "$yard" $sky --environment-strength 2 -q -o "$work/plan" || bad "scene-plan: exit $?"
 [ "$(cat "$work/plan/state/lights.0000")" != "$before" ] || bad 'twice the strength, the same lights'
 [ "$(cat "$work/plan/state/static.0000")" = "$static" ] || bad 'twice the strength, another geometry'
-make -n -f Makefile.example BIN="$bin" SCENE="$yard" ENVIRONMENT="$work/sky.hdr" FRAMES=0 OUT="$work/out" > "$work/make.txt" 2>&1
+for goal in "-s $work/out/plan/plan.mk" '-n demo'; do
+  make $goal -f Makefile.example BIN="$bin" SCENE="$yard" ENVIRONMENT="$work/sky.hdr" FRAMES=0 OUT="$work/out" > "$work/make.txt" 2>&1
+done
 grep -q "photon-trace .*--environment $work/sky.hdr" "$work/make.txt" || bad "make does not pass ENVIRONMENT on: $(tail -3 "$work/make.txt")"
 
 # The same bytes for any number of threads.

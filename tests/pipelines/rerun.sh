@@ -72,9 +72,10 @@ target=demo
 
 rm -r "$work/out"
 edit "$source" "$scene" lamp
-make_runs 'with a moving lamp' "$plan $(light $all) $(frames $all) $exposure $sheet"
+six="$all 0004 0005"  # three segments of two frames
+make_runs 'with a moving lamp' "$plan $(light $six) $(frames $six) $exposure $sheet" FRAMES=0-5
 edit "$source" "$scene" lamp 3
-make_runs 'lamp edited at frame 3: only what frame 3 shows' "$plan $(light 0003) $(frames 0003) $sheet"
+make_runs 'lamp edited at frame 3: nothing before it, nothing after its segment' "$plan $(light 0003) $(frames 0003) $sheet" FRAMES=0-5
 
 rm -r "$work/out"
 edit "$source" "$scene" still
