@@ -4,18 +4,6 @@
 
 namespace tempolux::formats {
 
-std::array<std::uint16_t, 2> encode_normal(std::array<float, 3> n) {
-  const double s = std::abs(double(n[0])) + std::abs(double(n[1])) + std::abs(double(n[2]));
-  double p = n[0] / s, q = n[1] / s;
-  if (n[2] < 0) {
-    const double folded = (1 - std::abs(q)) * (p < 0 ? -1 : 1);
-    q = (1 - std::abs(p)) * (q < 0 ? -1 : 1);
-    p = folded;
-  }
-  const auto code = [](double t) { return std::uint16_t(std::floor(32767 * t + 0.5) + 32767); };
-  return {code(p), code(q)};
-}
-
 std::array<float, 3> decode_normal(std::array<std::uint16_t, 2> code) {
   double p = (double(code[0]) - 32767) / 32767, q = (double(code[1]) - 32767) / 32767;
   const double z = 1 - std::abs(p) - std::abs(q);

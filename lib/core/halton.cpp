@@ -85,11 +85,8 @@ double RadicalInverse::operator()(std::uint64_t index) const {
 PhotonHalton::PhotonHalton(std::uint64_t seed)
     : base3_(3, seed), base5_(5, seed), base7_(7, seed), base2_(2, seed) {}
 
-void PhotonHalton::point(std::uint64_t index, double u[4]) const {
-  u[0] = base3_(index);
-  u[1] = base5_(index);
-  u[2] = base7_(index);
-  u[3] = base2_(index);
+std::array<double, 4> PhotonHalton::point(std::uint64_t index) const {
+  return {base3_(index), base5_(index), base7_(index), base2_(index)};
 }
 
 }  // namespace tempolux

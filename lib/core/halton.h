@@ -1,6 +1,7 @@
 // lib/core/halton.h -- scrambled Halton points with exact integer digits: where photons start.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -38,7 +39,7 @@ class PhotonHalton {
  public:
   explicit PhotonHalton(std::uint64_t seed);
   /// Point of photon `index`: components in [0, 1).
-  void point(std::uint64_t index, double u[4]) const;
+  std::array<double, 4> point(std::uint64_t index) const;
 
  private:
   RadicalInverse base3_, base5_, base7_, base2_;

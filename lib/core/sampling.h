@@ -2,7 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <numbers>
+#include <span>
 
 #include "lib/core/vec.h"
 
@@ -23,20 +26,30 @@ inline SinCos sin_cos_eighth(float x) {
           1 + y * (-0.5f + y * (1.0f / 24 + y * (-1.0f / 720 + y * (1.0f / 40320 - y * (1.0f / 3628800)))))};
 }
 
+/// c ? a : b without a branch, for choices that go either way at random: half of them would be foretold wrongly.
+inline float select(bool c, float a, float b) {
+  const std::uint32_t mask = 0 - std::uint32_t(c);
+  return std::bit_cast<float>((std::bit_cast<std::uint32_t>(a) & mask) | (std::bit_cast<std::uint32_t>(b) & ~mask));
+}
+
 /// Uniform point of the unit disc. Shirley & Chiu's concentric map, JGT 2(3), 1997.
 inline Vec2 sample_disc_concentric(Vec2 u) {
   const float a = 2 * u.x - 1, b = 2 * u.y - 1;
-  if (a == 0 && b == 0) return {0, 0};
   const bool steep = !(std::abs(a) > std::abs(b));
-  const float r = steep ? b : a;
-  const SinCos part = sin_cos_eighth((kPi / 4) * ((steep ? a : b) / r));
-  return {r * (steep ? part.sin : part.cos), r * (steep ? part.cos : part.sin)};
+  const float r = select(steep, b, a), size = std::abs(r);
+  const SinCos part = sin_cos_eighth((kPi / 4) * (select(steep, a, b) / std::max(size, 1e-30f)));
+  const float along = r * part.cos, across = size * part.sin;   // the sine's argument has not r's sign
+  return {select(steep, across, along), select(steep, along, across)};
 }
 
 /// Direction about +z, density cos(theta)/pi per solid angle; z > 0 always.
 inline Vec3 sample_hemisphere_cos(Vec2 u) {
   const Vec2 d = sample_disc_concentric(u);
   return {d.x, d.y, std::sqrt(std::max(1e-12f, 1 - d.x * d.x - d.y * d.y))};
+}
+/// The same for many: eight at a time. directions: as many as u.
+inline void sample_hemisphere_cos(std::span<const Vec2> u, Vec3* directions) {
+  for (std::size_t i = 0; i < u.size(); ++i) directions[i] = sample_hemisphere_cos(u[i]);
 }
 inline float pdf_hemisphere_cos(float cos_theta) { return std::max(0.0f, cos_theta) * kInvPi; }
 
@@ -57,9 +70,8 @@ inline Vec3 sample_cone(Vec2 u, float one_minus_cos_max) {
 /// Barycentric (b1, b2) of a uniform point in a triangle; b0 = 1 - b1 - b2.
 /// Low-distortion map of Heitz, "A Low-Distortion Map Between Triangle and Square", 2019.
 inline Vec2 sample_triangle(Vec2 u) {
-  float b1 = u.x, b2 = u.y;
-  if (b2 > b1) { b1 *= 0.5f; b2 -= b1; } else { b2 *= 0.5f; b1 -= b2; }
-  return {b1, b2};
+  const float half = 0.5f * std::min(u.x, u.y);
+  return {u.x - half, u.y - half};
 }
 
 /// Power heuristic with exponent 2 for one sample of each of two techniques. Veach 1997 (9.2).

@@ -1,6 +1,7 @@
 // lib/light/lights.h -- all lights of a frame behind one sampling interface.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -112,7 +113,14 @@ class Lights {
   /// pi R^2, origin on the disc of radius R outside the scene; environment: the same with radiance / density of
   /// the direction for E. Zero flux for what emits nothing at this
   /// frame. InputError if flux / probability is beyond float32.
-  PhotonEmission emit(const double u[4]) const;
+  PhotonEmission emit(const std::array<double, 4>& u) const {
+    PhotonEmission photon;
+    emit({&u, 1}, {&photon, 1});
+    return photon;
+  }
+  /// The same for as many as kMostEmitted, photons[i] of u[i]: in half the time.
+  void emit(std::span<const std::array<double, 4>> u, std::span<PhotonEmission> photons) const;
+  static constexpr std::size_t kMostEmitted = 64;
 
  private:
   struct Impl;

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "lib/core/sampling.h"
 #include "lib/core/vec.h"
 #include "lib/material/albedo.h"
 #include "lib/material/rough_glass.h"
@@ -85,6 +86,12 @@ class Bsdf {
   /// carries f_D cos / (P(D) pdf_D), the event S carries f_S cos / (P(S) pdf_S), so that light paths can be
   /// told apart. Zero weight if wo is below the surface or nothing is reflected.
   Sample sample(Vec3 wo, float u_lobe, Vec2 u) const;
+  /// A Lambert lobe that reflects, and nothing else: sample() is sample_matte(wo, sample_hemisphere_cos(u)).
+  bool is_matte() const { return diffuse_ && !specular_ && !(transmission_ > 0); }
+  Sample sample_matte(Vec3 wo, Vec3 cosine_direction) const {
+    if (!(wo.z > 0)) return {};
+    return {.wi = cosine_direction, .weight = rho_, .pdf_solid_angle = pdf_hemisphere_cos(cosine_direction.z), .diffuse = true};
+  }
   /// Density of sample() choosing wi by event D, by event S [1/sr], choice probability included.
   float pdf_diffuse(Vec3 wi, Vec3 wo) const;
   float pdf_specular(Vec3 wi, Vec3 wo) const;

@@ -34,8 +34,8 @@ struct Arrival {
 
   Arrival(const SurfacePoint& point, Vec3 travel)
       : wi(-travel),
-        normal_geometric(dot(point.normal_geometric, wi) < 0 ? -point.normal_geometric : point.normal_geometric),
-        normal(dot(point.normal, normal_geometric) < 0 ? -point.normal : point.normal),
+        normal_geometric(point.normal_geometric * std::copysign(1.0f, dot(point.normal_geometric, wi))),
+        normal(point.normal * std::copysign(1.0f, dot(point.normal, normal_geometric))),
         frame(normal),
         wi_local(frame.to_local(wi)),
         flat(normal == normal_geometric) {
@@ -117,6 +117,7 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
   group_count_ = options.group_count ? options.group_count : automatic_group_count(options.photon_count);
   members_ = (options.photon_count + group_count_ - 1) / group_count_;
   batches_per_group_ = (members_ + kBatch - 1) / kBatch;
+  stores_ = {options.store_direct, options.store_caustic, options.store_indirect};
   for (const Material& material : tracer.frame().materials) {
     solid_.push_back(is_solid_glass(material));
     varies_.push_back(material.textures || lets_rays_pass(material));
@@ -129,83 +130,129 @@ PhotonBatch PhotonTracer::trace(std::size_t number) const {
   const std::uint64_t group = number / batches_per_group_, piece = number % batches_per_group_;
   batch.block.group = std::uint32_t(group);
   const std::uint64_t last = std::min(members_, (piece + 1) * kBatch);
-  batch.block.photons.reserve(std::size_t(2 * (last - piece * kBatch)));
+  batch.block.photons.reserve(std::size_t(3 * (last - piece * kBatch)));
   if (!lights_.empty())
-    for (std::uint64_t q = piece * kBatch; q < last; ++q) follow(group + q * group_count_, batch);
+    for (std::uint64_t q = piece * kBatch; q < last; q += kWave)
+      follow(group + q * group_count_, std::size_t(std::min(last - q, kWave)), batch);
   return batch;
 }
 
-void PhotonTracer::follow(std::uint64_t photon, PhotonBatch& batch) const {
-  const PathRandom random(options_.seed, photon);
-  double u[4];
-  halton_.point(photon, u);
-  const PhotonEmission start = lights_.emit(u);
-  Rgb flux = start.flux * float(1.0 / double(photon_count()));
-  ++batch.path_count;
-  batch.emitted += Rgbd(flux);
+/// Random numbers of a scattering event.
+struct PhotonTracer::Draw {
+  std::uint32_t bounce;
+  Vec2 u;
+  Vec3 direction;   ///< sample_hemisphere_cos(u)
+};
 
-  Ray ray{start.origin + start.normal * start.origin_offset, start.travel, 0, INFINITY};
+/// A photon on its way.
+struct PhotonTracer::Path {
+  PathRandom random{0, 0};
+  Ray ray;
+  Rgb flux;
   bool diffuse_seen = false, specular_seen = false;
   Inside inside;
-  for (std::uint32_t bounce = 0;; ++bounce) {
-    ++batch.ray_count;
-    Hit hit;
-    if (!tracer_.intersect(ray, hit)) {
-      batch.escaped += Rgbd(flux);
-      return;
-    }
-    SurfacePoint point = tracer_.surface_point(hit);
-    std::optional<Textured> textured;
-    if (varies_[point.material]) [[unlikely]] textured.emplace(tracer_.frame(), point, ray.direction, hit.t);
-    const Arrival at(point, ray.direction);
-    const bool front = dot(point.normal_geometric, at.wi) > 0;
-    const Bsdf& bsdf = textured ? textured->bsdf : bsdfs_[point.material][front];
-    const bool solid = solid_[point.material];
-    if (inside.any() || (solid && !front)) {
-      const Rgb sent = flux;
-      flux *= inside.transmittance_to(tracer_.frame().materials, point.material, front, hit.t);
-      batch.absorbed += Rgbd(sent) - Rgbd(flux);
-    }
+};
 
-    // Record.
-    const PathKind kind = kind_after(diffuse_seen, specular_seen);
-    const bool wanted = kind == PathKind::direct ? options_.store_direct
-                        : kind == PathKind::caustic ? options_.store_caustic : options_.store_indirect;
-    if (wanted && bsdf.has_lambert() && at.shading_correction > 0) {
-      Rgb stored = flux * (bsdf.arrival_weight(at.wi_local.z) * at.shading_correction);
-      if (inside.any()) stored *= 1 / inside.index_squared(tracer_.frame().materials);
-      if (textured) stored *= 1 / textured->coverage;
-      record(stored, point, at.normal_geometric, kind, bounce, batch.block.photons);
-    }
-
-    // Scatter, or be absorbed.
-    const float u_lobe = bsdf.has_specular() ? random.get1(bounce, Purpose::lobe) : 0;   // else it chooses nothing
-    const Vec2 u_scatter = random.get2(bounce, Purpose::scatter);
-    auto next = bsdf.sample(at.wi_local, u_lobe, u_scatter);
-    Vec3 travel = at.frame.to_world(next.wi);
-    const Rgb before = flux;
-    if (!at.flat && (next.diffuse || !(at.wi_local.z > 0))) {
-      next.diffuse = true;
-      next.weight = at.scatter_diffuse(bsdf, next, u_scatter, travel);
-    } else if (!at.flat) {
-      const float side = next.transmitted ? -1.0f : 1.0f;
-      next.weight *= at.shading_correction * std::max(0.0f, side * dot(travel, at.normal_geometric)) /
-                     std::max(1e-6f, side * next.wi.z);
-    }
-    const float cos_geometric = (next.transmitted ? -1.0f : 1.0f) * dot(travel, at.normal_geometric);
-    flux *= next.weight;
-    const float survival = std::min(kLargestSurvival, max_component(flux) / std::max(max_component(before), 1e-37f));
-    if (!(cos_geometric > 0) || !(random.get1(bounce, Purpose::roulette) < survival)) {
-      batch.absorbed += Rgbd(before);
-      return;
-    }
-    flux *= 1 / survival;
-    batch.absorbed += Rgbd(before) - Rgbd(flux);
-    (next.diffuse ? diffuse_seen : specular_seen) = true;
-    batch.specular_ray_count += !next.diffuse;
-    if (solid && !next.diffuse) inside.scatter(point.material, front, next.transmitted);
-    ray = spawn_ray(point, travel);
+/// Step by step for all photons of a wave: what one computes does not wait for another's result, so that the processor
+/// works on several at a time.
+void PhotonTracer::follow(std::uint64_t first, std::size_t count, PhotonBatch& batch) const {
+  Path paths[kWave];
+  std::array<double, 4> emission_numbers[kWave];
+  PhotonEmission emissions[kWave];
+  for (std::size_t i = 0; i < count; ++i) emission_numbers[i] = halton_.point(first + i * group_count_);
+  lights_.emit({emission_numbers, count}, {emissions, count});
+  std::uint32_t alive[kWave];   // indices of paths
+  const float share = float(1.0 / double(photon_count()));
+  for (std::size_t i = 0; i < count; ++i) {
+    const PhotonEmission& e = emissions[i];
+    paths[i].random = PathRandom(options_.seed, first + i * group_count_);
+    paths[i].flux = e.flux * share;
+    paths[i].ray = {e.origin + e.normal * e.origin_offset, e.travel, 0, INFINITY};
+    batch.emitted += Rgbd(paths[i].flux);
+    alive[i] = std::uint32_t(i);
   }
+  batch.path_count += count;
+
+  Hit hits[kWave];
+  SurfacePoint points[kWave];
+  Vec2 numbers[kWave];
+  Vec3 directions[kWave];
+  for (std::uint32_t bounce = 0; count > 0; ++bounce) {
+    batch.ray_count += count;
+    std::size_t arrived = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Path& path = paths[alive[i]];
+      if (tracer_.intersect(path.ray, hits[arrived])) alive[arrived++] = alive[i];
+      else batch.escaped += Rgbd(path.flux);
+    }
+    tracer_.surface_points({hits, arrived}, points);
+    for (std::size_t i = 0; i < arrived; ++i) numbers[i] = paths[alive[i]].random.get2(bounce, Purpose::scatter);
+    sample_hemisphere_cos({numbers, arrived}, directions);
+    count = 0;
+    for (std::size_t i = 0; i < arrived; ++i) {
+      const Draw draw{bounce, numbers[i], directions[i]};
+      alive[count] = alive[i];
+      count += scatter(paths[alive[i]], points[i], hits[i].t, draw, batch);
+    }
+  }
+}
+
+/// The photon arrives at a surface; false if it ends there.
+bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const {
+  if (varies_[point.material]) [[unlikely]] {
+    const Textured textured(tracer_.frame(), point, path.ray.direction, distance);
+    return scatter_at(path, point, distance, textured.bsdf, textured.coverage, draw, batch);
+  }
+  const bool front = dot(point.normal_geometric, path.ray.direction) < 0;
+  return scatter_at(path, point, distance, bsdfs_[point.material][front], 1, draw, batch);
+}
+
+bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
+                              const Draw& draw, PhotonBatch& batch) const {
+  const Arrival at(point, path.ray.direction);
+  const bool front = dot(point.normal_geometric, at.wi) > 0;
+  const bool solid = solid_[point.material];
+  Rgb flux = path.flux;
+  if (path.inside.any() || (solid && !front)) {
+    flux *= path.inside.transmittance_to(tracer_.frame().materials, point.material, front, distance);
+    batch.absorbed += Rgbd(path.flux) - Rgbd(flux);
+  }
+
+  // Record.
+  const PathKind kind = kind_after(path.diffuse_seen, path.specular_seen);
+  if (stores_[std::size_t(kind)] && bsdf.has_lambert() && at.shading_correction > 0) {
+    Rgb stored = flux * (bsdf.arrival_weight(at.wi_local.z) * at.shading_correction);
+    if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials);
+    if (coverage != 1) stored *= 1 / coverage;
+    record(stored, point, at.normal_geometric, kind, draw.bounce, batch.block.photons);
+  }
+
+  // Scatter, or be absorbed.
+  const PathRandom& random = path.random;
+  const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;   // else it chooses nothing
+  Bsdf::Sample next = bsdf.is_matte() ? bsdf.sample_matte(at.wi_local, draw.direction)
+                                      : bsdf.sample(at.wi_local, u_lobe, draw.u);
+  Vec3 travel = at.frame.to_world(next.wi);
+  if (!at.flat && (next.diffuse || !(at.wi_local.z > 0))) {
+    next.diffuse = true;
+    next.weight = at.scatter_diffuse(bsdf, next, draw.u, travel);
+  } else if (!at.flat) {
+    const float side = next.transmitted ? -1.0f : 1.0f;
+    next.weight *= at.shading_correction * std::max(0.0f, side * dot(travel, at.normal_geometric)) /
+                   std::max(1e-6f, side * next.wi.z);
+  }
+  const float cos_geometric = (next.transmitted ? -1.0f : 1.0f) * dot(travel, at.normal_geometric);
+  const Rgb reflected = flux * next.weight;
+  const float survival =
+      std::min(kLargestSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
+  const bool survives = cos_geometric > 0 && random.get1(draw.bounce, Purpose::roulette) < survival;
+  path.flux = reflected * (survives ? 1 / survival : 0);
+  batch.absorbed += Rgbd(flux) - Rgbd(path.flux);
+  (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
+  batch.specular_ray_count += survives && !next.diffuse;
+  if (solid && !next.diffuse) path.inside.scatter(point.material, front, next.transmitted);
+  path.ray = spawn_ray(point, travel);
+  return survives;
 }
 
 }  // namespace tempolux

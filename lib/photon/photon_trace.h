@@ -55,7 +55,8 @@ class PhotonTracer {
 
   std::uint64_t photon_count() const { return group_count_ * members_; }
   std::uint32_t group_count() const { return std::uint32_t(group_count_); }
-  /// Batches in file order: groups ascending, each cut into pieces of kBatch paths.
+  /// Batches in file order: groups ascending, each cut into pieces of kBatch paths. In a batch photons lie by waves of
+  /// kWave paths, in these by bounce.
   std::size_t batch_count() const { return std::size_t(group_count_) * batches_per_group_; }
   /// Traces batch number b < batch_count(). Thread-safe.
   PhotonBatch trace(std::size_t batch) const;
@@ -65,12 +66,23 @@ class PhotonTracer {
   static constexpr std::uint64_t kBatch = 1024;
 
  private:
-  void follow(std::uint64_t photon, PhotonBatch& batch) const;
+  struct Path;
+  struct Draw;
+  /// Photons followed together: what is known of them stays in the first-level cache.
+  static constexpr std::uint64_t kWave = 64;
+  static_assert(kWave <= Lights::kMostEmitted);
+
+  /// Photons first, first + group_count, ... to their ends; count <= kWave.
+  void follow(std::uint64_t first, std::size_t count, PhotonBatch& batch) const;
+  bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
+  bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
+                  const Draw& draw, PhotonBatch& batch) const;
 
   const Tracer& tracer_;
   const Lights& lights_;
   PhotonOptions options_;
   PhotonHalton halton_;
+  std::array<bool, 3> stores_{};   ///< by formats::PathKind
   std::vector<char> solid_;   ///< by material: boundary of a solid of glass
   std::vector<std::array<Bsdf, 2>> bsdfs_;   ///< by material: seen from the back, from the front
   std::vector<std::uint8_t> varies_;         ///< by material: textures decide at each hit

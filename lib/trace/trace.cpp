@@ -291,6 +291,7 @@ struct Tracer::Impl {
     return kInstanceOffsetScale * float(max_component(abs(m.translation)) + 1.8 * stretch * reach);
   }
 
+  void find_point(const Hit& hit, SurfacePoint& point) const;
   void build(Tree& tree, std::size_t first, std::size_t last) {
     tree.first_surface = std::uint32_t(first);
     if (first == last) return;
@@ -407,7 +408,17 @@ bool Tracer::occluded(const Ray& ray) const {
 }
 
 SurfacePoint Tracer::surface_point(const Hit& hit) const {
-  const SurfaceArrays& surface = impl_->surfaces[hit.surface];
+  SurfacePoint point;
+  impl_->find_point(hit, point);
+  return point;
+}
+
+void Tracer::surface_points(std::span<const Hit> hits, SurfacePoint* points) const {
+  for (std::size_t i = 0; i < hits.size(); ++i) impl_->find_point(hits[i], points[i]);
+}
+
+inline void Tracer::Impl::find_point(const Hit& hit, SurfacePoint& point) const {
+  const SurfaceArrays& surface = surfaces[hit.surface];
   const auto& corner = surface.triangles[hit.triangle];
   const Vec3 a = surface.position(corner[0]), b = surface.position(corner[1]), c = surface.position(corner[2]);
   float u = std::max(hit.u, kSmallestBarycentric), v = std::max(hit.v, kSmallestBarycentric);
@@ -430,7 +441,6 @@ SurfacePoint Tracer::surface_point(const Hit& hit) const {
     }
   }
 
-  SurfacePoint point;
   point.position = a * w + b * u + c * v;
   point.normal_geometric = normal_geometric;
   point.normal = normal;
@@ -445,7 +455,6 @@ SurfacePoint Tracer::surface_point(const Hit& hit) const {
   point.material = surface.material;
   point.u = u;
   point.v = v;
-  return point;
 }
 
 std::uint64_t Tracer::refused_ray_count() const { return impl_->refused.load(); }

@@ -46,6 +46,8 @@ class Tracer {
   bool occluded(const Ray& ray) const;
 
   SurfacePoint surface_point(const Hit& hit) const;
+  /// The same for many: points[i] of hits[i].
+  void surface_points(std::span<const Hit> hits, SurfacePoint* points) const;
   /// Rays refused because they were not finite; for stats.
   std::uint64_t refused_ray_count() const;
   const SceneFrame& frame() const;
@@ -57,7 +59,7 @@ class Tracer {
 
 /// A ray that leaves `point` into `direction`, started off the surface on the side it leaves to.
 inline Ray spawn_ray(const SurfacePoint& point, Vec3 direction) {
-  const float side = dot(direction, point.normal_geometric) < 0 ? -point.offset : point.offset;
+  const float side = std::copysign(point.offset, dot(direction, point.normal_geometric));
   return {point.position + point.normal_geometric * side, direction, 0, INFINITY};
 }
 /// A ray from `point` that ends just before `target`; target_offset is that point's own offset, or 0.

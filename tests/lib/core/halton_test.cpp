@@ -55,8 +55,7 @@ TEST(PhotonHalton, EachGroupHasABoxOfItsOwn) {
   for (std::uint64_t g = 0; g < kGroups; ++g) {
     std::array<int, 4> box{-1, -1, -1, -1};
     for (std::uint64_t q : {0ull, 1ull, 17ull, 1000ull, 1ull << 41, (1ull << 53) / 630}) {
-      double u[4];
-      halton.point(g + q * kGroups, u);
+      const auto u = halton.point(g + q * kGroups);
       const std::array<int, 4> here{int(u[0] * 9), int(u[1] * 5), int(u[2] * 7), int(u[3] * 2)};
       if (box[0] < 0) box = here;
       EXPECT_EQ(here, box) << "group " << g << " member " << q;
@@ -71,12 +70,11 @@ TEST(PhotonHalton, SeedsGiveDifferentPointsOfEqualQuality) {
   double first = -1;
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     const PhotonHalton halton(seed);
-    double u[4], sum = 0;
-    halton.point(0, u);
-    EXPECT_NE(u[0], first);
-    first = u[0];
+    double sum = 0;
+    EXPECT_NE(halton.point(0)[0], first);
+    first = halton.point(0)[0];
     for (std::uint64_t i = 0; i < kPoints; ++i) {
-      halton.point(i, u);
+      const auto u = halton.point(i);
       sum += u[0] * u[1] * u[2] * u[3];
     }
     // Star discrepancy of 7560 Halton points in 4 dimensions is below 0.006; random points would scatter by

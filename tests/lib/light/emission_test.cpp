@@ -1,6 +1,8 @@
 // Photons leave lights with the flux, the places and the directions of their emission; the table is frozen.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -18,10 +20,14 @@ constexpr int kCount = 1 << 16;
 template <class Take>
 void emit_all(const Lights& lights, int count, Take take) {
   const PhotonHalton halton(1);
-  for (int i = 0; i < count; ++i) {
-    double u[4];
-    halton.point(std::uint64_t(i), u);
-    take(lights.emit(u));
+  constexpr int kAtOnce = 37;
+  std::array<std::array<double, 4>, kAtOnce> u;
+  std::array<PhotonEmission, kAtOnce> photons;
+  for (int first = 0; first < count; first += kAtOnce) {
+    const auto n = std::size_t(std::min(kAtOnce, count - first));
+    for (std::size_t i = 0; i < n; ++i) u[i] = halton.point(std::uint64_t(first) + i);
+    lights.emit({u.data(), n}, {photons.data(), n});
+    for (std::size_t i = 0; i < n; ++i) take(photons[i]);
   }
 }
 
@@ -82,12 +88,48 @@ TEST(Emission, ProbabilitiesFollowTheLuminanceOfTheFlux) {
   EXPECT_NEAR(table.probability[0] + table.probability[1], 1, 1e-15);
 }
 
+// One by one or many at once, of a lamp with two sides, one with one and a point light; dark lights never.
+TEST(Emission, SlotsAreChosenByTheirPartOfTheUnitInterval) {
+  LightScene scene;
+  scene.add(square_facing_down({0, 0, 1}, 1), Rgb(0.0f));
+  scene.add(square_facing_down({0, 0, 2}, 1), Rgb(1.0f), true);
+  scene.add(square_facing_down({0, 0, 3}, 1), Rgb(3.0f));
+  scene.add(PunctualLight::Kind::point, Rgb(2.0f), {0, 0, 4}, {0, 0, -1});
+  scene.add(PunctualLight::Kind::point, Rgb(0.0f), {0, 0, 5}, {0, 0, -1});
+  const Lights lights = scene.lights();
+  ASSERT_EQ(lights.slots().size(), 6u);   // triangles that emit nothing have no slot
+  std::vector<std::array<double, 4>> u;
+  std::vector<std::size_t> expected;
+  double below = 0;
+  for (std::size_t slot = 0; slot < lights.slots().size(); ++slot) {
+    const double part = lights.slots()[slot].probability;
+    for (const double share : {0.0, 0.5, 0.999}) {
+      if (!(part > 0)) continue;
+      u.push_back({below + share * part, 0.3, 0.25 + share / 2, 0.7});
+      expected.push_back(slot);
+    }
+    below += part;
+  }
+  std::vector<PhotonEmission> photons(u.size());
+  lights.emit(u, photons);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const PhotonEmission alone = lights.emit(u[i]);
+    EXPECT_EQ(photons[i].slot, expected[i]) << i;
+    EXPECT_EQ(photons[i].origin, alone.origin);
+    EXPECT_EQ(photons[i].travel, alone.travel);
+    EXPECT_EQ(photons[i].flux, alone.flux);
+    EXPECT_NEAR(photons[i].flux.r, lights.total_flux().r, 1e-4 * lights.total_flux().r);
+    const bool back = lights.slots()[expected[i]].kind == EmissionSlot::Kind::triangle && photons[i].normal.z > 0;
+    EXPECT_EQ(back, expected[i] < 2 && u[i][2] >= 0.5);
+  }
+}
+
 // Triangle: centroid of the square, mean cosine 2/3 of a Lambert emitter, both sides by halves.
 TEST(Emission, AreaLightsEmitUniformlyByTheCosine) {
   for (const bool two_sided : {false, true}) {
     LightScene scene;
     scene.add(square_facing_down({1, 2, 3}, 0.5f), Rgb(1.0f), two_sided);
-    Vec3d place, travel;
+    Vec3d place, travel, from_front;
     double cosine = 0, square = 0, down = 0;
     emit_all(scene.lights(), kCount, [&](const PhotonEmission& e) {
       place += Vec3d(e.origin) / double(kCount);
@@ -95,6 +137,7 @@ TEST(Emission, AreaLightsEmitUniformlyByTheCosine) {
       cosine += double(dot(e.travel, e.normal)) / kCount;
       square += double(e.travel.x * e.travel.x) / kCount;
       down += e.normal.z < 0;
+      if (e.normal.z < 0) from_front += Vec3d(e.travel) / double(kCount);
       ASSERT_GT(dot(e.travel, e.normal), 0);
       ASSERT_FLOAT_EQ(e.origin.z, 3);
       ASSERT_GT(e.origin_offset, 0);
@@ -105,6 +148,8 @@ TEST(Emission, AreaLightsEmitUniformlyByTheCosine) {
     EXPECT_NEAR(square, 0.25, 1e-3);  // sin^2 cos^2(phi): half of the mean sin^2, 1/2
     EXPECT_NEAR(down / kCount, two_sided ? 0.5 : 1, 1e-3);
     EXPECT_NEAR(travel.z, two_sided ? 0 : -2.0 / 3, 2e-3);
+    EXPECT_NEAR(from_front.x, 0, 1e-3);   // either side shines all around
+    EXPECT_NEAR(from_front.y, 0, 1e-3);
   }
 }
 
@@ -231,7 +276,7 @@ TEST(Emission, FluxBeyondFloatIsRefusedNotDropped) {
   scene.add(square_facing_down({0, 0, 1}, 1e6f), Rgb(1e30f));   // pi 1e30 4e12 = 1.3e43 W
   const Lights lights = scene.lights();
   EXPECT_NEAR(lights.total_flux().r, kPiD * 4e42, 1e37);
-  const double u[4] = {0.5, 0.5, 0.5, 0.5};
+  const std::array<double, 4> u = {0.5, 0.5, 0.5, 0.5};
   EXPECT_THROW(lights.emit(u), InputError);
 }
 

@@ -118,8 +118,7 @@ TEST(EnvironmentSampling, MatchesWhatIsLookedUp) {
     constexpr int kCount = 1 << 16;
     double sum = 0, area = 0;
     for (int i = 0; i < kCount; ++i) {
-      double u[4];
-      halton.point(std::uint64_t(i), u);
+      const auto u = halton.point(std::uint64_t(i));
       EnvironmentLight::Sample s;
       ASSERT_TRUE(light.sample(u[0], u[1], s));
       sum += luminance(Rgbd(s.radiance)) / s.pdf_solid_angle;
@@ -238,8 +237,7 @@ TEST(EnvironmentEmission, MeanFluxAndDisc) {
   constexpr int kCount = 1 << 16;
   double sum = 0;
   for (int i = 0; i < kCount; ++i) {
-    double u[4];
-    halton.point(std::uint64_t(i), u);
+    const auto u = halton.point(std::uint64_t(i));
     const PhotonEmission e = lights.emit(u);
     sum += double(e.flux.g) / kCount;
     if (lights.slots()[e.slot].kind != EmissionSlot::Kind::environment) continue;

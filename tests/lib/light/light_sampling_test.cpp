@@ -315,7 +315,7 @@ TEST(Lights, SurviveExtremeNumbers) {
     for (std::uint32_t surface = 0; surface < 5; ++surface)
       EXPECT_TRUE(std::isfinite(
           lights.pdf_solid_angle(point, {}, surface, 0, scene.frame.surfaces[surface].positions[1], kUp)));
-    const double u[4] = {random.get1(i, Purpose::emit, 1), random.get1(i, Purpose::emit, 2),
+    const std::array<double, 4> u = {random.get1(i, Purpose::emit, 1), random.get1(i, Purpose::emit, 2),
                          random.get1(i, Purpose::emit, 3), random.get1(i, Purpose::emit, 4)};
     const PhotonEmission e = lights.emit(u);
     EXPECT_TRUE(is_finite(e.flux) && is_finite(e.origin) && is_finite(e.travel));

@@ -80,7 +80,7 @@ TEST(EmissiveTexture, PhotonsCarryTheTexelsLight) {
     constexpr int kSide = 128;
     for (int i = 0; i < kSide; ++i)
       for (int j = 0; j < kSide; ++j) {
-        const double u[4] = {(i + 0.5) / kSide, (j + 0.5) / kSide, 0.3, 0.6};
+        const std::array<double, 4> u = {(i + 0.5) / kSide, (j + 0.5) / kSide, 0.3, 0.6};
         const PhotonEmission photon = lights.emit(u);
         if (photon.origin.x > 0.01f) { EXPECT_EQ(photon.flux, Rgb(0.0f)); }
         sum += double(photon.flux.r) / (kSide * kSide);

@@ -1,0 +1,156 @@
+// lib/light/light_sampling.cpp -- light samples as seen from a point, and their densities.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "lib/core/random.h"
+#include "lib/light/lights_impl.h"
+#include "lib/light/punctual.h"
+
+namespace tempolux {
+namespace {
+
+/// Irradiance of a directional light, as a weight for choosing it; 0 if it is below the surface.
+double sun_weight(const PlacedLight& placed, Vec3 normal) {
+  const double e = max_component(placed.light.intensity);
+  return normal == Vec3{} ? e : e * std::max(0.0f, -dot(normal, placed.direction));
+}
+
+}  // namespace
+
+/// Probability of choosing a light from infinitely far: their share of an estimate of the irradiance, at least a
+/// fifth for either kind that can be seen at all. total: the weights of the environment and the directional lights.
+double Lights::Impl::distant_share(Vec3 point, Vec3 normal, double& total) const {
+  total = environment_weight;
+  if (suns.empty() && !(total > 0)) return 0;
+  for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
+  if (!(total > 0)) return 0;
+  const double others = tree.importance(point, normal);
+  return others > 0 ? std::clamp(total / (total + others), 0.2, 0.8) : 1;
+}
+
+/// u in [0, 1) chooses among them: the environment first.
+bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
+                                  LightSample& s) const {
+  double weight = 0, left = u * total;
+  if (left < environment_weight)
+    return sample_environment(point, u_float, left / environment_weight, share * environment_weight / total, s);
+  left -= environment_weight;
+  const PlacedLight* chosen = nullptr;
+  for (const std::uint32_t i : suns) {
+    const double w = sun_weight(frame->lights[i], normal);
+    if (!(w > 0)) continue;
+    chosen = &frame->lights[i];
+    weight = w;
+    if (left < w) break;
+    left -= w;
+  }
+  if (!chosen) return false;
+  s.wi = -chosen->direction;
+  s.position = point + s.wi * distance_beyond();
+  s.radiance = Rgb(Rgbd(chosen->light.intensity) / (share * weight / total));
+  s.delta = true;
+  return true;
+}
+
+/// u_float: what u comes from. Where its 24 bits are used up, bits of the other coordinate take their place.
+bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const {
+  const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
+  EnvironmentLight::Sample found;
+  if (!environment->sample(std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
+                           std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53), found))
+    return false;
+  const double pdf = found.pdf_solid_angle * probability;
+  s.wi = found.direction;
+  s.position = point + s.wi * distance_beyond();
+  s.radiance = Rgb(Rgbd(found.radiance) / pdf);
+  s.pdf_solid_angle = float(pdf);
+  return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
+}
+
+/// A point or spot light.
+bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double probability,
+                                 LightSample& s) const {
+  const Vec3d to = Vec3d(placed.position) - Vec3d(point);
+  const double distance = length(to);
+  if (!(distance > 0)) return false;
+  // Nearer than a millionth of the scene, the light is as bright as there.
+  const double nearest = std::max(distance, 1e-6 * sphere_radius);
+  s.wi = Vec3(to / distance);
+  s.position = placed.position;
+  double falloff = 1;
+  if (placed.light.kind == PunctualLight::Kind::spot)
+    falloff = SpotProfile(placed.light).falloff(0.5 * length2(Vec3d(placed.direction) + to / distance));
+  s.radiance = Rgb(Rgbd(placed.light.intensity) * (falloff / (nearest * nearest * probability)));
+  s.delta = true;
+  return falloff > 0;
+}
+
+bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
+  return impl_->sample(point, normal, u_choice, u, false, sample);
+}
+
+bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const {
+  return impl_->sample(point, normal, u.x, u, true, sample);
+}
+
+bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const {
+  const Impl& m = *this;
+  sample = {};
+  double total = 0;
+  const double share = m.distant_share(point, normal, total);
+  if (u_choice < share) {
+    // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
+    return m.sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, total, sample) &&
+           is_finite(sample.radiance);
+  }
+  if (m.tree.empty()) return false;
+  LightTree::Choice choice;
+  const float left = to_float(stretch(u_choice, share, 1 - share));
+  if (!m.tree.choose(point, normal, left, choice)) return false;
+  const double probability = choice.probability * (1 - share);
+  const std::uint32_t slot = m.tree_slot[choice.light];
+  if (slot >= m.triangles.size())
+    return m.sample_placed(m.frame->lights[m.slots[slot].light], point, probability, sample) &&
+           is_finite(sample.radiance);
+  const TriangleLight& t = m.triangles[slot];
+  if (joint) {
+    // A float has 24 bits: where the choice has used them up, bits of the other coordinate take their place.
+    const double step = 0x1p-24 / probability, fill = unit_double(mix64(std::bit_cast<std::uint32_t>(u.y)));
+    u.x = to_float(std::min(choice.left + fill * step, 1.0));
+  }
+  TrianglePoint on_triangle;
+  if (!sample_triangle(t, point, u, on_triangle)) return false;
+  const double pdf = probability * on_triangle.pdf_solid_angle;
+  sample.wi = on_triangle.wi;
+  sample.position = on_triangle.position;
+  sample.position_offset = t.offset;
+  sample.radiance = Rgb(Rgbd(m.emitted_at(slot, on_triangle.barycentric.x, on_triangle.barycentric.y)) / pdf);
+  sample.pdf_solid_angle = float(pdf);
+  return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.radiance);
+}
+
+float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle,
+                              Vec3 on_light, Vec3) const {
+  const Impl& m = *impl_;
+  if (m.first_slot[surface] == kNone) return 0;
+  const std::uint32_t slot = m.first_slot[surface] + triangle, light = m.tree_index[slot];
+  if (light == kNone) return 0;
+  const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
+  if (!(on_triangle > 0)) return 0;
+  double total = 0;
+  const double share = m.distant_share(point, normal, total);
+  const float pdf = float(on_triangle * (1 - share) * m.tree.probability(point, normal, light));
+  return pdf < INFINITY ? pdf : 0;
+}
+
+float Lights::pdf_environment(Vec3 point, Vec3 normal, Vec3 direction) const {
+  if (!(impl_->environment_weight > 0)) return 0;
+  double total = 0;
+  const double share = impl_->distant_share(point, normal, total);
+  const float pdf =
+      float(environment_->pdf_solid_angle(direction) * share * impl_->environment_weight / total);
+  return pdf < INFINITY ? pdf : 0;
+}
+
+}  // namespace tempolux

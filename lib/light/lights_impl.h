@@ -1,0 +1,64 @@
+// lib/light/lights_impl.h -- what Lights keeps: shared by lights.cpp (making it), light_sampling.cpp (light samples) and
+// photon_emission.cpp (photons).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "lib/core/sampling.h"
+#include "lib/light/light_tree.h"
+#include "lib/light/lights.h"
+#include "lib/light/triangle_light.h"
+
+namespace tempolux {
+
+struct Lights::Impl {
+  bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const;
+  const SceneFrame* frame;
+  Vec3 sphere_centre;
+  double sphere_radius;
+  std::vector<EmissionSlot> slots;
+  std::vector<TriangleLight> triangles;   // of the first slots, same order
+  std::vector<double> cumulative;         // of the probabilities; by slot its upper end
+  std::vector<Rgb> photon_flux;           // by slot: flux / probability, where all its photons carry the same
+  std::vector<std::uint32_t> first_slot;  // by surface; kNone: emits nothing
+  std::vector<std::uint32_t> tree_index;  // by slot: its light in the tree, kNone: emits nothing
+  std::vector<std::uint32_t> tree_slot;   // and back
+  std::vector<std::uint32_t> suns;        // indices of directional lights that shine
+  std::shared_ptr<const EnvironmentLight> environment;
+  double environment_weight = 0;  // irradiance by the environment, the mean over all normals; 0: none or black
+  LightTree tree{{}};
+
+  Impl(const SceneFrame& frame_, const EmissionTable& table);
+  void add_slots(const EmissionTable& table);
+  void build_tree();
+
+  Rgbd slot_flux(std::size_t slot) const;   ///< W
+  double distant_share(Vec3 point, Vec3 normal, double& total) const;
+  bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
+                      LightSample& s) const;
+  bool sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const;
+  double disc_area() const { return std::numbers::pi * sphere_radius * sphere_radius; }
+  float distance_beyond() const { return float(sphere_radius > 0 ? 2 * sphere_radius : 1); }
+  bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;
+  /// Radiance of a point of a slot's triangle, by barycentrics.
+  Rgb emitted_at(std::size_t slot, double b1, double b2) const {
+    return triangles[slot].emitted_at(*frame, slots[slot].surface, slots[slot].triangle, b1, b2);
+  }
+  std::size_t slot_at(double u) const;
+  Vec2 direction_numbers(std::size_t slot, const std::array<double, 4>& u) const;
+  void emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction, PhotonEmission& e) const;
+  void emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
+  void emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u, PhotonEmission& e) const;
+};
+
+/// The double u in part [first, first + width) of [0, 1), stretched to [0, 1).
+inline double stretch(double u, double first, double width) {
+  return std::clamp((u - first) / width, 0.0, 1 - 0x1p-53);
+}
+inline float to_float(double u) { return std::min(float(u), kOneMinusEpsilon); }
+
+}  // namespace tempolux

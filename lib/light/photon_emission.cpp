@@ -1,0 +1,117 @@
+// lib/light/photon_emission.cpp -- photons from the emission table.
+#include <sstream>
+
+#include "formats/error.h"
+#include "lib/core/check.h"
+#include "lib/core/frame.h"
+#include "lib/light/lights_impl.h"
+#include "lib/light/punctual.h"
+
+namespace tempolux {
+namespace {
+
+[[noreturn]] void refuse_flux(const Scene* scene, double flux) {
+  std::ostringstream text;
+  text << (scene ? scene->path + ": " : "") << "a light of " << flux
+       << " W is stronger than a photon's flux can be, 3.4e38 W; make the scene smaller or its lights weaker";
+  throw InputError(text.str());
+}
+
+}  // namespace
+
+/// The first slot whose part of [0, 1) ends beyond u; rounding may leave the sum a little below 1. Halves without a
+/// branch: which way photons go is not foretold by those before.
+std::size_t Lights::Impl::slot_at(double u) const {
+  const double* first = cumulative.data();
+  for (std::size_t count = cumulative.size(); count > 1;) {
+    const std::size_t half = count / 2;
+    first += first[half - 1] <= u ? half : 0;
+    count -= half;
+  }
+  auto slot = std::size_t(first - cumulative.data());
+  while (slot > 0 && !(slots[slot].probability > 0)) --slot;
+  return slot;
+}
+
+/// Of a two-sided triangle the lower half of u[2] leaves the front, and is stretched: the floor of 2 u[2] is 1 for the
+/// back, without a branch that would be taken at random.
+Vec2 Lights::Impl::direction_numbers(std::size_t slot, const std::array<double, 4>& u) const {
+  const bool halves = slot < triangles.size() && triangles[slot].two_sided;
+  return {to_float(halves ? 2 * u[2] - std::floor(2 * u[2]) : u[2]), to_float(u[3])};
+}
+
+/// u0: u[0] stretched; direction: about the emitting side's normal.
+void Lights::Impl::emit_triangle(std::size_t slot, double u0, const std::array<double, 4>& u, Vec3 direction,
+                                 PhotonEmission& e) const {
+  const TriangleLight& t = triangles[slot];
+  // Heitz' map from square to triangle, as sample_triangle, in double.
+  const double half = 0.5 * std::min(u0, u[1]), b1 = u0 - half, b2 = u[1] - half;
+  const double side = t.two_sided ? 1 - 2 * std::floor(2 * u[2]) : 1;
+  e.origin = t.point(b1, b2);
+  e.normal = t.normal * float(side);
+  e.origin_offset = t.offset;
+  e.travel = t.area > 0 ? Frame(e.normal).to_world(direction) : Vec3{0, 0, 1};
+  if (!t.varies) return;
+  TriangleLight here = t;
+  here.radiance = emitted_at(slot, b1, b2);
+  e.flux = Rgb(here.flux() / slots[slot].probability);
+}
+
+void Lights::Impl::emit_punctual(const PlacedLight& placed, double u0, const std::array<double, 4>& u,
+                                 PhotonEmission& e) const {
+  if (placed.light.kind != PunctualLight::Kind::directional) {
+    // No position to choose: its two numbers are the direction's.
+    e.origin = placed.position;
+    e.travel = sample_punctual_direction(placed, u0, u[1]);
+    return;
+  }
+  const Vec2 disc = sample_disc_concentric({to_float(u0), to_float(u[1])});
+  const Frame frame_of_light(placed.direction);
+  const float r = float(sphere_radius);
+  e.travel = placed.direction;
+  e.origin = sphere_centre + frame_of_light.to_world({disc.x * r, disc.y * r, -r});
+}
+
+/// Flux: radiance / density x pi R^2.
+void Lights::Impl::emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u,
+                                    PhotonEmission& e) const {
+  EnvironmentLight::Sample from;
+  if (!environment->sample(u0, u[1], from)) {
+    e.travel = {0, -1, 0};
+    return;
+  }
+  const Vec2 disc = sample_disc_concentric({to_float(u[2]), to_float(u[3])});
+  const float r = float(sphere_radius);
+  e.travel = -from.direction;
+  e.origin = sphere_centre + Frame(e.travel).to_world({disc.x * r, disc.y * r, -r});
+  e.flux = Rgb(Rgbd(from.radiance) * (disc_area() / from.pdf_solid_angle) / slots[slot].probability);
+}
+
+void Lights::emit(std::span<const std::array<double, 4>> u, std::span<PhotonEmission> photons) const {
+  const Impl& m = *impl_;
+  TEMPOLUX_CHECK(!m.slots.empty() && u.size() == photons.size() && u.size() <= kMostEmitted);
+  Vec2 numbers[kMostEmitted];
+  Vec3 directions[kMostEmitted];
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    photons[i] = {};
+    photons[i].slot = std::uint32_t(m.slot_at(u[i][0]));
+    numbers[i] = m.direction_numbers(photons[i].slot, u[i]);
+  }
+  sample_hemisphere_cos({numbers, u.size()}, directions);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    PhotonEmission& e = photons[i];
+    const std::size_t slot = e.slot;
+    const double below = slot > 0 ? m.cumulative[slot - 1] : 0;
+    const double u0 = stretch(u[i][0], below, m.slots[slot].probability);
+    e.flux = m.photon_flux[slot];
+    if (slot < m.triangles.size())
+      m.emit_triangle(slot, u0, u[i], directions[i], e);
+    else if (m.slots[slot].kind == EmissionSlot::Kind::environment)
+      m.emit_environment(slot, u0, u[i], e);
+    else
+      m.emit_punctual(m.frame->lights[m.slots[slot].light], u0, u[i], e);
+    if (!is_finite(e.flux)) refuse_flux(m.frame->scene, max_component(m.slot_flux(slot)));
+  }
+}
+
+}  // namespace tempolux
