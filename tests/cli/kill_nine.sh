@@ -6,9 +6,13 @@ rounds=$1; shift
 scratch=$(mktemp -d) || exit 1
 trap 'rm -rf "$scratch"' EXIT
 mkdir "$scratch/whole" "$scratch/part"
-begin=$(date +%s%N)
-(cd "$scratch/whole" && "$@" >/dev/null 2>&1) || { echo "the undisturbed run fails: $*"; exit 1; }
-span=$(( ($(date +%s%N) - begin) / 1000 ))
+span=1000000000
+for try in 1 2 3; do                         # the shortest of three: a moment after the end kills nothing
+  begin=$(date +%s%N)
+  (cd "$scratch/whole" && "$@" >/dev/null 2>&1) || { echo "the undisturbed run fails: $*"; exit 1; }
+  took=$(( ($(date +%s%N) - begin) / 1000 ))
+  [ $took -lt $span ] && span=$took
+done
 cd "$scratch/part" || exit 1
 wrong=0 killed=0 left=0
 moments=$(awk -v n="$rounds" -v span="$span" 'BEGIN {

@@ -1,0 +1,33 @@
+# . each_tool.sh -- commands of all tools, on inputs that this makes in ./in; outputs are named without a folder.
+# each_tool DO    calls DO NAME COMMAND... for each; a NAME is the tool's, and more where one is not enough.
+scene=$HERE/../../pipelines/scenes/S2_cornell_moving.glb
+mirror=$PWD/in/mirror.glb in=$PWD/in
+mkdir in
+from=$scene
+for change in still 'camera-from 2' mirror; do
+  "${PYTHON:-python3}" -B "$HERE/../pipelines/edit_gltf.py" "$from" "in/${change%% *}.glb" $change || exit 1
+  from=in/${change%% *}.glb
+done
+photon-trace "$mirror" -q --photons 20k --kinds caustic,indirect -o in/p.photons &&
+irradcache-build "$mirror" -q --photons in/p.photons --point-count 1k --rays 50 --size 64x36 --keep-points in/p.irradpoints \
+  -o in/c.irradcache &&
+frame-render "$mirror" -q --size 96x54 --irradcache in/c.irradcache --points in/p.irradpoints --photons in/p.photons --spp 1 \
+  --channels RGBA,layers,Z,id -o in/x.exr --stats in/x.json &&
+frame-render "$mirror" -q --size 96x54 --integrator path --spp 2 --halves --channels RGBA,layers,id -o in/r.exr &&
+aqm-compare in/x.exr --reference-halves in/r_a.exr in/r_b.exr -q --json in/e.json || exit 1
+each_tool() {
+  "$1" scene-plan scene-plan "$scene" --frames 0-5 -o plan
+  "$1" photon-trace photon-trace "$mirror" --photons 100k -o a.photons
+  "$1" irradcache-build irradcache-build "$mirror" --photons "$in/p.photons" --point-count 1k --rays 50 --size 64x36 \
+    --keep-points a.irradpoints -o a.irradcache
+  "$1" irradcache-build-records irradcache-build records "$mirror" --points "$in/p.irradpoints" --records "$in/c.irradcache" \
+    --frame 2 --rays 50 --size 64x36 -o a.irradcache
+  "$1" frame-render frame-render "$mirror" --size 96x54 --irradcache "$in/c.irradcache" --points "$in/p.irradpoints" \
+    --photons "$in/p.photons" --spp 2 --channels RGBA,layers,Z,N,id -o a.exr
+  "$1" frame-render-paths frame-render "$mirror" --size 96x54 --integrator path --spp 2 --halves -o a.exr
+  "$1" aqm-compare aqm-compare "$in/x.exr" --reference-halves "$in/r_a.exr" "$in/r_b.exr" --json a.json --difference d.exr
+  "$1" error-report error-report --run scene=S,curve=a,x=1 "$in/x.json" "$in/e.json" \
+    --run scene=S,curve=a,x=2 "$in/x.json" "$in/e.json" --no-plots -o report
+  "$1" tempolux-info tempolux-info "$in/p.photons" --export ply -o a.ply
+  "$1" tempolux-info-png tempolux-info "$in/x.exr" --png a.png
+}
