@@ -150,7 +150,9 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()->check(CLI::Range(2, kMaxNeighbours));
   app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
       ->capture_default_str()->check(CLI::Range(1, 4096));
-  app.add_option("--rays", options.gather.rays, "gather rays per record")->capture_default_str()->check(CLI::Range(1, 1 << 20));
+  app.add_option("--rays", options.gather.rays,
+                 "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many")
+      ->capture_default_str()->check(CLI::Range(1, 1 << 20));
   app.add_option("--error-bound", options.placement.error_bound,
                  "radius of a record / harmonic mean distance to what it sees: smaller is finer")
       ->capture_default_str()->check(CLI::Range(1e-3, 2.0));

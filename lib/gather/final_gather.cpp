@@ -28,6 +28,10 @@ std::uint64_t key_of(Vec3 p, Vec3 n, std::uint64_t seed) {
 constexpr std::size_t kAtOnce = 32;  ///< rays whose answers are fetched together
 constexpr int kTile = 4;             ///< sectors followed side by side: two rings of them are a packet of rays
 
+/// From one ray of a cell to its next, modulo 1: any number of them is spread over the cell [R2 of Roberts 2018, shifted].
+constexpr Vec2 kStep{0.7548777f, 0.5698403f};
+float frac(float x) { return std::min(x - std::floor(x), kOneMinusEpsilon); }
+
 /// Cells of M rings x N sectors, some sectors wide, ring by ring.
 std::vector<std::uint32_t> tiled_order(int rings, int sectors) {
   std::vector<std::uint32_t> order;
@@ -37,6 +41,35 @@ std::vector<std::uint32_t> tiled_order(int rings, int sectors) {
         order.push_back(std::uint32_t(j * sectors + k));
   return order;
 }
+
+/// Rays from one place through cells of the hemisphere above it, and what comes back along them.
+class Shots {
+ public:
+  std::vector<Ray> rays;
+  std::vector<std::uint64_t> keys;
+  std::vector<std::uint32_t> cells;   ///< of the rays
+  std::vector<Rgb> radiance;
+  std::vector<float> distance;
+
+  void clear() {
+    rays.clear();
+    keys.clear();
+    cells.clear();
+  }
+  /// The sample-th ray of a cell, `u` within it; none if it would start below the surface: nothing arrives from there.
+  void aim(const SurfacePoint& from, const Frame& frame, Vec3 geometric, Vec2 strata, std::uint32_t cell, Vec2 u,
+           std::uint64_t ray_key) {
+    const auto sectors = std::uint32_t(strata.y);
+    const float sin2 = (float(cell / sectors) + u.x) / strata.x;
+    const float phi = 2 * kPi * (float(cell % sectors) + u.y) / strata.y;
+    const float sine = std::sqrt(sin2), cosine = std::sqrt(std::max(1e-6f, 1 - sin2));
+    const Vec3 travel = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
+    if (!(dot(travel, geometric) > 0)) return;
+    rays.push_back(spawn_ray(from, travel));
+    keys.push_back(ray_key);
+    cells.push_back(cell);
+  }
+};
 
 /// Normals on the lit side and the direction back along the ray in the shading normal's frame.
 struct Side {
@@ -187,48 +220,56 @@ Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, const 
 
 IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {
   thread_local Hemisphere sky;
+  thread_local Shots shots;
+  thread_local std::vector<std::uint8_t> further;
   sky.reset(rings_, sectors_);
   const Frame frame(normal);
   const Vec3 geometric = dot(from.normal_geometric, normal) < 0 ? -from.normal_geometric : from.normal_geometric;
   const std::uint64_t key = key_of(from.position, normal, options_.seed);
   const float closest = std::max(4 * from.offset, 1e-30f);
-  thread_local std::vector<Ray> rays;
-  thread_local std::vector<std::uint64_t> keys;
-  thread_local std::vector<std::uint32_t> cells;
-  rays.clear();
-  keys.clear();
-  cells.clear();
-  for (const std::uint32_t c : cell_order_) {
-    const PathRandom random(key, c);
-    const Vec2 u = random.get2(0, Purpose::gather);
-    const float sin2 = (float(c / std::uint32_t(sectors_)) + u.x) / float(rings_);
-    const float phi = 2 * kPi * (float(c % std::uint32_t(sectors_)) + u.y) / float(sectors_);
-    const float sine = std::sqrt(sin2), cosine = std::sqrt(std::max(1e-6f, 1 - sin2));
-    const Vec3 travel = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
-    if (!(dot(travel, geometric) > 0)) continue;
-    rays.push_back(spawn_ray(from, travel));
-    keys.push_back(random.bits(1, Purpose::gather));
-    cells.push_back(c);
-  }
-  thread_local std::vector<Rgb> found;
-  thread_local std::vector<float> distance;
-  found.resize(rays.size());
-  distance.resize(rays.size());
-  radiance(rays, keys, found, distance, counts);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    sky.radiance[cells[i]] = found[i];
-    sky.inverse_distance[cells[i]] = 1 / std::max(distance[i], closest);   // 0 for a miss
-  }
+  const auto aim = [&](std::uint32_t cell, std::uint32_t sample) {
+    const PathRandom random(key, cell);
+    const Vec2 first = random.get2(0, Purpose::gather), u{frac(first.x + float(sample) * kStep.x), frac(first.y + float(sample) * kStep.y)};
+    shots.aim(from, frame, geometric, {float(rings_), float(sectors_)}, cell, u, random.bits(1, Purpose::gather, sample));
+  };
+  const auto shoot = [&] {
+    shots.radiance.resize(shots.rays.size());
+    shots.distance.resize(shots.rays.size());
+    radiance(shots.rays, shots.keys, shots.radiance, shots.distance, counts);
+  };
 
+  const auto inverse = [closest](float distance) { return 1 / std::max(distance, closest); };   // 0 for a miss
+
+  shots.clear();
+  for (const std::uint32_t c : cell_order_) aim(c, 0);
+  shoot();
+  for (std::size_t i = 0; i < shots.rays.size(); ++i) {
+    sky.radiance[shots.cells[i]] = shots.radiance[i];
+    sky.inverse_distance[shots.cells[i]] = inverse(shots.distance[i]);
+  }
   IrradianceRecord record;
   record.position = from.position;
   record.normal = normal;
   record.object = from.object;
-  sky.irradiance_and_gradients(frame, record);
+  sky.translational_gradient(frame, record);
   record.lit_cells = sky.lit_cells();
   if (options_.curvature) record.curvature = sky.curvature();
   record.radius_unclamped = sky.harmonic_distance();
   record.radius = sky.nearest_across();
+
+  // More rays where light is uneven: a cell's value becomes the mean of all of its own.
+  sky.further_rays(further);
+  shots.clear();
+  for (const std::uint32_t c : cell_order_)
+    for (std::uint32_t sample = 1; sample <= further[c]; ++sample) aim(c, sample);
+  shoot();
+  for (std::size_t c = 0; c < further.size(); ++c)
+    if (further[c] > 0) sky.radiance[c] *= 1 / float(1 + further[c]);
+  for (std::size_t i = 0; i < shots.rays.size(); ++i) {
+    const std::uint32_t c = shots.cells[i];
+    sky.radiance[c] += shots.radiance[i] * (1 / float(1 + further[c]));
+  }
+  sky.irradiance_and_rotational_gradient(frame, record);
   return record;
 }
 

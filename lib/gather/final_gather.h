@@ -19,7 +19,7 @@ namespace tempolux {
 
 struct GatherOptions {
   std::uint64_t seed = 0;
-  int rays = 500;                   ///< wanted; rounded to M rings x N_phi sectors with N_phi about pi M
+  int rays = 500;                   ///< wanted where light is even; rounded to M rings x N_phi sectors, N_phi about pi M
   float near_factor = 2;            ///< hits nearer than about this many estimate radii continue one bounce
   bool curvature = false;           ///< also IrradianceRecord::curvature
 };
@@ -38,10 +38,10 @@ class FinalGather {
   FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options);
 
   /// Irradiance at `from` over the hemisphere about `normal` (unit, on the lit side), with its gradients, by about
-  /// `rays` cells of equal weight (hemisphere.h). radius_unclamped receives the harmonic mean distance, radius the
-  /// distance across the tangent plane to the nearest of what the outermost ring met (limit_radius makes the
-  /// validity of both). Random numbers come from the position: the record of a place does not depend on which
-  /// records were made before.
+  /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). radius_unclamped
+  /// receives the harmonic mean distance, radius the distance across the tangent plane to the nearest of what the
+  /// outermost ring met (limit_radius makes the validity of both). Random numbers come from the position: the record
+  /// of a place does not depend on which records were made before.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
 
   /// Radiance arriving along rays that counts as indirect at their starts, and the distance to what each meets

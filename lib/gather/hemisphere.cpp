@@ -29,20 +29,34 @@ void Hemisphere::reset(int rings, int sectors) {
   inverse_distance.assign(radiance.size(), 0.0f);
 }
 
-void Hemisphere::irradiance_and_gradients(const Frame& frame, IrradianceRecord& record) const {
+void Hemisphere::irradiance_and_rotational_gradient(const Frame& frame, IrradianceRecord& record) const {
   const int M = rings_, N = sectors_;
   Rgbd sum{0.0};
-  std::array<Vec3d, 3> rotational{}, translational{};
+  std::array<Vec3d, 3> gradient{};
+  for (int k = 0; k < N; ++k) {
+    const double middle = 2 * M_PI * (k + 0.5) / N;
+    Rgbd turn{0.0};
+    for (int j = 0; j < M; ++j) {
+      const Rgbd here(radiance[cell(j, k)]);
+      sum += here;
+      turn += here * ring_tangent_[std::size_t(j)];
+    }
+    const Vec3d v{-std::sin(middle), std::cos(middle), 0};
+    for (int c = 0; c < 3; ++c) gradient[std::size_t(c)] += v * (turn[c] * M_PI / (double(M) * N));
+  }
+  record.irradiance = Rgb(sum * (M_PI / (double(M) * N)));
+  for (std::size_t c = 0; c < 3; ++c) record.rotational[c] = frame.to_world(Vec3(gradient[c]));
+}
+
+void Hemisphere::translational_gradient(const Frame& frame, IrradianceRecord& record) const {
+  const int M = rings_, N = sectors_;
+  std::array<Vec3d, 3> gradient{};
   for (int k = 0; k < N; ++k) {
     const double middle = 2 * M_PI * (k + 0.5) / N, lower = 2 * M_PI * double(k) / N;
-    const Vec3d u{std::cos(middle), std::sin(middle), 0}, v{-std::sin(middle), std::cos(middle), 0};
-    const Vec3d v_lower{-std::sin(lower), std::cos(lower), 0};
-    Rgbd turn{0.0}, along{0.0}, across{0.0};
+    Rgbd along{0.0}, across{0.0};
     for (int j = 0; j < M; ++j) {
       const Rgbd here(radiance[cell(j, k)]);
       const double near_here = double(inverse_distance[cell(j, k)]);
-      sum += here;
-      turn += here * ring_tangent_[std::size_t(j)];
       const double s_lower = std::sqrt(double(j) / M), s_upper = std::sqrt(double(j + 1) / M);
       if (j > 0) {
         const double near = std::max(near_here, double(inverse_distance[cell(j - 1, k)]));
@@ -52,16 +66,10 @@ void Hemisphere::irradiance_and_gradients(const Frame& frame, IrradianceRecord& 
       const double near = std::max(near_here, double(inverse_distance[before]));
       across += (here - Rgbd(radiance[before])) * ((s_upper - s_lower) * near);
     }
-    for (int c = 0; c < 3; ++c) {
-      rotational[std::size_t(c)] += v * (turn[c] * M_PI / (double(M) * N));
-      translational[std::size_t(c)] += u * (along[c] * 2 * M_PI / N) + v_lower * across[c];
-    }
+    const Vec3d u{std::cos(middle), std::sin(middle), 0}, v_lower{-std::sin(lower), std::cos(lower), 0};
+    for (int c = 0; c < 3; ++c) gradient[std::size_t(c)] += u * (along[c] * 2 * M_PI / N) + v_lower * across[c];
   }
-  record.irradiance = Rgb(sum * (M_PI / (double(M) * N)));
-  for (std::size_t c = 0; c < 3; ++c) {
-    record.rotational[c] = frame.to_world(Vec3(rotational[c]));
-    record.translational[c] = frame.to_world(Vec3(translational[c]));
-  }
+  for (std::size_t c = 0; c < 3; ++c) record.translational[c] = frame.to_world(Vec3(gradient[c]));
 }
 
 float Hemisphere::curvature() const {
@@ -93,6 +101,43 @@ float Hemisphere::curvature() const {
     size += std::max(std::abs(mean), apart);   // (|mean + apart| + |mean - apart|) / 2
   }
   return float(size);
+}
+
+void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {
+  const std::size_t M = std::size_t(rings_), N = std::size_t(sectors_);
+  counts.assign(M * N, 0);
+  std::vector<double> light(M * N), three(M * N), three2(M * N);   // by cell: its own, it and the sectors beside it
+  double total = 0;
+  for (std::size_t c = 0; c < light.size(); ++c) {
+    light[c] = double(radiance[c].r) + double(radiance[c].g) + double(radiance[c].b);
+    total += light[c];
+  }
+  const auto square = [](double x) { return x * x; };
+  const auto beside = [&](std::size_t j, std::size_t k) {
+    return std::pair(light[j * N + (k + N - 1) % N], light[j * N + (k + 1) % N]);
+  };
+  for (std::size_t j = 0; j < M; ++j)
+    for (std::size_t k = 0; k < N; ++k) {
+      const auto [left, right] = beside(j, k);
+      const std::size_t c = j * N + k;
+      three[c] = left + right + light[c];
+      three2[c] = square(left) + square(right) + square(light[c]);
+    }
+  for (std::size_t j = 0; j < M; ++j)
+    for (std::size_t k = 0; k < N; ++k) {
+      const auto [left, right] = beside(j, k);
+      const std::size_t c = j * N + k;
+      double sum = left + right, sum2 = square(left) + square(right), n = 2;
+      const auto add_ring = [&](std::size_t there) {
+        sum += three[there];
+        sum2 += three2[there];
+        n += 3;
+      };
+      if (j > 0) add_ring(c - N);
+      if (j + 1 < M) add_ring(c + N);
+      const double others = (total - light[c]) / double(M * N - 1), deviation = std::sqrt(std::max(0.0, sum2 / n - square(sum / n)));
+      if (others > 0) counts[c] = std::uint8_t(std::min(double(kMostFurther), deviation / others + 0.5));
+    }
 }
 
 float Hemisphere::lit_cells() const {

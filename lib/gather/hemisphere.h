@@ -1,6 +1,7 @@
 // lib/gather/hemisphere.h -- radiance and distances over a hemisphere: irradiance, how it changes, how far it holds.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "lib/core/frame.h"
@@ -21,16 +22,21 @@ class Hemisphere {
   /// All cells dark and empty.
   void reset(int rings, int sectors);
 
-  /// Fills in, in the frame's space (z = normal):
+  /// In the frame's space (z = normal):
   ///
   ///     E     = pi/(M N) sum L_jk
   ///     dE/dn = pi/(M N) sum_k v_k sum_j T_j L_jk                                      [Ward & Heckbert 1992]
+  ///
+  /// v_k at the middle of sector k + 90 degrees; T_j is the ring's mean of tan t (algorithms.md 8.2: the sign is that of
+  /// E(n) = E + (n_i x n) . dE/dn).
+  void irradiance_and_rotational_gradient(const Frame& frame, IrradianceRecord& record) const;
+
   ///     dE/dx = sum_k { u_k 2pi/N sum_{j>=1} sin t_j- cos^2 t_j- / min(r_jk, r_j-1,k) (L_jk - L_j-1,k)
   ///                   + v_k- sum_j (sin t_j+ - sin t_j-) / min(r_jk, r_j,k-1) (L_jk - L_j,k-1) }
   ///
-  /// u_k at the middle of sector k, v_k 90 degrees on, v_k- at its lower edge + 90 degrees; T_j is the ring's mean
-  /// of tan t (algorithms.md 8.2: the signs are those of E(n) = E + (n_i x n) . dE/dn).
-  void irradiance_and_gradients(const Frame& frame, IrradianceRecord& record) const;
+  /// u_k at the middle of sector k, v_k- at its lower edge + 90 degrees. To be asked for while each cell's radiance and
+  /// distance are those of one ray: of a cell that an edge cuts a mean would have no distance.
+  void translational_gradient(const Frame& frame, IrradianceRecord& record) const;
 
   /// Sum over channels of the mean size of the second derivatives of E along the tangent plane, (|l1| + |l2|) / 2 of
   /// their eigenvalues, W/m^4. Every border between cells is taken for a straight edge at the nearer distance r, as
@@ -39,6 +45,13 @@ class Hemisphere {
   ///     between rings, along u_k u_k: 2pi/N cos^2 t (3 sin^2 t - cos^2 t) / r^2 (L_jk - L_j-1,k)
   ///     between sectors, u v + v u:   3/2 (sin^2 t_j+ - sin^2 t_j-) / r^2 (L_jk - L_j,k-1)
   float curvature() const;
+
+  /// How many more rays each cell deserves beside the one it has had, by cell: the standard deviation of the cells around
+  /// it (eight of them, five at the rims) over the mean of all others, rounded, at most kMostFurther. More rays fall
+  /// where light is uneven [Neyman 1934]. A cell's own ray has no say in it, so that the mean of that and the further ones
+  /// has no bias: were bright rays themselves to call for more, dark ones would stay as they are and light would be lost.
+  void further_rays(std::vector<std::uint8_t>& counts) const;
+  static constexpr int kMostFurther = 8;
 
   /// How many cells carry the light: (sum L)^2 / sum L^2 over the cells' mean channel; 0 in the dark.
   float lit_cells() const;

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "lib/core/random.h"
+
 namespace tempolux {
 namespace {
 
@@ -47,7 +49,7 @@ TEST(Hemisphere, UniformLightDoesNotBend) {
   for (float& inverse : sky.inverse_distance) inverse = 3;
   EXPECT_EQ(sky.curvature(), 0);
   IrradianceRecord record;
-  sky.irradiance_and_gradients(Frame({0, 0, 1}), record);
+  sky.irradiance_and_rotational_gradient(Frame({0, 0, 1}), record);
   EXPECT_NEAR(record.irradiance.g, 0.7 * M_PI, 1e-5);
   EXPECT_NEAR(sky.harmonic_distance(), 1.0 / 3, 1e-6);
 }
@@ -68,6 +70,47 @@ TEST(Hemisphere, CountsTheCellsThatCarryTheLight) {
   EXPECT_FLOAT_EQ(sky.lit_cells(), 12);
   sky.radiance[50] = Rgb(3000.0f);   // one outshines them
   EXPECT_NEAR(sky.lit_cells(), 1.0f, 0.03f);
+}
+
+/// Light in every cell to the right of a meridian: further rays along its border alone. Beside it three of eight
+/// neighbours are dark, the mean of all cells is a half: sqrt(15/64) / (1/2) = 0.97, one further ray; none elsewhere.
+TEST(Hemisphere, FurtherRaysFallWhereLightIsUneven) {
+  constexpr int kRings = 10, kSectors = 30;
+  Hemisphere sky;
+  sky.reset(kRings, kSectors);
+  for (int j = 0; j < kRings; ++j)
+    for (int k = 0; k < kSectors / 2; ++k) sky.radiance[std::size_t(j * kSectors + k)] = Rgb(2.0f);
+  std::vector<std::uint8_t> counts;
+  sky.further_rays(counts);
+  for (int j = 0; j < kRings; ++j)
+    for (int k = 0; k < kSectors; ++k) {
+      const bool border = k % (kSectors / 2) == 0 || k % (kSectors / 2) == kSectors / 2 - 1;
+      EXPECT_EQ(int(counts[std::size_t(j * kSectors + k)]), border ? 1 : 0) << j << ' ' << k;
+    }
+  for (Rgb& l : sky.radiance) l = Rgb(0.3f);
+  sky.further_rays(counts);
+  for (const int count : counts) EXPECT_EQ(count, 0);
+}
+
+/// Whatever a cell's own ray brought, its number of further rays is the same; and others' do count.
+TEST(Hemisphere, ACellsOwnRayHasNoSayInItsFurtherOnes) {
+  Hemisphere sky;
+  sky.reset(5, 16);
+  for (std::size_t c = 0; c < sky.radiance.size(); ++c) sky.radiance[c] = Rgb(float(mix64(c) % 100 < 15 ? 40 : 1));
+  std::vector<std::uint8_t> before, after;
+  sky.further_rays(before);
+  bool others = false;
+  for (std::size_t c = 0; c < sky.radiance.size(); ++c) {
+    const Rgb own = sky.radiance[c];
+    for (const float value : {0.0f, 7.0f, 1e5f}) {
+      sky.radiance[c] = Rgb(value);
+      sky.further_rays(after);
+      EXPECT_EQ(after[c], before[c]) << c << ' ' << value;
+      others |= after != before;
+    }
+    sky.radiance[c] = own;
+  }
+  EXPECT_TRUE(others);
 }
 
 TEST(Hemisphere, NothingThereIsFarAway) {
