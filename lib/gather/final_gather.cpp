@@ -28,7 +28,7 @@ std::uint64_t key_of(Vec3 p, Vec3 n, std::uint64_t seed) {
 constexpr std::size_t kAtOnce = 32;  ///< rays whose answers are fetched together
 constexpr int kTile = 4;             ///< sectors followed side by side: two rings of them are a packet of rays
 
-/// From one ray of a cell to its next, modulo 1: any number of them is spread over the cell [R2 of Roberts 2018, shifted].
+/// From one ray of a cell to its next, modulo 1: any number is spread over the cell [R2 of Roberts 2018, shifted].
 constexpr Vec2 kStep{0.7548777f, 0.5698403f};
 float frac(float x) { return std::min(x - std::floor(x), kOneMinusEpsilon); }
 
@@ -229,8 +229,10 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   const float closest = std::max(4 * from.offset, 1e-30f);
   const auto aim = [&](std::uint32_t cell, std::uint32_t sample) {
     const PathRandom random(key, cell);
-    const Vec2 first = random.get2(0, Purpose::gather), u{frac(first.x + float(sample) * kStep.x), frac(first.y + float(sample) * kStep.y)};
-    shots.aim(from, frame, geometric, {float(rings_), float(sectors_)}, cell, u, random.bits(1, Purpose::gather, sample));
+    const Vec2 first = random.get2(0, Purpose::gather);
+    const Vec2 u{frac(first.x + float(sample) * kStep.x), frac(first.y + float(sample) * kStep.y)};
+    shots.aim(from, frame, geometric, {float(rings_), float(sectors_)}, cell, u,
+              random.bits(1, Purpose::gather, sample));
   };
   const auto shoot = [&] {
     shots.radiance.resize(shots.rays.size());

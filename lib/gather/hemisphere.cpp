@@ -135,7 +135,8 @@ void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {
       };
       if (j > 0) add_ring(c - N);
       if (j + 1 < M) add_ring(c + N);
-      const double others = (total - light[c]) / double(M * N - 1), deviation = std::sqrt(std::max(0.0, sum2 / n - square(sum / n)));
+      const double others = (total - light[c]) / double(M * N - 1);
+      const double deviation = std::sqrt(std::max(0.0, sum2 / n - square(sum / n)));
       if (others > 0) counts[c] = std::uint8_t(std::min(double(kMostFurther), deviation / others + 0.5));
     }
 }

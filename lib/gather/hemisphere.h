@@ -27,8 +27,8 @@ class Hemisphere {
   ///     E     = pi/(M N) sum L_jk
   ///     dE/dn = pi/(M N) sum_k v_k sum_j T_j L_jk                                      [Ward & Heckbert 1992]
   ///
-  /// v_k at the middle of sector k + 90 degrees; T_j is the ring's mean of tan t (algorithms.md 8.2: the sign is that of
-  /// E(n) = E + (n_i x n) . dE/dn).
+  /// v_k at the middle of sector k + 90 degrees; T_j is the ring's mean of tan t (algorithms.md 8.2: the sign is that
+  /// of E(n) = E + (n_i x n) . dE/dn).
   void irradiance_and_rotational_gradient(const Frame& frame, IrradianceRecord& record) const;
 
   ///     dE/dx = sum_k { u_k 2pi/N sum_{j>=1} sin t_j- cos^2 t_j- / min(r_jk, r_j-1,k) (L_jk - L_j-1,k)
@@ -46,10 +46,10 @@ class Hemisphere {
   ///     between sectors, u v + v u:   3/2 (sin^2 t_j+ - sin^2 t_j-) / r^2 (L_jk - L_j,k-1)
   float curvature() const;
 
-  /// How many more rays each cell deserves beside the one it has had, by cell: the standard deviation of the cells around
-  /// it (eight of them, five at the rims) over the mean of all others, rounded, at most kMostFurther. More rays fall
-  /// where light is uneven [Neyman 1934]. A cell's own ray has no say in it, so that the mean of that and the further ones
-  /// has no bias: were bright rays themselves to call for more, dark ones would stay as they are and light would be lost.
+  /// How many more rays each cell deserves beside the one it has had: the standard deviation of the cells around it
+  /// (eight, five at the rims) over the mean of all others, rounded, at most kMostFurther. More rays fall where light is
+  /// uneven [Neyman 1934]. A cell's own ray has no say in it, so that the mean of that and the further ones has no bias:
+  /// were bright rays themselves to call for more, dark ones would stay as they are and light would be lost.
   void further_rays(std::vector<std::uint8_t>& counts) const;
   static constexpr int kMostFurther = 8;
 

@@ -143,6 +143,48 @@ TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
   EXPECT_EQ(drawn, 4 * 64);
 }
 
+/// Of the coarsest lattice's points, 625 here, the first 256 are gathered side by side, before there is any record; each
+/// of those covers all of this small patch, so that the batches after gather nothing.
+TEST(PlaceRecords, RecordsOfOneBatchServeTheNext) {
+  const Room room;
+  RecordStore store(room.frame->bounds);
+  GatherCounts counts;
+  const PixelView patch = [](float x, float y, const PathRandom*) {
+    SeenPoint seen;
+    seen.surface.position = {1e-5f * x, 0, 1e-5f * y};
+    seen.normal = seen.surface.normal = seen.surface.normal_geometric = {0, 1, 0};
+    seen.footprint = 1;
+    return std::optional(seen);
+  };
+  EXPECT_EQ(place_records(*room.gather, patch, 400, 400, room.frame->bounds, {}, store, counts), 256u);
+}
+
+/// A step between two parallel planes of one object is an edge, whose pixels are looked at within; a plane seen aslant,
+/// from pixel to pixel farther off by more than the step, is none.
+TEST(PlaceRecords, StepsBetweenParallelPlanesAreEdges) {
+  const Room room;
+  constexpr int kSize = 12;
+  const auto looked_within = [&](float step, Vec3 across) {
+    RecordStore store(room.frame->bounds);
+    GatherCounts counts;
+    int within = 0;
+    const PixelView view = [&](float x, float y, const PathRandom* random) {
+      within += random != nullptr;
+      SeenPoint seen;
+      seen.surface.position = across * (0.01f * (x - kSize / 2)) + Vec3{0, 0, 1} * (0.01f * y) + Vec3{0, x < kSize / 2 ? step : 0, 0};
+      seen.normal = seen.surface.normal = seen.surface.normal_geometric = {0, 1, 0};
+      seen.footprint = 0.01f;
+      return std::optional(seen);
+    };
+    const ThreadLimit limit(1);
+    place_records(*room.gather, view, kSize, kSize, room.frame->bounds, {}, store, counts);
+    return within;
+  };
+  EXPECT_EQ(looked_within(0.05f, {1, 0, 0}), 4 * 2 * kSize);   // the columns beside the step
+  EXPECT_EQ(looked_within(0.01f, {1, 0, 0}), 0);               // a footprint: the surface is rough, or seen aslant
+  EXPECT_EQ(looked_within(0, {8, 0, 0}), 0);
+}
+
 IrradianceRecord gathered(float irradiance, Vec3 slope, float harmonic, float nearest) {
   IrradianceRecord r;
   r.normal = {0, 1, 0};
