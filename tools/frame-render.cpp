@@ -14,6 +14,7 @@
 #include "formats/error.h"
 #include "lib/image/exr_io.h"
 #include "lib/render/frame_renderer.h"
+#include "tools/base_frame.h"
 #include "tools/frame_output.h"
 #include "tools/indirect_light.h"
 #include "tools/scene_input.h"
@@ -47,19 +48,6 @@ struct MotionFrame {
   NeighbourFrame get() const { return {frame ? &*frame : nullptr, view ? &*view : nullptr}; }
 };
 
-/// By pixel: is it to be traced? From any channel of the mask that is not 0.
-std::vector<std::uint8_t> read_mask(const Options& options, const std::string& name) {
-  const Image image = load_exr(name);
-  if (image.width != options.width || image.height != options.height)
-    throw InputError(name + ": " + std::to_string(image.width) + "x" + std::to_string(image.height) +
-                     " pixels; a mask has the size of the picture");
-  std::vector<std::uint8_t> mask(image.pixel_count());
-  for (const Channel& channel : image.channels)
-    for (std::size_t p = 0; p < mask.size(); ++p)
-      mask[p] |= channel.ids.empty() ? channel.values[p] != 0 : channel.ids[p] != 0;
-  return mask;
-}
-
 void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& tracer, const tools::IndirectLight& light) {
   tools::Stats& stats = tool.stats();
   stats.count("camera_rays", double(rendered.rays.camera));
@@ -81,11 +69,12 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
   const MotionFrame next(input, options, camera, number + 1), previous(input, options, camera, number - 1);
   FrameOptions frame_options = options.frame;
-  Image base;
+  tools::BaseFrame base;
   if (!options.mask.empty()) {
-    frame_options.mask = read_mask(options, tools::frame_name(options.mask, number));
-    base = load_exr(tools::frame_name(options.base, number));
-    for (const std::string& file : {options.mask, options.base}) tool.depends_on(tools::frame_name(file, number));
+    const tools::Picture picture{options.width, options.height, view.world_to_camera(), view.world_to_ndc()};
+    base = tools::read_base_frame(tool, tools::frame_name(options.mask, number), tools::frame_name(options.base, number), frame,
+                                  picture);
+    frame_options.mask = base.mask;
   }
   tool.stats().phase("build");
   const Tracer tracer(frame);
@@ -107,7 +96,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
                                                                               : ExrWriteOptions::Compression::zip};
   const tools::FrameDescription description{tools::identity_of(frame), light.history() + tool.history_line(number),
                                             frame.frame, input.time().fps, view.world_to_camera(), view.world_to_ndc()};
-  outputs.write(rendered, image, options.channels, description, exr, frame_options.mask, base);
+  outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
   count_work(tool, rendered, tracer, light);
 }
@@ -125,6 +114,10 @@ void check(Options& options, const std::vector<int>& frames) {
   if (options.light.irradcache.empty() && !options.light.points.empty())
     throw InputError("--points: only a cache needs them, --irradcache FILE");
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
+  if (!options.base.empty() && options.frame.halves)
+    throw InputError("--halves: pixels of --base are the same in both, so that they are not independent; leave out one");
+  if (!options.base.empty() && options.half_float)
+    throw InputError("--half: would round the pixels of --base, which are kept bit for bit; leave out one");
   if (options.pixel_error < 0) options.frame.pixel_error = options.traces_paths() ? 0 : 0.01;
   else options.frame.pixel_error = options.pixel_error;
   const bool halves = options.frame.halves || options.frame.target_error > 0;

@@ -85,7 +85,7 @@ std::string Tool::history_line(std::optional<int> frame) const {
 std::string Tool::State::depfile_text(const std::vector<std::string>& targets) const {
   std::vector<std::string> files = common.state_files;
   for (const Dependency& dependency : dependencies)
-    if (!dependency.of_scene || common.state_files.empty()) files.push_back(dependency.file);
+    if (dependency.role != InputRole::of_scene || common.state_files.empty()) files.push_back(dependency.file);
   std::string rule, phony;
   for (const std::string& target : targets) rule += (rule.empty() ? "" : " ") + make_word(target);
   rule += ":";

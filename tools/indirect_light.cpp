@@ -1,6 +1,7 @@
 #include "tools/indirect_light.h"
 
-#include "formats/photons/photons.h"
+#include "formats/error.h"
+#include "lib/material/surface_material.h"
 
 namespace tempolux::tools {
 
@@ -10,9 +11,8 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
   if (!options.photons.empty()) {
     const std::string name = frame_name(options.photons, number);
     tool.stats().phase("read photons");
-    tool.depends_on(name);
-    const formats::PhotonMap map = formats::load_photons(name);
-    check_identity(tool, name, map.header.identity, frame);
+    const formats::PhotonMap map =
+        read_photons(tool, name, frame, options.irradcache.empty() ? LightNeeded::all : LightNeeded::caustic);
     history_ = map.header.history;
     tool.stats().phase("index photons", true);
     const Vec3d origin{map.header.origin[0], map.header.origin[1], map.header.origin[2]};
@@ -21,18 +21,25 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
     photons_ = std::make_unique<PhotonLight>(tracer, map.photons, origin - frame.origin, photon_light);
   }
   if (options.irradcache.empty()) return;
+  const Lobes lobes = lobes_of(frame);
+  if (options.photons.empty() && lobes.lambert && lobes.specular)
+    tool.warn(frame.scene->path + ": mirrors, glass and gloss throw caustic light, which a cache does not hold: it is left out; "
+              "give --photons FILE");
   tool.stats().phase("read cache");
   records_ = std::make_unique<RecordStore>(frame.bounds);
-  history_ = read_records(tool, frame_name(options.irradcache, number), frame, *records_);
+  history_ = read_records(tool, frame_name(options.irradcache, number), InputRole::file, frame, *records_);
   cache_ = std::make_unique<CacheLight>(*records_, [this, number] { return make_gather(number); }, photons_.get());
 }
 
-/// Points are read, or made from the photons, when the first record is missing.
+/// Points are read, or made from the photons, when the first record is missing. Without either there would be no
+/// indirect light in that place.
 const FinalGather* IndirectLight::make_gather(int number) {
   if (!options_.points.empty()) points_ = read_points(tool_, frame_name(options_.points, number), tracer_.frame());
   else if (!options_.photons.empty())
     points_ = make_points(tool_, frame_name(options_.photons, number), tracer_, lights_, options_.points_made);
-  else return nullptr;
+  else
+    throw InputError(frame_name(options_.irradcache, number) + ": has no record near some of what is seen, and there is nothing to "
+                     "gather one from; give --points FILE or --photons FILE");
   lookup_ = std::make_unique<PointLookup>(points_.points, tracer_.frame().bounds, points_.spacing, point_reach(tracer_));
   gather_ = std::make_unique<FinalGather>(tracer_, lights_, *lookup_, options_.gather);
   return gather_.get();

@@ -93,7 +93,7 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   const FinalGather gather(tracer, lights, lookup, options.gather);
   RecordStore store(first.bounds);
   std::string history = points.history;
-  if (!options.records.empty()) history = tools::read_records(tool, options.records, first, store);
+  if (!options.records.empty()) history = tools::read_records(tool, options.records, tools::InputRole::replaceable, first, store);
 
   tool.stats().phase("records", true);
   GatherCounts counts;

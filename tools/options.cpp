@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <sstream>
@@ -155,8 +156,10 @@ void Tool::common_options(unsigned flags) {
         ->type_name("N")
         ->capture_default_str()
         ->check([](const std::string& text) -> std::string {
-          const bool whole = text.find_first_not_of("0123456789") == std::string::npos;
-          return whole ? "" : "'" + text + "' is not a whole number";
+          std::uint64_t seed = 0;
+          const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+          const bool whole = error == std::errc{} && end == text.data() + text.size();
+          return whole ? "" : "'" + text + "' is not a whole number from 0 to 2^64-1";
         });
     app.add_option("--seed-mode", common.seed_mode, "fixed: one seed for all frames; frame: another for each")
         ->type_name("MODE")

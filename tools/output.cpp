@@ -115,17 +115,37 @@ bool same_bytes(const std::string& a, const std::string& b) {
   return file_a.eof() && file_b.eof();
 }
 
-/// What this process writes and has written: for the dependency file, for messages, against two outputs
-/// of one name.
+/// A file whatever its name.
+using FileId = std::pair<dev_t, ino_t>;
+
+std::optional<FileId> regular_file(const std::string& path) {
+  struct stat status = {};
+  if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+  return FileId{status.st_dev, status.st_ino};
+}
+
+/// What this process reads, writes and has written: for the dependency file, for messages, against two outputs
+/// of one name and outputs that would take an input's place.
 struct Ledger {
   struct Line {
     std::string path, target, temporary;
     std::string key;  ///< target in one spelling
+    std::optional<FileId> replaces;
     enum class Stage { open, committed, dropped } stage = Stage::open;
   };
   std::mutex mutex;
   std::vector<Line> lines;
   std::set<std::string> open_keys;   ///< of the lines that are open
+  std::map<FileId, std::string> to_be_replaced;   ///< by the lines that are open: what stands under their names, and these
+  std::map<FileId, std::string> inputs;           ///< and their names
+
+  /// Neither number is an input's for good: a file that is gone leaves it to another.
+  void refuse_input(const FileId& id, const std::string& output) const {
+    const auto input = inputs.find(id);
+    if (input != inputs.end() && regular_file(input->second) == id)
+      throw InputError(output + ": this run reads it" + (input->second == output ? "" : ", as " + input->second) +
+                       "; give the output another name");
+  }
 };
 
 Ledger& ledger() {
@@ -159,16 +179,20 @@ struct Output::State : std::streambuf {
     if (line.stage != Ledger::Line::Stage::open) return;
     line.stage = stage;
     ledger().open_keys.erase(line.key);
+    if (line.replaces) ledger().to_be_replaced.erase(*line.replaces);
   }
   void enter_in_ledger() {
     std::error_code unknown;
     const std::filesystem::path whole = std::filesystem::absolute(target, unknown);
     const std::string key = target == "-" ? "-" : std::filesystem::weakly_canonical(whole, unknown).string();
     const std::lock_guard lock(ledger().mutex);
+    const std::optional<FileId> replaces = target == "-" ? std::nullopt : regular_file(target);
+    if (replaces) ledger().refuse_input(*replaces, path);
     if (!ledger().open_keys.insert(key).second)
       throw InputError(path + ": named for two outputs; give them different names");
+    if (replaces) ledger().to_be_replaced.emplace(*replaces, path);
     ledger_line = ledger().lines.size();
-    ledger().lines.push_back({path, target, temporary_path, key});
+    ledger().lines.push_back({path, target, temporary_path, key, replaces});
   }
 
   void open_output(Kind kind) {
@@ -281,6 +305,15 @@ struct Output::State : std::streambuf {
     close(handle);
   }
 };
+
+void protect_input(const std::string& path) {
+  const std::optional<FileId> id = regular_file(path);
+  if (!id) return;
+  const std::lock_guard lock(ledger().mutex);
+  ledger().inputs.emplace(*id, path);
+  const auto output = ledger().to_be_replaced.find(*id);
+  if (output != ledger().to_be_replaced.end()) ledger().refuse_input(*id, output->second);
+}
 
 std::string temporary_host() {
   char name[HOST_NAME_MAX + 1] = "host";

@@ -20,8 +20,8 @@ class Output {
  public:
   enum class Kind { binary, text };  ///< text may go to a terminal
 
-  /// Throws InputError (exit 2) if `path` is empty, a folder, a terminal, an output of this run already, or
-  /// exists under no_clobber; ResourceError (exit 3) if the file cannot be created.
+  /// Throws InputError (exit 2) if `path` is empty, a folder, a terminal, an output of this run already, a file that it
+  /// reads (protect_input), or exists under no_clobber; ResourceError (exit 3) if the file cannot be created.
   explicit Output(const std::string& path, bool no_clobber = false, Kind kind = Kind::binary);
   ~Output();
   Output(Output&&) noexcept;
@@ -50,6 +50,9 @@ class Output {
   std::unique_ptr<State> state_;
 };
 
+/// Says that this run reads `path`: no output may take its place, under whatever name (InputError, whichever of the two
+/// comes first). Only regular files are looked at.
+void protect_input(const std::string& path);
 /// HOST in the names of temporary files: this machine.
 std::string temporary_host();
 /// Final names of the outputs committed by this process so far, in order; "-" is not among them.

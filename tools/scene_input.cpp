@@ -16,7 +16,7 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   if (needs & light) require_lights(scene_);
   if (needs & a_camera) scene_.camera_node(common.camera);
   for (const std::string& warning : scene_.warnings) tool.warn(warning);
-  for (const std::string& file : scene_.files) tool.depends_on(file, true);
+  for (const std::string& file : scene_.files) tool.depends_on(file, InputRole::of_scene);
   time_.fps = common.fps;
   time_.segment_length = common.segment_length;
   time_.light_units = common.light_units;

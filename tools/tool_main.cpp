@@ -112,7 +112,11 @@ void Tool::State::clear_bar() {
 }
 
 void Tool::warn(const std::string& message) {
-  if (!state_->common.quiet) state_->print_line(message);
+  {
+    const std::lock_guard lock(state_->message_mutex);
+    if (state_->common.quiet || !state_->warnings.insert(message).second) return;
+  }
+  state_->print_line(message);
 }
 
 void Tool::say(const std::string& message) {
@@ -134,10 +138,12 @@ void Tool::progress(double fraction) {
   state_->bar_shown = true;
 }
 
-void Tool::depends_on(const std::string& file, bool of_scene) {
+void Tool::depends_on(const std::string& file, InputRole role) {
+  if (file == "-") return;
+  if (role != InputRole::replaceable) protect_input(file);
   const auto same = [&](const State::Dependency& known) { return known.file == file; };
-  if (file == "-" || std::ranges::any_of(state_->dependencies, same)) return;
-  state_->dependencies.push_back({file, of_scene});
+  if (std::ranges::any_of(state_->dependencies, same)) return;
+  state_->dependencies.push_back({file, role});
 }
 
 void Tool::State::parse() {
@@ -165,6 +171,7 @@ void Tool::State::apply_limits() const {
 int Tool::State::run(const std::function<int()>& body, const Tool& tool) {
   apply_limits();
   const ThreadLimit limit(common.threads);
+  for (const std::string& file : common.state_files) protect_input(file);
   // Created before the work, as all outputs: a place that cannot be written is noticed now.
   std::optional<Output> stats_output, dep_output;
   if (!common.stats_file.empty())

@@ -38,6 +38,13 @@ enum ExitCode {
   exit_cannot = 3,     ///< no memory, disk full, write failed
 };
 
+/// What an input is to the run that reads it.
+enum class InputRole {
+  file,         ///< no output may take its place
+  of_scene,     ///< the same; --depfile may name state files instead
+  replaceable,  ///< read whole before anything is written: an output may take its place, as in --records c -o c
+};
+
 enum CommonOptions : unsigned {
   uses_scene = 1,   ///< --fps --segment --animation --light-units --environment... --state --allow-stale --allow-outside
   uses_seed = 2,    ///< --seed --seed-mode
@@ -98,7 +105,7 @@ class Tool {
   int run(const std::function<int()>& body);
 
   Stats& stats();
-  /// "tool: message" on standard error unless --quiet.
+  /// "tool: message" on standard error unless --quiet; each message once.
   void warn(const std::string& message);
   /// Only with --verbose.
   void say(const std::string& message);
@@ -110,8 +117,9 @@ class Tool {
   /// that a file says the same whether it was made alone or as one of a range.
   std::string history_line(std::optional<int> frame = {}) const;
   /// Files this run depends on, for --depfile (deduplicated, order kept). With --state, files named here
-  /// as part of the scene (`of_scene`) are left out for the state files.
-  void depends_on(const std::string& file, bool of_scene = false);
+  /// as part of the scene are left out for the state files. InputError if an output would take the place of one that is
+  /// not replaceable: what is read is not destroyed.
+  void depends_on(const std::string& file, InputRole role = InputRole::file);
   const std::string& name() const;
 
  private:

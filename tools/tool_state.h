@@ -23,12 +23,13 @@ struct Tool::State {
 
   struct Dependency {
     std::string file;
-    bool of_scene;
+    InputRole role;
   };
   std::vector<Dependency> dependencies;
 
   // Words for people come from any thread.
   std::mutex message_mutex;
+  std::set<std::string> warnings;
   bool bar_allowed = false, bar_shown = false;
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now(), bar_time = start;
 

@@ -33,4 +33,19 @@ bool may_have_lambert(const Material& material) {
   return Bsdf(values).has_lambert();
 }
 
+Lobes lobes_of(const Material& material) {
+  const Bsdf bsdf(material);
+  return {bsdf.has_diffuse() || (material.textures && may_have_lambert(material)), bsdf.has_specular()};
+}
+
+Lobes lobes_of(const SceneFrame& frame) {
+  std::vector<bool> used(frame.materials.size());
+  for (const Surface& surface : frame.surfaces)
+    if (surface.primitive && !surface.primitive->triangles.empty()) used[surface.material] = true;
+  Lobes lobes;
+  for (std::size_t m = 0; m < used.size(); ++m)
+    if (used[m]) lobes |= lobes_of(frame.materials[m]);
+  return lobes;
+}
+
 }  // namespace tempolux

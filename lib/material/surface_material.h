@@ -44,4 +44,13 @@ class SurfaceMaterial {
 /// Has the material a Lambert lobe somewhere on a surface (Bsdf::has_lambert), whatever its textures say?
 bool may_have_lambert(const Material& material);
 
+/// Which lobes reflect (or, of S, let through) anything, by factors and whatever textures may make of them.
+struct Lobes {
+  bool lambert = false, specular = false;
+  Lobes& operator|=(const Lobes& other) { return lambert |= other.lambert, specular |= other.specular, *this; }
+};
+Lobes lobes_of(const Material& material);
+/// Of all surfaces that have triangles. Without S lobes there is no caustic light, without Lambert lobes no indirect.
+Lobes lobes_of(const SceneFrame& frame);
+
 }  // namespace tempolux

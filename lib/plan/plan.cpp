@@ -10,7 +10,6 @@
 
 #include "formats/hash.h"
 #include "lib/light/lights.h"
-#include "lib/material/bsdf.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/animate.h"
 
@@ -197,15 +196,10 @@ void plan_stages(const Scene& scene, Plan& plan) {
   const std::vector<std::vector<Material>> at_frames = material_states(scene, plan);
   std::size_t diffuse = 0, specular = 0;
   for (const std::uint32_t material : used) {
-    bool is_diffuse = false, is_specular = false;
-    for (const std::vector<Material>& materials : at_frames) {
-      const Bsdf bsdf(materials[material]);
-      is_diffuse = is_diffuse || bsdf.has_diffuse() ||
-                   (materials[material].textures && may_have_lambert(materials[material]));
-      is_specular = is_specular || bsdf.has_specular();
-    }
-    diffuse += is_diffuse;
-    specular += is_specular;
+    Lobes lobes;
+    for (const std::vector<Material>& materials : at_frames) lobes |= lobes_of(materials[material]);
+    diffuse += lobes.lambert;
+    specular += lobes.specular;
   }
   const std::string lambert = share(diffuse, used.size(), "by a Lambert lobe");
   const std::string other = share(specular, used.size(), "by a mirror or glossy lobe");

@@ -75,7 +75,7 @@ def misses(s):
 def few(s):
     """A cache with all records but one taken out, and with none: what is missing is gathered where it is asked for, so that
     the picture is that of a full cache, to the noise of gathering (which differs from pixel to pixel here). Where there is
-    nothing to gather from, the picture is dark, and said to be so by the count of missing records."""
+    nothing to gather from, it is refused: no dark picture."""
     path = furnace_room(s)
     full = s.cached(path, (24, 16), 4)
     for count in (0, 1):
@@ -87,9 +87,9 @@ def few(s):
         s.near(f"{count} records and points: radiance", 1 / (1 - RHO), image.mean(), tolerance(s))
         s.true(f"{count} records and points: gathered on the spot", image.stats["counts"]["gathered_on_the_spot"] > 0,
                f"{image.stats['counts']['gathered_on_the_spot']:g}", "> 0")
-        image = s.render(path, (24, 16), 4, "--irradcache", file)
-        s.true(f"{count} records, no points: radiance between direct light alone and all",
-               0.99 * full.mean("direct.G") < image.mean() - 1 <= 1.02, f"{image.mean() - 1:.3g}", "0.5 .. 1")
+        out = s.path(".exr")
+        s.refused(f"{count} records, no points",
+                  s.run("frame-render", path, "--size", "24x16", "--spp", 4, "--irradcache", file, "-o", out), out)
 
 
 @case("caches", "records closer than float spacing")

@@ -1,0 +1,118 @@
+# Light that a scene has is not left out without a word: kinds of photons, parts of maps, records that are missing,
+# frames that others are built upon.
+failed=0
+bad() { echo "$*"; failed=1; }
+scenes=$HERE/../../pipelines/scenes
+matte=$scenes/S1_cornell.glb moving=$scenes/S2_cornell_moving.glb
+# expect CODE WORDS COMMAND...: exits so, and says these words in its one line; "" for no word at all. Nothing stays of
+# what is refused.
+expect() {
+  code=$1 words=$2; shift 2
+  rm -f made.*
+  "$@" >out.txt 2>errors.txt
+  got=$?
+  [ $got = "$code" ] || bad "exit $got, not $code: $*: $(cat errors.txt)"
+  if [ -z "$words" ]; then [ -s errors.txt ] && bad "$*: $(cat errors.txt)"
+  else grep -q -- "$words" errors.txt && [ "$(wc -l <errors.txt)" = 1 ] || bad "not '$words': $*: $(cat errors.txt)"
+  fi
+  [ "$code" = 0 ] || [ ! -e "$(echo made.*)" ] || bad "left an output: $*"
+}
+# A Cornell box whose short block is a mirror, with a second camera.
+"${PYTHON:-python3}" - "$scenes/cornell_classic.gltf" <<'END' || bad 'mirror.gltf'
+import copy, json, sys
+scene = json.load(open(sys.argv[1]))
+scene["materials"].append({"name": "Mirror", "pbrMetallicRoughness": {"metallicFactor": 1, "roughnessFactor": 0.05}})
+block = next(mesh for mesh in scene["meshes"] if mesh["name"] == "ShortBlock")
+for primitive in block["primitives"]:
+    primitive["material"] = len(scene["materials"]) - 1
+camera = copy.deepcopy(next(node for node in scene["nodes"] if "camera" in node))
+camera["name"], camera["translation"] = "Other", [x + 0.1 for x in camera.get("translation", [0, 0, 0])]
+scene["nodes"].append(camera)
+scene["scenes"][0]["nodes"].append(len(scene["nodes"]) - 1)
+json.dump(scene, open("mirror.gltf", "w"))
+END
+tiny="--size 16x9 --rays 8" point="--point-count 200" frame="--size 16x9 --spp 2 --pixel-error 0"
+for kinds in direct indirect caustic caustic,indirect; do
+  photon-trace mirror.gltf --photons 5k --kinds $kinds -o "mirror.$kinds" -q || bad "photons: $kinds"
+  photon-trace "$matte" --photons 5k --kinds $kinds -o "matte.$kinds" -q || bad "photons: $kinds"
+done
+
+# Without indirect light a map is refused, without caustic light there is a warning where there is a mirror.
+for kinds in direct caustic; do
+  for scene in mirror matte; do
+    file=$matte; [ $scene = mirror ] && file=mirror.gltf
+    expect 2 "holds no indirect light" frame-render "$file" --photons $scene.$kinds $frame -o made.exr
+    expect 2 "holds no indirect light" irradcache-build points "$file" --photons $scene.$kinds $point -o made.irradpoints
+    expect 2 "holds no indirect light" irradcache-build "$file" --photons $scene.$kinds $point $tiny -o made.irradcache
+  done
+done
+for kinds in indirect caustic,indirect; do
+  word='mirror.indirect: holds no caustic light'; [ $kinds = caustic,indirect ] && word=
+  expect 0 '' irradcache-build points "$matte" --photons matte.$kinds $point -o matte.$kinds.irradpoints
+  expect 0 '' frame-render "$matte" --photons matte.$kinds $frame -o made.exr
+  expect 0 "$word" irradcache-build points mirror.gltf --photons mirror.$kinds $point -o mirror.$kinds.irradpoints
+  expect 0 "$word" frame-render mirror.gltf --photons mirror.$kinds $frame -o made.exr
+done
+kinds() { tempolux-info --json "$1" | sed -n 's/.*"kinds": *"\([^"]*\)".*/\1/p'; }
+[ "$(kinds mirror.indirect.irradpoints)" = direct,indirect ] || bad "kinds of points: $(kinds mirror.indirect.irradpoints)"
+for file in mirror.caustic,indirect matte.indirect matte.caustic,indirect; do
+  [ "$(kinds $file.irradpoints)" = direct,caustic,indirect ] || bad "kinds of points of $file: $(kinds $file.irradpoints)"
+done
+expect 0 'mirror.indirect.irradpoints: holds no caustic light' \
+  irradcache-build records mirror.gltf --points mirror.indirect.irradpoints $tiny -o mirror.irradcache
+expect 0 '' irradcache-build records "$matte" --points matte.indirect.irradpoints $tiny -o matte.irradcache
+
+# A cache holds no caustic light; where there is no mirror there is none to be missed.
+points="--points mirror.caustic,indirect.irradpoints"
+expect 0 'mirror.gltf: mirrors, glass and gloss throw caustic light' \
+  frame-render mirror.gltf --irradcache mirror.irradcache $points $frame -o made.exr
+expect 0 '' frame-render mirror.gltf --irradcache mirror.irradcache $points --photons mirror.caustic,indirect $frame -o made.exr
+expect 0 '' frame-render mirror.gltf --irradcache mirror.irradcache $points --photons mirror.caustic $frame -o made.exr
+expect 0 'mirror.indirect: holds no caustic light' \
+  frame-render mirror.gltf --irradcache mirror.irradcache $points --photons mirror.indirect $frame -o made.exr
+expect 0 '' frame-render "$matte" --irradcache matte.irradcache --points matte.indirect.irradpoints $frame -o made.exr
+
+# Parts of maps, and a cache of one record: whole pictures cannot be made of them.
+"${PYTHON:-python3}" -B - "$HERE/../formats" <<'END' || bad 'parts'
+import sys
+sys.path.insert(0, sys.argv[1])
+from read_photons import read_photons, write_photons
+from read_irradcache import read_irradcache, write_irradcache
+for part in ("static", "dynamic"):
+    photons = read_photons("matte.caustic,indirect")
+    photons.header["map"] = part
+    write_photons("matte." + part, photons)
+cache = read_irradcache("matte.irradcache")
+cache.records = cache.records[:1]
+write_irradcache("one.irradcache", cache)
+END
+for part in static dynamic; do
+  expect 2 "matte.$part: a $part map is a part" frame-render "$matte" --photons matte.$part $frame -o made.exr
+  expect 2 "matte.$part: a $part map is a part" irradcache-build points "$matte" --photons matte.$part $point -o made.irradpoints
+done
+expect 2 'one.irradcache: has no record near' frame-render "$matte" --irradcache one.irradcache $frame -o made.exr
+expect 0 '' frame-render "$matte" --irradcache one.irradcache --points matte.indirect.irradpoints $frame -o made.exr --stats one.json
+grep -q '"gathered_on_the_spot": [1-9]' one.json || bad 'nothing was gathered on the spot'
+
+# A base is of this state of the scene and of this view; what is kept of it is neither rounded nor independent noise.
+render="--size 16x9 --spp 1"
+for f in 3 9; do frame-render "$moving" --frame $f $render -o moving.$f.exr -q || bad "frame $f"; done
+for camera in auto Other; do frame-render mirror.gltf --camera $camera $render -o mirror.$camera.exr -q || bad "camera $camera"; done
+mask="--mask moving.9.exr"
+expect 0 '' frame-render "$moving" --frame 9 $render $mask --base moving.9.exr -o made.exr
+expect 2 'moving.3.exr: made for another state of the scene: moving_geometry' \
+  frame-render "$moving" --frame 9 $render $mask --base moving.3.exr -o made.exr
+expect 2 'mirror.auto.exr: made for another state of the scene' \
+  frame-render "$moving" --frame 9 $render $mask --base mirror.auto.exr -o made.exr
+expect 2 'mirror.Other.exr: seen by another camera' frame-render mirror.gltf $render $mask --base mirror.Other.exr -o made.exr
+expect 0 'mirror.Other.exr: seen by another camera' \
+  frame-render mirror.gltf $render $mask --base mirror.Other.exr -o made.exr --allow-stale
+expect 0 '' frame-render mirror.gltf $render $mask --base mirror.auto.exr -o made.exr
+expect 2 '--halves: pixels of --base' frame-render "$moving" --frame 9 --size 16x9 --spp 2 $mask --base moving.9.exr --halves -o made.exr
+expect 2 '--half: would round the pixels of --base' frame-render "$moving" --frame 9 $render $mask --base moving.9.exr --half -o made.exr
+
+# Seeds are 64 bits, not the nearest that is.
+trace="photon-trace $matte --photons 1k -o made.photons"
+for seed in 18446744073709551616 99999999999999999999999 -1 1.5 0x10; do expect 2 'is not a whole number from 0 to 2^64-1' $trace --seed=$seed; done
+expect 0 '' $trace --seed 18446744073709551615
+exit $failed
