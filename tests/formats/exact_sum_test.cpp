@@ -53,6 +53,17 @@ TEST(ExactSum, HasNoOrderAndJoins) {
   EXPECT_EQ(left.rounded(), forwards);
 }
 
+// 10^8 times 2^-40 is 9e-5 beside 2^20, where float32 adds nothing of it and float64 rounds each term.
+TEST(ExactSum, OfHundredMillionTinyTermsBesideALargeOneIsExact) {
+  ExactSum sum;
+  sum.add(0x1p20f);
+  for (int i = 0; i < 100000000; ++i) sum.add(0x1p-40f);
+  EXPECT_EQ(sum.rounded(), 0x1p20 + 1e8 * 0x1p-40);
+  ExactSum subnormal;
+  for (int i = 0; i < 100000000; ++i) subnormal.add(1e-45f);
+  EXPECT_EQ(subnormal.rounded(), 1e8 * double(1e-45f));
+}
+
 // 2^20 times the largest float: the counters must not overflow where the sum of float32 would.
 TEST(ExactSum, OfManyHugeValuesIsFinite) {
   ExactSum sum;

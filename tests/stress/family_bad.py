@@ -2,6 +2,7 @@
 ignores is said on lines of its own, the error is one line."""
 import pathlib
 
+from scenes import Scene
 from session import case
 
 FOLDER = pathlib.Path(__file__).resolve().parents[3] / "shared/scenes/bad"
@@ -13,8 +14,13 @@ def files(s):
     if not found:
         s.skipped("../shared/scenes/bad is not there")
         return
+    scene = Scene()
+    scene.room((-1, -1, -1), (1, 1, 1), scene.material(0.5))
+    scene.point_light((0, 0, 0), 1)
+    map_ = s.photons(scene.save(s.path(".gltf")), 100)["path"]
     for file in found:
         for tool, options, ending in [("photon-trace", ["--photons", "1k"], ".photons"),
+                                      ("irradcache-build", ["--photons", map_, "--size", "16x16"], ".irradcache"),
                                       ("frame-render", ["--size", "16x16", "--spp", "1"], ".exr"),
                                       ("scene-plan", [], "")]:
             out = s.path(ending)

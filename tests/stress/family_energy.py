@@ -70,9 +70,8 @@ def photon_totals(s, shape, rho, paths):
 def closed_boxes_photons(s):
     for shape in SHAPES:
         for rho in s.pick((0, 0.9, 0.99) if shape != "sphere" else (0.9,), (0, 0.5, 0.9, 0.99)):
-            # full: 0.3 % at 4 sigma for 0.9 and below, at 0.99 for the cube
-            paths = s.pick(20000 if rho > 0.95 else 100000,
-                           1800000 if rho < 0.95 else 900000, 1800000)
+            # full: 4 sigma are 0.3 % at 0.99, less below
+            paths = s.pick(20000 if rho > 0.95 else 100000, 1800000)
             photon_totals(s, shape, rho, paths)
 
 
@@ -98,19 +97,22 @@ def closed_boxes_paths(s):
 @case("energy", "closed boxes, irradiance cache")
 def closed_boxes_cache(s):
     """The indirect layer alone is rho F / (S (1 - rho)) in the mean, times rho / pi in the picture. Photons: 4 sqrt(rho / N)
-    as above; points, gathering and interpolation: 2 % in the short form (2000 points, 200 rays, 32 x 32 pixels), 0.5 %."""
+    as above; points, gathering and interpolation: 2 % in the short form (2000 points, 200 rays, 32 x 32 pixels). The full form
+    asks for 1 % in all: 4 sigma of the photons are at most 0.52 % of it. (Several seeds where one map would not fit memory.)"""
     for shape in SHAPES:
         for rho in s.pick((0, 0.9) if shape == "cube" else (0.5,), (0, 0.5, 0.9, 0.99)):
             path, area, views = build(s, shape, rho)
-            paths = s.pick(20000, 400000 if rho < 0.95 else 100000)
+            paths, seeds = s.pick((20000, 1), (100000, 6) if rho > 0.95 else (600000, 1))
             mean = 0.0
-            for camera, size, share in views:
-                size = s.pick((size[0] // 2, size[1] // 2), size)
-                image = s.cached(path, size, photons=paths, common=("--camera", camera), timeout=600)
-                mean += share * image.mean("indirect.G")
+            for seed in range(seeds):
+                for camera, size, share in views:
+                    size = s.pick((size[0] // 2, size[1] // 2), size)
+                    image = s.cached(path, size, photons=paths, common=("--camera", camera), seed=seed, timeout=600)
+                    mean += share * image.mean("indirect.G") / seeds
+                    s.forget()
             expected = rho / math.pi * FLUX * rho / (area * (1 - rho))
             s.near(f"cache, {shape}, rho {rho:g}: indirect radiance", expected, mean,
-                   4 * math.sqrt(rho / paths) + s.pick(0.02, 0.005))
+                   s.pick(4 * math.sqrt(rho / paths) + 0.02, 0.01))
 
 
 @case("energy", "reflectance 0.999 and 1")
@@ -138,20 +140,24 @@ def nearly_lossless(s):
 
 @case("energy", "furnace of any reflectance")
 def furnace(s):
-    """Every surface emits 1 and reflects rho: radiance 1 / (1 - rho) everywhere. 4 standard errors, from the spread of
-    pixels that are all alike."""
+    """Every surface emits 1 and reflects rho: radiance 1 / (1 - rho) everywhere. By paths: 4 standard errors, from the spread of
+    pixels that are all alike, and not above the 0.5 % that are asked for. Through the cache, photons leave 4 sqrt(rho / N) of
+    the indirect part (0.36 % of 1M), and points 16 shadow rays each towards walls that lie beside them: 0.5 %."""
     for shape in SHAPES:
         for rho in s.pick((0, 0.9), (0, 0.5, 0.9, 0.99)):
             scene, _, views = SHAPES[shape](rho)
             for material in scene.document["materials"]:
                 material["emissiveFactor"] = [1, 1, 1]
-            image = s.render(scene.save(s.path(".gltf")), (32, 32), s.pick(16, 256), "--camera", views[0][0],
+            path = scene.save(s.path(".gltf"))
+            image = s.render(path, (32, 32), s.pick(16, 1024 if rho > 0.95 else 256), "--camera", views[0][0],
                              "--seed", list(SHAPES).index(shape))
             s.near(f"{shape}, rho {rho:g}: radiance", 1 / (1 - rho), image.mean(),
-                   4 * image.sigma_of_mean() * (1 - rho) + 1e-5)
-        # Through the cache: 4 shadow rays at each point towards walls that lie beside it, photons 4 sqrt(rho / N), points.
-        image = s.cached(scene.save(s.path(".gltf")), (32, 32), 16, common=("--camera", views[0][0]))
-        s.near(f"{shape}, rho {rho:g}, cache: radiance", 1 / (1 - rho), image.mean(), s.pick(0.04, 0.015))
+                   min(4 * image.sigma_of_mean() * (1 - rho) + 1e-5, s.pick(1, 0.005)))
+            if s.pick(rho == 0.9, rho < 0.95):
+                image = s.cached(path, (32, 32), 16, photons=s.pick(None, "1M"), common=("--camera", views[0][0]),
+                                 points=s.pick((), ("--light-samples", 16)), timeout=600)
+                s.near(f"{shape}, rho {rho:g}, cache: radiance", 1 / (1 - rho), image.mean(), s.pick(0.04, 0.005))
+                s.forget()
 
 
 @case("energy", "metals and gloss in a furnace")

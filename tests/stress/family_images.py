@@ -4,6 +4,7 @@ import math
 import os
 
 import exr
+from family_environment import write_hdr
 from scenes import Scene
 from session import FULL, case
 
@@ -129,9 +130,55 @@ def halves(s):
             s.near(f"{value:g} as half", value, max(exr.read(out).channels["G"]), 0)
         else:
             s.refused(f"{value:g} as half", run, out, codes=(2, 3))
-    scene, out = furnace(s, 1e-10, 0.0), s.path(".exr")
-    s.done(s.run("frame-render", scene, "--size", "8x8", "--spp", 1, "--half", "--compression", "none", "-o", out))
-    s.near("1e-10 as half: 0, the nearest", 0, max(exr.read(out).channels["G"]), 0)
+    # 2^-14 is the least half with all its digits, 2^-24 the least there is; half of that is a tie, to even.
+    for title, value, expected in [("2^-14", 2.0**-14, 2.0**-14), ("2^-24", 2.0**-24, 2.0**-24), ("1.5 2^-24", 1.5 * 2.0**-24, 2.0**-23),
+                                   ("2^-25", 2.0**-25, 0), ("1e-10", 1e-10, 0)]:
+        scene, out = furnace(s, value, 0.0), s.path(".exr")
+        s.done(s.run("frame-render", scene, "--size", "8x8", "--spp", 1, "--half", "--compression", "none", "-o", out))
+        s.near(f"{title} as half: the nearest", expected, max(exr.read(out).channels["G"]), 0)
+
+
+@case("images", "RGBE at both ends")
+def rgbe(s):
+    """A sky of one value c 2^(e-136), seen directly: from the largest, 255 2^119, which is beyond the 1e30 that are
+    taken, down to where products with weights of a thousandth leave float32 (2^-126 times 2^10): there, less may come out."""
+    scene = Scene()
+    scene.quad((-1, -9, 1), (1, -9, 1), (1, -9, -1), (-1, -9, -1), scene.material(0.5))
+    scene.camera((0, 0, 0), (0, 0, -1), fov=0.5)
+    path = scene.save(s.path(".gltf"))
+    for mantissa, exponent in ((255, 255), (128, 255), (128, 228), (128, 136), (128, 11), (128, 4), (1, 1)):
+        value = mantissa * 2.0**(exponent - 136)
+        sky = write_hdr(s.path(".hdr"), 8, [(4, bytes([mantissa] * 3 + [exponent]))])
+        if value > 1e30:
+            out = s.path(".exr")
+            s.refused(f"{mantissa} 2^{exponent - 136}", s.run("frame-render", path, "--environment", sky, "--size", "8x8", "-o", out), out)
+            continue
+        image = s.render(path, (8, 8), 1, "--environment", sky)
+        got = image.mean()
+        low = value < 2.0**-116
+        s.true(f"{mantissa} 2^{exponent - 136}: radiance", 0 <= got <= value * (1 + 1e-6) and (low or got >= value * (1 - 1e-6)),
+               f"{got:.6g}", ("at most " if low else "") + f"{value:.6g}")
+
+
+@case("images", "depth 0")
+def depth_zero(s):
+    """Pixels of depth 0 on input; and a camera whose eye lies in the surface it looks along."""
+    path = s.path(".exr")
+    exr.write(path, 16, 8, {c: [0.5] * 128 for c in "RGB"} | {"Z": [0.0] * 64 + [2.0] * 64})
+    depth = next(c for c in s.info(path)["channels"] if c["channel"] == "Z")
+    s.near("tempolux-info: mean depth", 1, depth["mean"], 1e-6)
+    for name, options in (("tempolux-info --png --layer Z", ("tempolux-info", "--png", s.path(".png"), "--layer", "Z", path)),
+                          ("aqm-compare", ("aqm-compare", "-q", path, path, "--json", s.path(".json")))):
+        run = s.run(*options)
+        s.true(f"{name}: done, or refused in one line", run.code == 0 or (run.code == 2 and len(run.err.splitlines()) == 1),
+               f"exit {run.code}", "exit 0 or 2")
+    scene = Scene()
+    scene.room((-1, -1, -1), (1, 1, 1), scene.material(0.5, 1.0))
+    scene.quad((-0.5, 0, 0.5), (0.5, 0, 0.5), (0.5, 0, -0.5), (-0.5, 0, -0.5), scene.material(0.5, 1.0))
+    scene.camera((0, 0, 0), (0.3, 0, -1), fov=1.0)
+    image = s.render(scene.save(s.path(".gltf")), (32, 32), 16, "--channels", "RGBA,Z,P,id,motion")
+    s.true("eye in a surface: depth 0 or more, to rounding", min(image.channels["Z"]) >= -1e-5, f"{min(image.channels['Z']):.3g}", ">= -1e-5")
+    s.near("eye in a surface: radiance", 2, image.mean(), 0.05)
 
 
 @case("images", "infinite depth, motion of 10^4 pixels")

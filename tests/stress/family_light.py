@@ -77,6 +77,8 @@ def too_much(s):
     reference = s.render(lit_room(s.path(".gltf"), 1.0, 1e6), (48, 36), 8)
     image = s.render(path, (48, 36), 8)
     s.near("mean of the frame", reference.mean() * 1e30, image.mean(), 0.005)
+    s.near("mean of the indirect layer by the cache, where photons fit", s.cached(lit_room(s.path(".gltf"), 1e20, 1e6), (48, 36)).mean(
+        "indirect.G"), s.cached(lit_room(s.path(".gltf"), 1.0, 1e6), (48, 36)).mean("indirect.G") * 1e20, 0.03)
     out = s.path(".photons")
     run = s.run("photon-trace", path, "--photons", "10k", "-o", out)
     if run.code == 0:
@@ -123,6 +125,48 @@ def many_lights(s):
     s.near("10000 point lights: radiance of the plate", expected, image.mean(),
            4 * image.sigma_of_mean() / expected + 2e-6)
     s.cost_at_most("CPU time of 10000 point lights / of 2 triangles", 10, s.phase(image.stats, "render") / cost[0])
+
+
+@case("light", "10^4 lights, tiny and grazing, through the cache")
+def through_cache(s):
+    """A closed room, rho 0.5, but for the lamp: what the lights send first lies on its walls, indirect light is the rest."""
+    cost = []
+    for n in (1, 71):
+        scene = indirect_room()
+        scene.mesh(*grid_mesh((-0.5, 0.95, -0.5), (1, 0, 0), (0, 0, 1), n, n), scene.material(0.0, 5.0))
+        _, image = s.like_paths(f"lamp of {2 * n * n} triangles", scene.save(s.path(".gltf")))
+        cost.append(image.build.cpu)
+    s.cost_at_most("irradcache-build, CPU time of 10082 triangles / of 2", 10, cost[1] / cost[0])
+    scene = indirect_room()
+    for i in range(10000):
+        scene.point_light((-0.8 + 0.016 * (i % 100), -0.5 + (i * 7919 % 1000) / 1000, -0.8 + 0.016 * (i // 100)), 1e-4 * (1 + i % 5))
+    _, image = s.like_paths("10000 point lights", scene.save(s.path(".gltf")))
+    s.cost_at_most("irradcache-build, CPU time of 10000 point lights / of 2 triangles", 10, image.build.cpu / cost[0])
+    for side in (1e-6, 1e-10):
+        scene, half = indirect_room(), side / 2
+        scene.quad((-half, 0, -half), (half, 0, -half), (half, 0, half), (-half, 0, half), scene.material(0.0, 1 / side**2))
+        s.like_paths(f"emitter of {side * side:.0e} m^2", scene.save(s.path(".gltf")))
+    # At 0.01 rad the floor gets next to nothing, the wall all of it; below the floor nothing is lit. (A lamp so near to the
+    # floor that its spot there is smaller than what gather rays find is another matter: family_photons, "all in one point".)
+    for title, add in (("sun at cos 1e-2", lambda c: c.sun((0, -1e-2, -1), 3)),
+                       ("lamp edge-on", lambda c: c.quad((0, 0.3, -0.2), (0, 0.5, -0.2), (0, 0.5, 0.2), (0, 0.3, 0.2), c.material(0, 20.0))),
+                       ("light below the floor", lambda c: c.point_light((0, -1e-4, 0), 1.0)),
+                       ("lamp that looks away", lambda c: c.quad((-0.1, 2, -0.1), (0.1, 2, -0.1), (0.1, 2, 0.1), (-0.1, 2, 0.1), c.material(
+                           0, 20.0, one_sided=True)))):
+        scene = Scene()
+        grey = scene.material(RHO)
+        scene.quad((-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1), grey)
+        scene.quad((-1, 0, -1), (1, 0, -1), (1, 1, -1), (-1, 1, -1), grey)
+        add(scene)
+        scene.camera((0, 2.2, 2.2), (0, 0.35, -0.1), fov=0.45)
+        s.like_paths(f"floor, wall, {title}", scene.save(s.path(".gltf")))
+
+
+def indirect_room():
+    scene = Scene()
+    scene.room((-1, -1, -1), (1, 1, 1), scene.material(RHO))
+    scene.camera((0.2, 0.1, 0.9), (0, -0.3, -1), fov=1.2)
+    return scene
 
 
 def probe(s, title, add_light, expected, tolerance=1e-4, spp=None):

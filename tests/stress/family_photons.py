@@ -2,6 +2,7 @@
 import math
 
 import session  # noqa: F401  (puts read_photons on the path)
+import read_photons
 from read_photons import FLUX, KIND, POSITION, RECORD
 from scenes import Scene, room_mesh
 from session import FULL, LONG, case
@@ -134,12 +135,39 @@ def one_plane(s):
     path = scene.save(s.path(".gltf"))
     count, n = s.pick(200000, 2000000), 64
     map_ = s.photons(path, count)
-    image = s.render(path, (n, n), 16, "--photons", map_["path"], "--neighbours", "200", "--channels", "RGBA,layers")
+    image = s.render(path, (n, n), 16, "--photons", map_["path"], "--caustic-neighbours", "200", "--channels", "RGBA,layers")
     grid = [(i + 0.5) * 2 / n - 1 for i in range(n)]
     expected = math.fsum(0.8 / math.pi * 1.6 / (1.6**2 + x * x + z * z)**1.5 for x in grid for z in grid) / n**2
     inside = count * expected * math.pi / 0.8 * 4 / FLUX_OF_LAMP                    # photons within the picture
     s.near("caustic of a mirror: radiance of the floor", expected, image.mean("caustic.G"),
            0.01 + 4 / math.sqrt(inside))
+    # Beside the cache, with the 20 photons of the default.
+    image = s.cached(path, (n, n), 16, photons=count)
+    s.near("caustic of a mirror, beside the cache: radiance of the floor", expected, image.mean("caustic.G"),
+           0.01 + 4 / math.sqrt(inside))
+
+
+@case("photons", "negative only")
+def negative(s):
+    """A map of differences whose flux is all negative: read, checked, and added up; light that is less than none is no light
+    to render by, so that the stages that would are to refuse it."""
+    scene = lamp_in_room(s)
+    whole = s.read_in_python(s.photons(scene, 1000)["path"])
+    for block in whole.blocks:
+        block.records = b"".join(r[:12] + bytes(b ^ (0x80 * (i % 4 == 3)) for i, b in enumerate(r[12:24])) + r[24:] for r in
+                                 (block.records[i:i + 32] for i in range(0, len(block.records), 32)))
+    whole.header["map"] = "dynamic"
+    path = s.path(".photons")
+    read_photons.write_photons(path, whole)
+    s.done(s.run("tempolux-info", "--check", path))
+    facts = s.info(path)
+    s.true("stored flux below 0", facts["stored_flux_W"][1] < 0, f"{facts['stored_flux_W'][1]:.4g}", "< 0")
+    for tool, options, ending in [("frame-render", ["--size", "8x8", "--spp", 1], ".exr"),
+                                  ("irradcache-build", ["points"], ".irradpoints"), ("irradcache-build", ["--size", "8x8"], ".irradcache")]:
+        out = s.path(ending)
+        before = [options.pop(0)] if options[0] == "points" else []
+        run = s.run(tool, *before, scene, "-q", "--photons", path, *options, "-o", out)
+        s.refused(f"{' '.join([tool, *before])} of a dynamic map", run, out)
 
 
 @case("photons", "one group, many groups")
@@ -156,6 +184,16 @@ def groups(s):
         sets[count] = sorted(records)
     for count in (7, 630, 6300):
         s.true(f"{count} groups: the records of one group", sets[count] == sets[1])
+    means = []
+    for count in (1, 7, 6300):
+        files = [s.path(end) for end in (".photons", ".irradpoints", ".irradcache")]
+        s.done(s.run("photon-trace", scene, "--photons", 6300, "--kinds", "indirect", "--groups", count, "-o", files[0]))
+        s.done(s.run("irradcache-build", scene, "--photons", files[0], "--keep-points", files[1], "--point-count", "2k", "--rays", 100,
+                     "--size", "24x24", "-o", files[2]))
+        image = s.render(scene, (24, 24), 4, "--irradcache", files[2], "--points", files[1], "--channels", "RGBA,layers")
+        means.append(image)
+    for count, image in zip((7, 6300), means[1:]):   # the order of photons may round sums another way
+        s.near(f"{count} groups, cache: indirect light of one group", means[0].mean("indirect.G"), image.mean("indirect.G"), 1e-5)
     for value in ("0", "16777217", "4294967297", "-1", "1e30"):
         out = s.path(".photons")
         run = s.run("photon-trace", scene, "--photons", "100", "--groups", value, "-o", out)

@@ -78,6 +78,14 @@ def room_mesh(lower, upper, cuts=1):
     return positions, triangles
 
 
+def box_mesh(lower, upper):
+    """The same box, fronts outwards."""
+    positions, triangles = room_mesh(lower, upper)
+    for i in range(0, len(triangles), 3):
+        triangles[i + 1], triangles[i + 2] = triangles[i + 2], triangles[i + 1]
+    return positions, triangles
+
+
 def add_cells(triangles, first, rows, columns):
     for i in range(rows):
         for j in range(columns):
@@ -165,6 +173,18 @@ class Scene:
             entry["extensions"]["KHR_materials_emissive_strength"] = {"emissiveStrength": strength}
             self.extensions.add("KHR_materials_emissive_strength")
         return self._append("materials", entry)
+
+    def glass(self, roughness=0.0, ior=1.5, attenuation=None):
+        """A clear solid; attenuation: (colour, distance at which white light has that colour)."""
+        index = self.material(1.0, roughness=roughness, specular=1.0, one_sided=True)
+        volume = {"thicknessFactor": 1.0}
+        if attenuation:
+            volume |= {"attenuationColor": [attenuation[0]] * 3, "attenuationDistance": attenuation[1]}
+        added = {"KHR_materials_transmission": {"transmissionFactor": 1.0}, "KHR_materials_volume": volume,
+                 "KHR_materials_ior": {"ior": ior}}
+        self.document["materials"][index]["extensions"] |= added
+        self.extensions |= set(added)
+        return index
 
     def mesh(self, positions, triangles, material, normals=None, **node):
         """One object; `node`: translation, rotation, scale, name."""

@@ -80,6 +80,12 @@ class Session:
         self.count += 1
         return str(self.scratch / f"{self.count:05d}{ending}")
 
+    def forget(self):
+        """Photons and points of cases that make many."""
+        for file in self.scratch.iterdir():
+            if file.suffix in (".photons", ".irradpoints"):
+                file.unlink()
+
     # ---- rows ----
 
     def begin(self, title):
@@ -211,16 +217,17 @@ class Session:
         except ValueError as error:
             raise Failed(f"{path}: {error}") from None
 
-    def cached(self, scene, size, spp=4, *, photons=None, common=(), records=(), pixels=(), timeout=300):
+    def cached(self, scene, size, spp=4, *, photons=None, common=(), points=(), records=(), pixels=(), seed=0, timeout=300):
         """The frame by photon-trace, irradcache-build and frame-render --irradcache; beside it the files (`photons`,
         `points`, `records`), the cache as read in Python and the statistics of its making. `common`: options of the
-        last two stages, `records`, `pixels` of one. Indirect light comes from irradiance points: 2 x 2000 of them in the
+        last two stages, `points`, `records`, `pixels` of one. Indirect light comes from irradiance points: 2 x 2000 of them in the
         short form, where the tools take 2 x 20 000."""
         files = [self.path(end) for end in (".photons", ".irradpoints", ".irradcache", ".json")]
+        common = (*common, "--seed", seed)
         self.done(self.run("photon-trace", scene, "--photons", photons or self.pick("20k", "200k"), "--kinds",
-                           "caustic,indirect", "-o", files[0], timeout=timeout))
+                           "caustic,indirect", "--seed", seed, "-o", files[0], timeout=timeout))
         run = self.done(self.run("irradcache-build", scene, "--photons", files[0], "--keep-points", files[1], "--size",
-                                 f"{size[0]}x{size[1]}", *self.pick(("--point-count", "2k", "--rays", 200), ()), *records, *common,
+                                 f"{size[0]}x{size[1]}", *self.pick(("--point-count", "2k", "--rays", 200), ()), *points, *records, *common,
                                  "-o", files[2], "--stats", files[3], timeout=timeout))
         self.done(self.run("tempolux-info", "--check", *files[:3]))
         image = self.render(scene, size, spp, "--irradcache", files[2], "--points", files[1], "--photons", files[0], "--channels",
@@ -252,6 +259,17 @@ class Session:
         return {"photons": photons, "stored": sums[0:3], "emitted": sums[3:6], "escaped": sums[6:9],
                 "absorbed": sums[9:12], "seconds": run.seconds, "cpu": run.cpu,
                 "memory": self.read_json(stats)["peak_memory_bytes"]}
+
+    def like_paths(self, title, scene, size=(32, 32), layer="indirect", tolerance=None, spp=None, **cached):
+        """A layer through the cache against the path tracer's, in the mean: 4 standard errors of the latter, and 1 % (5 % in the
+        short form, whose points and photons are few). Returns both images."""
+        paths = self.render(scene, size, spp or self.pick(64, 1024), "--integrator", "path", "--channels", "RGBA,layers,id",
+                            *cached.get("common", ()), timeout=900)
+        image = self.cached(scene, size, 16, **cached)
+        mean = paths.mean(layer + ".G")
+        self.near(f"{title}, cache: {layer} light, paths'", mean, image.mean(layer + ".G"),
+                  (tolerance or self.pick(0.05, 0.01)) + (4 * paths.sigma_of_mean(layer + ".G") / mean if mean else 0))
+        return paths, image
 
     def info(self, path):
         return finite_json(self.done(self.run("tempolux-info", "--json", path)).out)

@@ -22,6 +22,7 @@ import family_caches
 import family_energy
 import family_environment
 import family_geometry
+import family_glass
 import family_images
 import family_light
 import family_numbers
@@ -31,8 +32,9 @@ import family_time
 import family_tools
 from session import CASES, FULL, LONG, SHORT, Failed, Session
 
-ORDER = [m.__name__ for m in (family_scale, family_light, family_environment, family_energy, family_geometry,
-                              family_photons, family_caches, family_images, family_numbers, family_time, family_bad, family_tools)]
+ORDER = [m.__name__ for m in (family_scale, family_light, family_environment, family_energy, family_glass,
+                              family_geometry, family_photons, family_caches, family_images, family_numbers, family_time,
+                              family_bad, family_tools)]
 CASES.sort(key=lambda case: ORDER.index(case[3].__module__))
 COLUMNS = ["case", "quantity", "expected", "got", "error", "seconds", "verdict"]
 
