@@ -65,4 +65,4 @@ if(TEMPOLUX_SANITIZE)
 endif()
 add_test(NAME stress.short COMMAND python3 -B ${CMAKE_CURRENT_SOURCE_DIR}/stress/stress.py --short
                                    --bin ${CMAKE_BINARY_DIR}/bin ${sanitized})
-set_tests_properties(stress.short PROPERTIES TIMEOUT 300)
+set_tests_properties(stress.short PROPERTIES TIMEOUT 600)

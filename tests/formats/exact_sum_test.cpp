@@ -55,12 +55,14 @@ TEST(ExactSum, HasNoOrderAndJoins) {
 
 // 10^8 times 2^-40 is 9e-5 beside 2^20, where float32 adds nothing of it and float64 rounds each term.
 TEST(ExactSum, OfHundredMillionTinyTermsBesideALargeOneIsExact) {
+  volatile float tiny = 0x1p-40f;   // volatile: else the compiler multiplies
   ExactSum sum;
   sum.add(0x1p20f);
-  for (int i = 0; i < 100000000; ++i) sum.add(0x1p-40f);
+  for (int i = 0; i < 100000000; ++i) sum.add(tiny);
   EXPECT_EQ(sum.rounded(), 0x1p20 + 1e8 * 0x1p-40);
   ExactSum subnormal;
-  for (int i = 0; i < 100000000; ++i) subnormal.add(1e-45f);
+  tiny = 1e-45f;
+  for (int i = 0; i < 100000000; ++i) subnormal.add(tiny);
   EXPECT_EQ(subnormal.rounded(), 1e8 * double(1e-45f));
 }
 
