@@ -55,6 +55,7 @@ def main():
     project, args = options()
     bench = Bench(args.build.resolve(), args.out.resolve(), project, args.quick, args.reference_samples)
     peers = json.loads((Path(__file__).parent / "peers.json").read_text())
+    left_out = {}
     for name in [] if args.page else args.only.split(","):
         print(f"== {name}", flush=True)
         try:
@@ -66,8 +67,12 @@ def main():
                 raise SystemExit(f"--only: no part is called '{name}'; there are sweep,{','.join(FIGURES)}")
         except Missing as reason:
             print(f"left out: {reason}", flush=True)
-    results_page.write(bench, args.results.resolve(), args.docs.resolve(), peers["source"], FIGURES, "python3 tests/bench/bench.py")
+            left_out[name] = str(reason)
+    results_page.write(bench, args.results.resolve(), args.docs.resolve(), peers["source"], FIGURES, "python3 tests/bench/bench.py", left_out)
     print(f"wrote {args.results}")
+    page, readme = args.results.resolve(), args.results.resolve().with_name("README.md")
+    if readme.exists():
+        readme.write_text(results_page.readme(readme.read_text(), page.read_text(), peers["cornell"]))
 
 
 if __name__ == "__main__":

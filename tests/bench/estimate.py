@@ -1,43 +1,85 @@
 #!/usr/bin/env python3
 """How near is scene-plan --estimate? Runs the pipeline on a few frames and compares processor seconds and bytes.
 
-    python3 tests/bench/estimate.py --bin build/release/bin [--sizes 320x180,640x360] SCENE:FRAMES...
-
-Prints one line for each scene and size: predicted, measured, and their ratio.
+    python3 tests/bench/estimate.py --build build/release SCENE.glb:0-47x8:640x360 ...
+    python3 tests/bench/bench.py --only estimate          some of our scenes, into RESULTS.md
 """
 import argparse
-import glob
 import json
 import os
 import shutil
-import subprocess
 import tempfile
+from pathlib import Path
 
-parser = argparse.ArgumentParser()
-parser.add_argument("--bin", required=True)
-parser.add_argument("--sizes", default="320x180,640x360")
-parser.add_argument("cases", nargs="+")
-args = parser.parse_args()
-tools = os.path.abspath(args.bin)
+import chain
+from measure import Bench, Missing, figure
 
-print("| scene | frames | size | CPU s predicted | measured | ratio | MB predicted | measured | ratio |\n|" + "---|" * 9, flush=True)
-for case in args.cases:
-    scene, _, frames = case.partition(":")
-    for size in args.sizes.split(","):
-        estimate = json.loads(subprocess.run(
-            [f"{tools}/scene-plan", scene, "--frames", frames, "--estimate", "--json", "--quiet", "--photon-options",
-             "--photons 200k", "--frame-options", f"--size {size} --channels RGBA,Z,N,id"],
-            check=True, stdout=subprocess.PIPE).stdout)
-        out = tempfile.mkdtemp()
-        before = os.times()
-        subprocess.run(["make", "-s", "-f", "Makefile.example", "demo", f"BIN={tools}", f"OUT={out}", f"SCENE={scene}",
-                        f"FRAMES={frames}", f"SIZE={size}"], check=True, stdout=subprocess.DEVNULL)
-        after = os.times()
-        cpu = (after.children_user - before.children_user) + (after.children_system - before.children_system)
-        files = [f for kind in ("photons/*.photons", "points/*.irradpoints", "cache/*.irradcache", "frames/*")
-                 for f in glob.glob(f"{out}/{kind}") if not f.endswith(".json")]
-        size_mb = sum(os.path.getsize(f) for f in files) / 1e6
+CASES = [("S2", "0-47x8", "320x180"), ("S2", "0-47x8", "640x360"), ("S3", "1", "640x360"), ("S4", "0-47x12", "320x180"),
+         ("S4", "10", "640x360"), ("PC", "0", "256x256")]
+
+
+def spent(bench, options, out):
+    """(CPU seconds, bytes) of `make demo`, plan, preview and all."""
+    tried = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
+    before = os.times()
+    bench.run(["env", "-i", *(f"{k}={v}" for k, v in tried.items()), "make", "-s", "-f", "Makefile.example", "-C", bench.project, "demo",
+               f"BIN={bench.bin}", f"OUT={out}", *options])
+    after = os.times()
+    files = [file for kind in ("photons/*.photons", "points/*.irradpoints", "cache/*.irradcache", "frames/*")
+             for file in Path(out).glob(kind) if file.suffix != ".json"]
+    return (after.children_user - before.children_user + after.children_system - before.children_system,
+            sum(file.stat().st_size for file in files))
+
+
+def compared(bench, scene, frames, size):
+    """A row, and the two ratios predicted / measured."""
+    settings = chain.final(bench.project)
+    words = {"photon": ("--photons", settings.photons), "point": settings.points, "cache": ("--size", size, *settings.records),
+             "frame": ("--size", size, "--channels", "RGBA,Z,N,id", *settings.pixels)}
+    said = json.loads(bench.run([bench.bin / "scene-plan", scene, "--frames", frames, "--estimate", "--json", "--quiet", *(
+        part for kind, options in words.items() for part in (f"--{kind}-options", " ".join(map(str, options))))]).stdout)
+    out = tempfile.mkdtemp()
+    try:
+        cpu, size_of = spent(bench, [f"SCENE={scene}", f"FRAMES={frames}", f"SIZE={size}"], out)
+    finally:
         shutil.rmtree(out)
-        print(f"| {os.path.basename(scene)} | {frames} | {size} | {estimate['cpu_s']:.1f} | {cpu:.1f} | "
-              f"{estimate['cpu_s'] / cpu:.2f} | {estimate['bytes'] / 1e6:.1f} | {size_mb:.1f} | "
-              f"{estimate['bytes'] / 1e6 / size_mb:.2f} |", flush=True)
+    ratios = said["cpu_s"] / cpu, said["bytes"] / size_of
+    return [scene.stem, frames, size, f"{said['cpu_s']:.1f}", f"{cpu:.1f}", f"{ratios[0]:.2f}", f"{said['bytes'] / 1e6:.1f}",
+            f"{size_of / 1e6:.1f}", f"{ratios[1]:.2f}"], ratios
+
+
+def report(rows, ratios, judged, notes=()):
+    return figure("Time and disk said before a run, against what it took", "scene-plan --estimate within a factor of 2",
+                  ["scene", "frames", "size", "CPU s said", "taken", "ratio", "MB said", "taken", "ratio"], rows,
+                  all(0.5 <= r <= 2 for r in ratios) if judged else None, notes)
+
+
+def estimate(bench, _):
+    """scene-plan --estimate against a run of Makefile.example."""
+    rows, ratios, notes = [], [], []
+    for name, frames, size in [("S1", "0", "48x28")] if bench.quick else CASES:
+        try:
+            row, both = compared(bench, bench.scene(name)[0], frames, size)
+        except Missing as reason:
+            notes.append(f"{name} left out: {reason}")
+            continue
+        rows.append(row)
+        ratios += both
+    return report(rows, ratios, not bench.quick and bool(rows), notes + ["Final settings of Makefile.example; all processes of make."])
+
+
+def main():
+    project = Path(__file__).resolve().parents[2]
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", type=Path, default=project / "build" / "release", help="build folder [build/release]")
+    parser.add_argument("cases", nargs="+", metavar="SCENE:FRAMES:SIZE")
+    args = parser.parse_args()
+    with tempfile.TemporaryDirectory() as out:
+        bench = Bench(args.build.resolve(), Path(out), project, False, 0)
+        for case in args.cases:
+            scene, frames, size = case.rsplit(":", 2)
+            print(*compared(bench, Path(scene).resolve(), frames, size)[0], sep="\t", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -2,6 +2,7 @@
 import json
 import re
 import shutil
+import subprocess
 
 
 def table(header, rows):
@@ -54,6 +55,23 @@ growing as their cube root (100 at 10^5) both noise and blur fall.
 """ + text + "\n"
 
 
+MARKS = "<!-- written by tests/bench/bench.py from RESULTS.md and peers.json -->\n", "<!-- end -->\n"
+
+
+def readme(text, page, peers):
+    """The README's text with its rows of the Cornell box, which are those of the page `page`; as it is if either lacks them."""
+    begin, end = (text.find(mark) for mark in MARKS)
+    ours = re.search(r"^### Classic Cornell box.*\n(?:[^|#].*\n|\n)*\| scene.*\n\|---.*\n((?:\|.*\n)+)", page, re.M)
+    if begin < 0 or end < 0 or not ours:
+        return text
+    rows = []
+    for line in ours.group(1).splitlines():
+        _scene, _asked, rmse, cpu, bias, _reached, settings = (cell.strip() for cell in line.strip("|").split("|"))
+        rows.append([f"tempolux, {settings}", cpu, rmse.replace("0.", ".", 1), bias.split(" +-")[0]])
+    rows += [[peer["work"], peer["cpu_s"], peer["rmse"], peer["bias"]] for peer in peers]
+    return text[:begin] + MARKS[0] + table(["", "CPU s", "RMSE", "bias"], rows) + text[end:]
+
+
 def long_tables(match):
     heading, rows = match.group(1), match.group(2)
     if rows.count("\n") <= 14:
@@ -61,16 +79,34 @@ def long_tables(match):
     return f"<details><summary>{heading}</summary>\n\n{rows}\n</details>\n"
 
 
-def write(bench, page, docs, peers_source, figures, command):
+def age(bench, machine):
+    """The commit of a measurement, and how many since then have changed what is measured."""
+    commit = machine.rsplit(" ", 1)[-1]
+    log = subprocess.run(["git", "-C", str(bench.project), "log", "--oneline", f"{commit}..HEAD", "--", "formats", "lib", "tools",
+                          "Makefile.example"], capture_output=True, text=True)
+    newer = len(log.stdout.splitlines())
+    return commit if log.returncode == 0 and not newer else f"{commit}, {newer} changes ago" if log.returncode == 0 else f"{commit}, age unknown"
+
+
+def summary(bench, found, figures, left_out, command):
+    """A row for each required figure, those too that have not been measured."""
+    rows = [[f["title"], f["asked"], verdict(f["met"]), age(bench, f["machine"])] if f else
+            [figures[name].__doc__.splitlines()[0].rstrip("."), f"`{command} --only {name}`", "**not measured**", left_out.get(name, "")]
+            for name, f in found.items()]
+    return "## Required figures\n\n" + table(["what", "asked", "verdict", "at commit"], rows) + "\n"
+
+
+def write(bench, page, docs, peers_source, figures, command, left_out):
+    """`left_out`: why a part was not measured this time."""
     text = f"""# Results
 
 Written by `{command}` (tests/bench/bench.py); every number below comes out of it, `--only NAME` measures one part again.
 CPU seconds are user and system time of all threads. Cycles' rows: {peers_source}.
 
 """
-    found = {name: json.loads(file.read_text()) for name in figures if (file := bench.out / f"{name}.json").exists()}
-    text += "## Required figures\n\n" + table(
-        ["what", "asked", "verdict"], [[f["title"], f["asked"], verdict(f["met"])] for f in found.values()]) + "\n"
-    text += curves(bench, docs, page, command)
-    text += "## Figures in full\n\n" + "".join(section(name, f, command) for name, f in found.items())
+    files = {name: bench.out / f"{name}.json" for name in figures}
+    found = {name: json.loads(file.read_text()) if file.exists() else None for name, file in files.items()}
+    text += summary(bench, found, figures, left_out, command)
+    text += curves(bench, docs, page, command) or f"## Error against run time\n\nNot measured: `{command} --only sweep`\n\n"
+    text += "## Figures in full\n\n" + "".join(section(name, f, command) for name, f in found.items() if f)
     page.write_text(text.rstrip("\n") + "\n")

@@ -1,13 +1,26 @@
 #!/bin/sh
-# short_check.sh BUILD SCRATCH -- does `make bench` still run, and does its page name every part?
+# short_check.sh BUILD SCRATCH -- does `make bench` still run, does its page name every part, and does the README say what
+# RESULTS.md says?
 here=$(cd "$(dirname "$0")" && pwd)
+parts=$(cd "$here" && python3 -B -c 'from required import FIGURES; print("sweep", *FIGURES)') || exit 1
 rm -rf "$2" && mkdir -p "$2" || exit 1
 python3 -B "$here/bench.py" --quick --build "$1" --out "$2/out" --results "$2/RESULTS.md" --docs "$2/docs" || exit 1
-for part in sweep path-tracer photon-rate photon-growth nearest threads start reading gather-quality \
-    gather-speed-error cornell large gather-rays growth s4-quality s4-speed; do
+for part in $parts; do
   grep -q -e "--only $part" "$2/RESULTS.md" || { echo "RESULTS.md has no part $part"; exit 1; }
 done
 for plot in $(sed -n 's/.*](\(docs[^)]*\)).*/\1/p' "$2/RESULTS.md"); do
   [ -s "$2/$plot" ] || { echo "RESULTS.md shows $plot, which is not there"; exit 1; }
 done
 ! find "$2/docs" -size +200k | grep . || { echo 'a figure is larger than 200 KB'; exit 1; }
+rm "$2/out/start.json" && python3 -B "$here/bench.py" --quick --build "$1" --out "$2/out" --results "$2/RESULTS.md" \
+  --docs "$2/docs" --page > "$2/page.txt" && grep -q 'only start` | \*\*not measured\*\*' "$2/RESULTS.md" ||
+  { echo 'a part that is not measured is not said to be'; exit 1; }
+cd "$here" && python3 -B - <<'END'
+import json, pathlib, sys
+import results_page
+top = pathlib.Path("../..")
+said = (top / "README.md").read_text()
+rows = json.loads(pathlib.Path("peers.json").read_text())["cornell"]
+if said != results_page.readme(said, (top / "RESULTS.md").read_text(), rows):
+    sys.exit("README.md: the Cornell box differs from RESULTS.md; bench.py --page writes it")
+END
