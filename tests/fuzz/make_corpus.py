@@ -153,6 +153,31 @@ lines = [struct.pack("<ii", y, 24) + bytes(24) for y in (0, 1)]
 offsets = struct.pack("<QQ", len(header) + 16, len(header) + 16 + 32)
 save("pictures", "rgb.exr", header + offsets + b"".join(lines))
 
+
+def hdr(width, height, pixels, extra=b""):
+    return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n" + extra + b"\n-Y %d +X %d\n" % (height, width) + pixels
+
+
+run = b"\2\2\0\x08" + b"\x88\x80" + b"\x08abcdefgh" + b"\x84\x40\x84\x20" + b"\x88\x81"
+save("pictures", "flat.hdr", hdr(3, 2, bytes(range(120, 144))))
+save("pictures", "runs.hdr", hdr(8, 2, run + run, b"EXPOSURE=2\n"))
+save("pictures", "old-runs.hdr", hdr(8, 1, b"\x80\x40\x20\x81" + b"\1\1\1\7"))
+save("pictures", "huge.hdr", hdr(2000000000, 2000000000, b""))
+# 8 x 8 baseline with halved colour, 9 x 5 progressive; by libjpeg.
+save("pictures", "baseline.jpg", base64.b64decode(
+    "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDABALDA4MChAODQ4SERATGCgaGBYWGDEjJR0oOjM9PDkzODdASFxOQERXRTc4UG1RV19iZ2hnPk1xeXBk"
+    "eFxlZ2P/2wBDARESEhgVGC8aGi9jQjhCY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2NjY2P/wAARCAAIAAgD"
+    "ASIAAhEBAxEB/8QAFQABAQAAAAAAAAAAAAAAAAAAAAL/xAAbEAACAwEBAQAAAAAAAAAAAAABAgARITESIv/EABUBAQEAAAAAAAAAAAAAAAAAAAID"
+    "/8QAGhEAAgIDAAAAAAAAAAAAAAAAAAEDERJBcf/aAAwDAQACEQMRAD8AhVB+fIC3WKQlDNFWcIzvF6zGIiJR5ba4SkdM/9k="))
+save("pictures", "progressive.jpg", base64.b64decode(
+    "/9j/4AAQSkZJRgABAQAAAQABAAD/2wBDABsSFBcUERsXFhceHBsgKEIrKCUlKFE6PTBCYFVlZF9VXVtqeJmBanGQc1tdhbWGkJ6jq62rZ4C8ybqm"
+    "x5moq6T/2wBDARweHigjKE4rK06kbl1upKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKSkpKT/wgARCAAFAAkD"
+    "ASIAAhEBAxEB/8QAFQABAQAAAAAAAAAAAAAAAAAAAAL/xAAVAQEBAAAAAAAAAAAAAAAAAAABA//aAAwDAQACEAMQAAABkFf/xAAVEAEBAAAAAAAA"
+    "AAAAAAAAAAAAEv/aAAgBAQABBQJb/8QAGBEAAgMAAAAAAAAAAAAAAAAAAQIAAxH/2gAIAQMBAT8BrUMTs//EABQRAQAAAAAAAAAAAAAAAAAAAAD/"
+    "2gAIAQIBAT8Bf//EABQQAQAAAAAAAAAAAAAAAAAAABD/2gAIAQEABj8CP//EABkQAAMAAwAAAAAAAAAAAAAAAAARoUHR8P/aAAgBAQABPyHEUH5a"
+    "P//aAAwDAQACAAMAAAAQg//EABYRAQEBAAAAAAAAAAAAAAAAAAEAMf/aAAgBAwEBPxA4GX//xAAWEQEBAQAAAAAAAAAAAAAAAAABADH/2gAIAQIB"
+    "AT8QcL//xAAcEAEAAQQDAAAAAAAAAAAAAAABEQAxQZEhYcH/2gAIAQEAAT8QIxL8BBc9aIytdDqj/9k="))
+
 # ---- what people type ------------------------------------------------------------------------------------------
 
 for number, typed in enumerate(["0-47x2,60", "9-1", "-5--2", "1,5,9-12y3", "f.####.exr", "f.%04d.%%.exr", "1.5M", "64KiB",
