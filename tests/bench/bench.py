@@ -68,9 +68,10 @@ def main():
         except Missing as reason:
             print(f"left out: {reason}", flush=True)
             left_out[name] = str(reason)
-    results_page.write(bench, args.results.resolve(), args.docs.resolve(), peers["source"], FIGURES, "python3 tests/bench/bench.py", left_out)
+    page = args.results.resolve()
+    results_page.write(bench, page, args.docs.resolve(), peers["source"], FIGURES, "python3 tests/bench/bench.py", left_out)
     print(f"wrote {args.results}")
-    page, readme = args.results.resolve(), args.results.resolve().with_name("README.md")
+    readme = page.with_name("README.md")
     if readme.exists():
         readme.write_text(results_page.readme(readme.read_text(), page.read_text(), peers["cornell"]))
 

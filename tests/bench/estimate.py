@@ -20,9 +20,8 @@ CASES = [("S2", "0-47x8", "320x180"), ("S2", "0-47x8", "640x360"), ("S3", "1", "
 
 def spent(bench, options, out):
     """(CPU seconds, bytes) of `make demo`, plan, preview and all."""
-    tried = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
     before = os.times()
-    bench.run(["env", "-i", *(f"{k}={v}" for k, v in tried.items()), "make", "-s", "-f", "Makefile.example", "-C", bench.project, "demo",
+    bench.run(["env", "-u", "MAKEFLAGS", "-u", "MAKELEVEL", "make", "-s", "-f", "Makefile.example", "-C", bench.project, "demo",
                f"BIN={bench.bin}", f"OUT={out}", *options])
     after = os.times()
     files = [file for kind in ("photons/*.photons", "points/*.irradpoints", "cache/*.irradcache", "frames/*")
@@ -48,12 +47,6 @@ def compared(bench, scene, frames, size):
             f"{size_of / 1e6:.1f}", f"{ratios[1]:.2f}"], ratios
 
 
-def report(rows, ratios, judged, notes=()):
-    return figure("Time and disk said before a run, against what it took", "scene-plan --estimate within a factor of 2",
-                  ["scene", "frames", "size", "CPU s said", "taken", "ratio", "MB said", "taken", "ratio"], rows,
-                  all(0.5 <= r <= 2 for r in ratios) if judged else None, notes)
-
-
 def estimate(bench, _):
     """scene-plan --estimate against a run of Makefile.example."""
     rows, ratios, notes = [], [], []
@@ -65,7 +58,10 @@ def estimate(bench, _):
             continue
         rows.append(row)
         ratios += both
-    return report(rows, ratios, not bench.quick and bool(rows), notes + ["Final settings of Makefile.example; all processes of make."])
+    notes.append("Final settings of Makefile.example; all processes of make.")
+    return figure("Time and disk said before a run, against what it took", "scene-plan --estimate within a factor of 2",
+                  ["scene", "frames", "size", "CPU s said", "taken", "ratio", "MB said", "taken", "ratio"], rows,
+                  all(0.5 <= r <= 2 for r in ratios) if rows and not bench.quick else None, notes)
 
 
 def main():

@@ -84,15 +84,17 @@ def age(bench, machine):
     commit = machine.rsplit(" ", 1)[-1]
     log = subprocess.run(["git", "-C", str(bench.project), "log", "--oneline", f"{commit}..HEAD", "--", "formats", "lib", "tools",
                           "Makefile.example"], capture_output=True, text=True)
+    if log.returncode != 0:
+        return f"{commit}, age unknown"
     newer = len(log.stdout.splitlines())
-    return commit if log.returncode == 0 and not newer else f"{commit}, {newer} changes ago" if log.returncode == 0 else f"{commit}, age unknown"
+    return f"{commit}, {newer} changes ago" if newer else commit
 
 
 def summary(bench, found, figures, left_out, command):
     """A row for each required figure, those too that have not been measured."""
     rows = [[f["title"], f["asked"], verdict(f["met"]), age(bench, f["machine"])] if f else
-            [figures[name].__doc__.splitlines()[0].rstrip("."), f"`{command} --only {name}`", "**not measured**", left_out.get(name, "")]
-            for name, f in found.items()]
+            [figures[name].__doc__.splitlines()[0].rstrip("."), f"`{command} --only {name}`", "**not measured**",
+             left_out.get(name, "")] for name, f in found.items()]
     return "## Required figures\n\n" + table(["what", "asked", "verdict", "at commit"], rows) + "\n"
 
 

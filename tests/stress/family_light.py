@@ -77,8 +77,8 @@ def too_much(s):
     reference = s.render(lit_room(s.path(".gltf"), 1.0, 1e6), (48, 36), 8)
     image = s.render(path, (48, 36), 8)
     s.near("mean of the frame", reference.mean() * 1e30, image.mean(), 0.005)
-    s.near("mean of the indirect layer by the cache, where photons fit", s.cached(lit_room(s.path(".gltf"), 1e20, 1e6), (48, 36)).mean(
-        "indirect.G"), s.cached(lit_room(s.path(".gltf"), 1.0, 1e6), (48, 36)).mean("indirect.G") * 1e20, 0.03)
+    one, many = (s.cached(lit_room(s.path(".gltf"), strength, 1e6), (48, 36)).mean("indirect.G") for strength in (1.0, 1e20))
+    s.near("1e20 in a room of 1e6 m, cache: mean of the indirect layer", one * 1e20, many, 0.03)
     out = s.path(".photons")
     run = s.run("photon-trace", path, "--photons", "10k", "-o", out)
     if run.code == 0:
@@ -139,7 +139,8 @@ def through_cache(s):
     s.cost_at_most("irradcache-build, CPU time of 10082 triangles / of 2", 10, cost[1] / cost[0])
     scene = indirect_room()
     for i in range(10000):
-        scene.point_light((-0.8 + 0.016 * (i % 100), -0.5 + (i * 7919 % 1000) / 1000, -0.8 + 0.016 * (i // 100)), 1e-4 * (1 + i % 5))
+        position = (-0.8 + 0.016 * (i % 100), -0.5 + (i * 7919 % 1000) / 1000, -0.8 + 0.016 * (i // 100))
+        scene.point_light(position, 1e-4 * (1 + i % 5))
     _, image = s.like_paths("10000 point lights", scene.save(s.path(".gltf")))
     s.cost_at_most("irradcache-build, CPU time of 10000 point lights / of 2 triangles", 10, image.build.cpu / cost[0])
     for side in (1e-6, 1e-10):
@@ -148,11 +149,12 @@ def through_cache(s):
         s.like_paths(f"emitter of {side * side:.0e} m^2", scene.save(s.path(".gltf")))
     # At 0.01 rad the floor gets next to nothing, the wall all of it; below the floor nothing is lit. (A lamp so near to the
     # floor that its spot there is smaller than what gather rays find is another matter: family_photons, "all in one point".)
+    upright = [(0, 0.3, -0.2), (0, 0.5, -0.2), (0, 0.5, 0.2), (0, 0.3, 0.2)]
+    above = [(-0.1, 2, -0.1), (0.1, 2, -0.1), (0.1, 2, 0.1), (-0.1, 2, 0.1)]
     for title, add in (("sun at cos 1e-2", lambda c: c.sun((0, -1e-2, -1), 3)),
-                       ("lamp edge-on", lambda c: c.quad((0, 0.3, -0.2), (0, 0.5, -0.2), (0, 0.5, 0.2), (0, 0.3, 0.2), c.material(0, 20.0))),
+                       ("lamp edge-on", lambda c: c.quad(*upright, c.material(0, 20.0))),
                        ("light below the floor", lambda c: c.point_light((0, -1e-4, 0), 1.0)),
-                       ("lamp that looks away", lambda c: c.quad((-0.1, 2, -0.1), (0.1, 2, -0.1), (0.1, 2, 0.1), (-0.1, 2, 0.1), c.material(
-                           0, 20.0, one_sided=True)))):
+                       ("lamp that looks away", lambda c: c.quad(*reversed(above), c.material(0, 20.0, one_sided=True)))):
         scene = Scene()
         grey = scene.material(RHO)
         scene.quad((-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1), grey)

@@ -163,7 +163,8 @@ def negative(s):
     facts = s.info(path)
     s.true("stored flux below 0", facts["stored_flux_W"][1] < 0, f"{facts['stored_flux_W'][1]:.4g}", "< 0")
     for tool, options, ending in [("frame-render", ["--size", "8x8", "--spp", 1], ".exr"),
-                                  ("irradcache-build", ["points"], ".irradpoints"), ("irradcache-build", ["--size", "8x8"], ".irradcache")]:
+                                  ("irradcache-build", ["points"], ".irradpoints"),
+                                  ("irradcache-build", ["--size", "8x8"], ".irradcache")]:
         out = s.path(ending)
         before = [options.pop(0)] if options[0] == "points" else []
         run = s.run(tool, *before, scene, "-q", "--photons", path, *options, "-o", out)
@@ -188,8 +189,8 @@ def groups(s):
     for count in (1, 7, 6300):
         files = [s.path(end) for end in (".photons", ".irradpoints", ".irradcache")]
         s.done(s.run("photon-trace", scene, "--photons", 6300, "--kinds", "indirect", "--groups", count, "-o", files[0]))
-        s.done(s.run("irradcache-build", scene, "--photons", files[0], "--keep-points", files[1], "--point-count", "2k", "--rays", 100,
-                     "--size", "24x24", "-o", files[2]))
+        s.done(s.run("irradcache-build", scene, "--photons", files[0], "--keep-points", files[1], "--point-count", "2k",
+                     "--rays", 100, "--size", "24x24", "-o", files[2]))
         image = s.render(scene, (24, 24), 4, "--irradcache", files[2], "--points", files[1], "--channels", "RGBA,layers")
         means.append(image)
     for count, image in zip((7, 6300), means[1:]):   # the order of photons may round sums another way

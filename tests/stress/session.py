@@ -220,7 +220,7 @@ class Session:
     def cached(self, scene, size, spp=4, *, photons=None, common=(), points=(), records=(), pixels=(), seed=0, timeout=300):
         """The frame by photon-trace, irradcache-build and frame-render --irradcache; beside it the files (`photons`,
         `points`, `records`), the cache as read in Python and the statistics of its making. `common`: options of the
-        last two stages, `points`, `records`, `pixels` of one. Indirect light comes from irradiance points: 2 x 2000 of them in the
+        last two stages, `points`, `records`, `pixels` of one; `seed`: of all. Indirect light comes from points: 2 x 2000 in the
         short form, where the tools take 2 x 20 000."""
         files = [self.path(end) for end in (".photons", ".irradpoints", ".irradcache", ".json")]
         common = (*common, "--seed", seed)
