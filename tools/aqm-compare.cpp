@@ -16,6 +16,7 @@
 #include "lib/image/exr_io.h"
 #include "lib/report/comparison.h"
 #include "tools/compare_inputs.h"
+#include "tools/option_words.h"
 #include "tools/tool_main.h"
 
 using namespace tempolux;
@@ -32,12 +33,6 @@ struct Options {
   std::string layer_or_rgb() const { return layer == "RGB" ? "" : layer; }
   std::vector<std::string> references() const { return halves.empty() ? std::vector{reference} : halves; }
 };
-
-std::string not_negative(const std::string& text) {
-  double value = -1;
-  const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0;
-  return good ? "" : "'" + text + "' is not a number from 0 up";
-}
 
 void declare(tools::Tool& tool, Options& o) {
   CLI::App& app = tool.app();
@@ -61,9 +56,9 @@ void declare(tools::Tool& tool, Options& o) {
   tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)",
                      "--difference");
   app.add_option("--difference-scale", o.difference_scale, "difference at full red in the PNG; 0: automatic")
-      ->type_name("VALUE")->capture_default_str()->check(not_negative);
+      ->type_name("VALUE")->capture_default_str()->check(tools::number_between(0));
   app.add_option("--fail-above", o.fail_above, "exit 1 if the RMSE is above this")->type_name("RMSE")
-      ->check(not_negative);
+      ->check(tools::number_between(0));
   tool.leave_out_of_history(
       app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
   tool.common_options(tools::uses_frames);

@@ -13,6 +13,7 @@
 #include "formats/error.h"
 #include "lib/report/gnuplot.h"
 #include "lib/report/report_page.h"
+#include "tools/option_words.h"
 #include "tools/tool_main.h"
 
 using namespace tempolux;
@@ -39,7 +40,7 @@ void declare(tools::Tool& tool, Options& o) {
       ->type_name("KIND")->capture_default_str()->check(CLI::IsMember({"cpu", "wall"}));
   app.add_flag("--no-plots", o.no_plots, "draw nothing, so that gnuplot is not needed");
   app.add_option("--plot-timeout", o.plot_timeout_s, "seconds that gnuplot may take for a plot")
-      ->type_name("SECONDS")->capture_default_str()->check(CLI::Range(0.1, 86400.0));
+      ->type_name("SECONDS")->capture_default_str()->check(tools::number_between(0.1, 86400.0));
   tool.common_options(0);
 }
 

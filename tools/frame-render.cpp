@@ -18,6 +18,7 @@
 #include "tools/frame_output.h"
 #include "tools/indirect_light.h"
 #include "tools/scene_input.h"
+#include "tools/option_words.h"
 #include "tools/tool_main.h"
 
 using namespace tempolux;
@@ -42,7 +43,7 @@ struct MotionFrame {
   std::optional<CameraView> view;
   MotionFrame(tools::SceneInput& input, const Options& options, int camera, int number) {
     if (std::find(options.channels.begin(), options.channels.end(), "motion") == options.channels.end()) return;
-    frame = input.at(number);
+    frame = input.at(number, false);
     view.emplace(frame->camera(camera), frame->origin, options.width, options.height);
   }
   NeighbourFrame get() const { return {frame ? &*frame : nullptr, view ? &*view : nullptr}; }
@@ -101,10 +102,25 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   count_work(tool, rendered, tracer, light);
 }
 
+/// A scene without light may be meant (unlit materials, depth alone), but a black frame is explained.
+void warn_of_darkness(tools::Tool& tool, const Scene& scene) {
+  if (std::ranges::any_of(scene.materials, &Material::unlit)) return;
+  try {
+    require_lights(scene);
+  } catch (const InputError& error) {
+    tool.warn(error.what());
+  }
+}
+
 void check(Options& options, const std::vector<int>& frames) {
   if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
     throw InputError("--output: several frames need a pattern, for example f.####.exr");
   if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
+  for (const char* other : {".png", ".jpg", ".jpeg", ".hdr", ".tif", ".tiff", ".bmp", ".ppm", ".pfm", ".webp"})
+    if (options.output.ends_with(other))
+      throw InputError("--output " + options.output + ": a frame is OpenEXR; name it f.exr, then tempolux-info --png f.png f.exr");
+  if (options.integrator == "photons" && !options.light.irradcache.empty())
+    throw InputError("--integrator photons reads no cache; leave out --irradcache, or the integrator");
   if (options.integrator == "photons" && options.light.photons.empty())
     throw InputError("--integrator photons: name the photon map with --photons FILE");
   if (options.integrator == "cache" && options.light.irradcache.empty())
@@ -133,23 +149,23 @@ void add_light_options(tools::Tool& tool, Options& options) {
                  "path: unbiased path tracing; photons, cache: indirect light from --photons or --irradcache; auto: by what is given")
       ->capture_default_str()->check(CLI::IsMember({"auto", "path", "photons", "cache"}));
   app.add_option("--photons", options.light.photons,
-                 ".photons file, or a pattern: indirect and caustic light; with --irradcache caustic light");
-  app.add_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light");
+                 ".photons file, or a pattern: indirect and caustic light; with --irradcache caustic light")->type_name("FILE");
+  app.add_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light")->type_name("FILE");
   app.add_option("--points", options.light.points,
-                 ".irradpoints file, or a pattern: what missing records are gathered from (else points made from --photons)");
+                 ".irradpoints file, or a pattern: what missing records are gathered from (else points made from --photons)")->type_name("FILE");
   app.add_option("--neighbours", options.light.photon_light.neighbours, "photons per density estimate of indirect light")
-      ->capture_default_str()->check(CLI::Range(2, kMaxNeighbours));
+      ->capture_default_str()->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--max-radius", options.light.photon_light.max_radius,
                  "farthest photon used for it, m; 0: a twentieth of the scene's diagonal")
-      ->capture_default_str()->check(CLI::NonNegativeNumber);
+      ->capture_default_str()->check(tools::number_between(0));
   app.add_option("--caustic-neighbours", options.light.photon_light.caustic_neighbours,
                  "photons per density estimate of caustic light: fewer are sharper, more are smoother")
-      ->capture_default_str()->check(CLI::Range(2, kMaxNeighbours));
+      ->capture_default_str()->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--caustic-radius", options.light.photon_light.caustic_radius,
                  "farthest caustic photon used, m; 0: a sixtieth of the scene's diagonal")
-      ->capture_default_str()->check(CLI::NonNegativeNumber);
+      ->capture_default_str()->check(tools::number_between(0));
   app.add_option("--rays", options.light.gather.rays, "gather rays for a missing record")
-      ->capture_default_str()->check(CLI::Range(1, 1 << 20));
+      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
 }
 
 void add_options(tools::Tool& tool, Options& options) {
@@ -157,24 +173,25 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   tool.size_option("--size", options.width, options.height, "picture size in pixels");
   app.add_option("--spp", options.frame.samples, "samples per pixel: all, or with --pixel-error or --target-error the first")
-      ->capture_default_str()->check(CLI::Range(1, 1 << 24));
+      ->capture_default_str()->check(tools::number_between(1, 1 << 24));
   app.add_option("--pixel-error", options.pixel_error,
                  "more samples where pixels are uncertain: n = sigma / (this x radiance); 0: none; -1: 0.01 with photons or a cache, else none")
-      ->capture_default_str()->check(CLI::Range(-1.0, 1.0));
+      ->capture_default_str()->check(tools::number_between(-1.0, 1.0));
   app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
-      ->capture_default_str()->check(CLI::Range(1, 1 << 20));
+      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
   add_light_options(tool, options);
   app.add_flag("--halves", options.frame.halves,
                "also write NAME_a.exr and NAME_b.exr: independent halves of spp/2 samples each");
   app.add_option("--target-error", options.frame.target_error,
                  "double the samples until the estimated RMSE is below this fraction of the mean; 0: off")
-      ->capture_default_str()->check(CLI::NonNegativeNumber);
-  app.add_option("--max-spp", options.frame.max_samples, "never more samples than this for --target-error")->capture_default_str();
+      ->capture_default_str()->check(tools::number_between(0));
+  app.add_option("--max-spp", options.frame.max_samples, "never more samples than this for --target-error")
+      ->capture_default_str()->check(tools::number_between(1, 1 << 24));
   app.add_option("--channels", options.channels,
                  "RGBA, layers (or emission, specular, direct, caustic, indirect), Z, N, P, id, albedo, motion")
-      ->delimiter(',')->capture_default_str();
-  app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0");
-  app.add_option("--base", options.base, "EXR file, or a pattern: where the other pixels come from, bit for bit");
+      ->delimiter(',')->type_name("NAMES")->default_str("RGBA,Z,N,id");
+  app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")->type_name("FILE");
+  app.add_option("--base", options.base, "EXR file, or a pattern: where the other pixels come from, bit for bit")->type_name("FILE");
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
   app.add_option("--compression", options.compression, "EXR compression")->capture_default_str()->check(CLI::IsMember({"zip", "none"}));
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
@@ -195,6 +212,7 @@ int main(int argc, char** argv) {
     check(options, frames);
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::a_camera);
+    warn_of_darkness(tool, input.scene());
     for (int frame : frames) render(tool, input, options, frame);
     return tools::exit_ok;
   });

@@ -15,11 +15,14 @@
 #include "lib/gather/cache_files.h"
 #include "lib/render/cache_light.h"
 #include "tools/gather_input.h"
+#include "tools/option_words.h"
 #include "tools/tool_main.h"
 
 using namespace tempolux;
 
 namespace {
+
+constexpr std::uint64_t kMaxPoints = 1 << 28;   ///< per side of all surfaces
 
 struct Options {
   std::vector<std::string> inputs;  // [points|records] SCENE
@@ -126,7 +129,13 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   tool.stats().count("unanswered", double(counts.unanswered));
 }
 
-void check(const Options& options, const std::vector<int>& frames) {
+/// Options that a step does not read, given all the same, would do nothing without a word.
+void refuse_unread(const CLI::App& app, const std::string& step, const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    if (app.get_option(name)->count() > 0) throw InputError(name + ": " + step + " does not read it; leave it out");
+}
+
+void check(const CLI::App& app, const Options& options, const std::vector<int>& frames) {
   const std::string mode = options.mode();
   if (mode != "both" && mode != "points" && mode != "records")
     throw InputError("'" + options.inputs[0] + "' is not a step: it is points, records, or nothing for both");
@@ -134,6 +143,13 @@ void check(const Options& options, const std::vector<int>& frames) {
   if (mode == "records" && options.points.empty()) throw InputError("records: name the points with --points FILE");
   if (mode == "both" && options.photons.empty() == options.points.empty())
     throw InputError("name either the photon map, --photons FILE, or the points made from it, --points FILE");
+  if (mode == "points")
+    refuse_unread(app, "points", {"--points", "--records", "--rays", "--error-bound", "--radii", "--clamp-neighbours",
+                                  "--min-radius-px", "--min-weight", "--size", "--keep-points"});
+  else if (!options.points.empty())
+    refuse_unread(app, "a run with --points", {"--photons", "--point-count", "--neighbours", "--light-samples", "--keep-points"});
+  if (options.point_count < 1 || options.point_count > kMaxPoints)
+    throw InputError("--point-count: " + std::to_string(options.point_count) + " is not from 1 to " + std::to_string(kMaxPoints));
   if (mode == "points" && frames.size() > 1 && !tools::has_frame_pattern(options.output))
     throw InputError("--output: several frames need a pattern, for example f.####.irradpoints");
 }
@@ -142,29 +158,29 @@ void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.inputs, "glTF 2.0 scene, after the word points or records if only that is wanted")
       ->required()->expected(1, 2)->type_name("[points|records] SCENE");
-  app.add_option("--photons", options.photons, ".photons file of this frame with caustic and indirect light");
-  app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons");
-  app.add_option("--records", options.records, ".irradcache file to extend: its records are kept");
+  app.add_option("--photons", options.photons, ".photons file of this frame with caustic and indirect light")->type_name("FILE");
+  app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons")->type_name("FILE");
+  app.add_option("--records", options.records, ".irradcache file to extend: its records are kept")->type_name("FILE");
   tool.count_option("--point-count", options.point_count, "irradiance points per side of all surfaces together");
   app.add_option("--neighbours", options.point.neighbours, "photons per density estimate")
-      ->capture_default_str()->check(CLI::Range(2, kMaxNeighbours));
+      ->capture_default_str()->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
-      ->capture_default_str()->check(CLI::Range(1, 4096));
+      ->capture_default_str()->check(tools::number_between(1, 4096));
   app.add_option("--rays", options.gather.rays,
                  "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many")
-      ->capture_default_str()->check(CLI::Range(1, 1 << 20));
+      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
   app.add_option("--error-bound", options.placement.error_bound,
                  "radius of a record / harmonic mean distance to what it sees: smaller is finer")
-      ->capture_default_str()->check(CLI::Range(1e-3, 2.0));
+      ->capture_default_str()->check(tools::number_between(1e-3, 2.0));
   app.add_option("--radii", options.radii,
                  "what the radius of a record follows from: ward (distances of what it sees) or hessian (second derivatives)")
       ->capture_default_str()->check(CLI::IsMember({"ward", "hessian"}));
   app.add_flag("--clamp-neighbours", options.placement.clamp_neighbours,
                "no record's radius exceeds a neighbour's by more than their distance: finer near small things");
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
-      ->capture_default_str()->check(CLI::PositiveNumber);
+      ->capture_default_str()->check(tools::number_above(0));
   app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
-      ->capture_default_str()->check(CLI::Range(1e-6, 0.99));
+      ->capture_default_str()->check(tools::number_between(1e-6, 0.99));
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.keep_points, "also write the points made from --photons, .irradpoints", "--keep-points");
   tool.output_option(options.output, ".irradcache file (points: .irradpoints); - for standard output")->required();
@@ -181,8 +197,8 @@ int main(int argc, char** argv) {
 
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
-    check(options, frames);
-    options.point.count = std::uint32_t(std::min<std::uint64_t>(options.point_count, 1u << 28));
+    check(tool.app(), options, frames);
+    options.point.count = std::uint32_t(options.point_count);
     options.gather.curvature = options.placement.by_curvature = options.radii == "hessian";
     options.point.seed = options.gather.seed = tool.common().seed_for_frame(frames.front());
     tool.stats().phase("load");

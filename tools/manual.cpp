@@ -7,6 +7,8 @@
 #include <sstream>
 #include <vector>
 
+#include "tools/option_words.h"
+
 namespace tempolux::tools {
 namespace {
 
@@ -38,11 +40,6 @@ std::vector<const CLI::Option*> options_of(const CLI::App& app, bool positional)
 
 bool takes_value(const CLI::Option& option) { return option.get_expected_max() > 0; }
 
-std::string value_name(const CLI::Option& option) {
-  const std::string name = option.get_type_name().empty() ? "VALUE" : option.get_type_name();
-  return name + (option.get_expected_max() > 1 ? "..." : "");
-}
-
 std::vector<std::string> names_of(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
@@ -52,6 +49,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 
 std::string what_it_does(const CLI::Option& option) {
   std::string text = roff(option.get_description());
+  if (const std::string limits = limits_of(option); !limits.empty()) text += " (" + limits + ")";
   if (!option.get_default_str().empty()) text += " [" + roff(option.get_default_str()) + "]";
   if (option.get_required()) text += " (required)";
   if (!option.get_envname().empty()) text += " (environment: " + roff(option.get_envname()) + ")";
@@ -61,7 +59,7 @@ std::string what_it_does(const CLI::Option& option) {
 std::string entry(const CLI::Option& option) {
   std::string head;
   for (const std::string& name : names_of(option)) head += (head.empty() ? "\\fB" : ", \\fB") + roff(name) + "\\fR";
-  if (head.empty()) head = "\\fI" + roff(option.get_name(true)) + "\\fR";
+  if (head.empty()) head = "\\fI" + roff(option.get_single_name()) + "\\fR";
   else if (takes_value(option)) head += " \\fI" + roff(value_name(option)) + "\\fR";
   return ".TP\n" + head + "\n" + what_it_does(option) + "\n";
 }
@@ -120,11 +118,7 @@ std::string man_page(const CLI::App& app) {
   const ManualText text = manual_text(name);
   std::string page = ".TH " + name + " 1 \"\" \"tempolux " TEMPOLUX_VERSION "\" \"tempolux\"\n.SH NAME\n" + roff(name) +
                      " \\- " + roff(as_part_of_a_line(app.get_description())) + "\n.SH SYNOPSIS\n\\fB" + roff(name) +
-                     "\\fR [\\fIOPTIONS\\fR]";
-  for (const CLI::Option* option : options_of(app, true)) {
-    const std::string word = "\\fI" + roff(option->get_name(true)) + "\\fR";
-    page += option->get_required() ? " " + word : " [" + word + "]";
-  }
+                     "\\fR [\\fIOPTIONS\\fR]\\fI" + roff(positional_words(app)) + "\\fR";
   page += "\n.SH DESCRIPTION\n" + paragraphs(text.description) + ".SH OPTIONS\n";
   for (const bool positional : {true, false})
     for (const CLI::Option* option : options_of(app, positional)) page += entry(*option);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "formats/error.h"
+#include "tools/option_words.h"
 #include "tools/tool_state.h"
 
 namespace tempolux::tools {
@@ -19,12 +20,12 @@ namespace {
 CLI::Option* parsed_option(CLI::App& app, const std::string& names, const std::string& help,
                            const std::string& shown_default,
                            const std::function<void(const std::string&)>& parse) {
-  const std::string last = names.substr(names.rfind(',') + 1);  // also npos + 1 == 0
-  const std::function<void(const std::string&)> named = [last, parse](const std::string& text) {
+  const std::string first = names.substr(0, names.find(','));
+  const std::function<void(const std::string&)> named = [first, parse](const std::string& text) {
     try {
       parse(text);
     } catch (const InputError& error) {
-      throw InputError(last + ": " + error.what());
+      throw InputError(first + ": " + error.what());
     }
   };
   CLI::Option* option = app.add_option_function<std::string>(names, named, help);
@@ -39,26 +40,17 @@ std::string format_bytes(std::uint64_t bytes) {
   return std::to_string(bytes) + suffixes[power];
 }
 
-CLI::Validator number_between(double least, double most, const std::string& what) {
-  return CLI::Validator(
-      [=](std::string& text) -> std::string {
-        double value = 0;
-        if (CLI::detail::lexical_cast(text, value) && value >= least && value <= most) return "";
-        return "'" + text + "' is not " + what;
-      },
-      "");
-}
-
 class HelpFormatter : public CLI::Formatter {
  public:
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    return "Usage: " + name + " [OPTIONS]" + positional_words(*app) + "\n";
+  }
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
     constexpr std::size_t kIndent = 30, kWidth = 100;
-    std::string left = "  " + (is_positional ? option->get_name(true) : option->get_name(false, true));
-    if (!is_positional && option->get_expected_max() > 0) {
-      left += " " + (option->get_type_name().empty() ? "VALUE" : option->get_type_name());
-      if (option->get_expected_max() > 1) left += "...";
-    }
+    std::string left = "  " + (is_positional ? option->get_single_name() : option->get_name(false, true));
+    if (!is_positional && option->get_expected_max() > 0) left += " " + value_name(*option);
     std::string right = option->get_description();
+    if (const std::string limits = limits_of(*option); !limits.empty()) right += " (" + limits + ")";
     if (!option->get_default_str().empty()) right += " [" + option->get_default_str() + "]";
     if (option->get_required()) right += " (required)";
     if (!option->get_envname().empty()) right += " (environment: " + option->get_envname() + ")";
@@ -123,13 +115,13 @@ void Tool::environment_options() {
                                          "factor of its radiance: what a pixel of value 1 emits, W/m^2/sr")
                               ->type_name("X")
                               ->capture_default_str()
-                              ->check(number_between(0, 1e30, "from 0 to 1e30"));
+                              ->check(number_between(0, 1e30));
   CLI::Option* rotation =
       app.add_option("--environment-rotation", common.environment_rotation_deg,
                      "turns the map about +Y, from +Z towards +X, degrees")
           ->type_name("DEG")
           ->capture_default_str()
-          ->check(number_between(-1e6, 1e6, "from -1000000 to 1000000"));
+          ->check(number_between(-1e6, 1e6));
   app.parse_complete_callback([=] {
     needs_one(strength);
     needs_one(rotation);
@@ -170,11 +162,11 @@ void Tool::common_options(unsigned flags) {
     app.add_option("--fps", common.fps, "frames per second: frame f is at f / fps seconds")
         ->type_name("RATE")
         ->capture_default_str()
-        ->check(number_between(1e-3, 1e6, "from 0.001 to 1000000"));
+        ->check(number_between(1e-3, 1e6));
     app.add_option("--segment", common.segment_length, "frames over which static means static")
         ->type_name("FRAMES")
         ->capture_default_str()
-        ->check(number_between(1, 1e6, "from 1 to 1000000"));
+        ->check(number_between(1, 1e6));
     app.add_option("--animation", common.animation,
                    "play only this animation of the scene; all play together if not given")
         ->type_name("NAME");
@@ -191,7 +183,7 @@ void Tool::common_options(unsigned flags) {
         app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
     app.add_option("--max-texture", common.max_texture, "reduce images of textures to this many pixels on a side")
         ->type_name("N")
-        ->check(CLI::Range(1, 16384))
+        ->check(number_between(1, 16384))
         ->capture_default_str();
     left_out(app.add_flag("--allow-outside", common.allow_outside,
                           "follow file names that leave the scene's folder"));
@@ -200,7 +192,7 @@ void Tool::common_options(unsigned flags) {
       ->type_name("N")
       ->capture_default_str()
       ->envname("TEMPOLUX_THREADS")
-      ->check(number_between(0, 4096, "from 0 to 4096"));
+      ->check(number_between(0, 4096));
   left_out(bytes_option("--max-memory", common.max_memory_bytes, "limit of memory, such as 300MiB; 0: none"));
   left_out(app.add_option("--stats", common.stats_file,
                           "write seconds, counts and memory as JSON; -: standard output"))

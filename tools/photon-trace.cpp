@@ -18,7 +18,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, frames = "0", output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto";
+  std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto";
 };
 
 /// 0 stands for automatic.
@@ -72,15 +72,14 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
-  app.add_option("--frame,--frames", options.frames, "frame, or range as 0-47, 0-47x2, 1,5,9")->capture_default_str();
-  app.add_option("--photons", options.photons, "photon paths to start per frame (10k, 1M, 1G)")->capture_default_str();
+  app.add_option("--photons", options.photons, "photon paths to start per frame (10k, 1M, 1G), rounded up to a multiple of the groups")->capture_default_str();
   app.add_option("--kinds", options.kinds, "kinds of light to record: direct,caustic,indirect")->capture_default_str();
   app.add_option("--groups", options.groups, "photon groups N_g (photon i is of group i mod N_g), or auto")->capture_default_str();
   app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")->required();
-  tool.common_options(tools::uses_scene | tools::uses_seed);
+  tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_frames);
 
   return tool.run([&] {
-    const std::vector<int> frames = tools::parse_frames(options.frames);
+    const std::vector<int>& frames = tool.common().frames;
     if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
       throw InputError("--output: several frames need a pattern, for example f.####.photons");
     tool.stats().phase("load");

@@ -19,6 +19,7 @@
 #include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/plan/plan_files.h"
+#include "tools/option_words.h"
 #include "tools/pilot.h"
 #include "tools/scene_input.h"
 #include "tools/tidy.h"
@@ -130,11 +131,11 @@ int main(int argc, char** argv) {
   add(app.add_option("--cache-options", options.run.cache, "options irradcache-build records will get"))->type_name("TEXT");
   add(app.add_option("--frame-options", options.run.frames, "options frame-render will get"))->type_name("TEXT");
   add(app.add_option("--jobs", options.jobs, "processes at a time to estimate for, as make -j"))
-      ->type_name("N")->capture_default_str()->check(CLI::Range(1, 100000));
+      ->type_name("N")->capture_default_str()->check(tools::number_between(1, 100000));
   add(app.add_option("--tidy", options.tidy_folder,
                      "instead: remove unfinished files of killed runs from this folder and those in it"))->type_name("FOLDER");
   add(app.add_option("--tidy-hours", options.tidy_hours, "unfinished files of other hosts count as left over after so many hours"))
-      ->type_name("HOURS")->capture_default_str()->check(CLI::NonNegativeNumber);
+      ->type_name("HOURS")->capture_default_str()->check(tools::number_between(0));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
   return tool.run([&] {

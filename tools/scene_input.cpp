@@ -52,9 +52,9 @@ void SceneInput::enter_segment(int frame) {
   emission_.reset();
 }
 
-SceneFrame SceneInput::at(int frame) {
+SceneFrame SceneInput::at(int frame, bool asked) {
   const int nearest = frame_in_animation(scene_, frame, time_);
-  if (nearest != frame && !warned_range_) {
+  if (nearest != frame && asked && !warned_range_) {
     tool_.warn(scene_.path + ": frame " + std::to_string(frame) + " is outside the animation; using frame " +
                std::to_string(nearest));
     warned_range_ = true;
@@ -91,7 +91,7 @@ void check_identity(Tool& tool, const std::string& file, const formats::Identity
   for (const std::string& concern : stale) list += (list.empty() ? "" : ", ") + concern;
   const std::string message = file + ": made for another state of the scene: " + list + " differ at frame " +
                               std::to_string(frame.frame);
-  if (!tool.common().allow_stale) throw InputError(message + "; trace it again, or pass --allow-stale");
+  if (!tool.common().allow_stale) throw InputError(message + "; make it again for this one, or pass --allow-stale");
   tool.warn(message);
 }
 

@@ -28,8 +28,8 @@ class SceneInput {
 
   const Scene& scene() const { return scene_; }
   const TimeOptions& time() const { return time_; }
-  /// The scene at a frame; frames beyond the animation hold its end, with one warning.
-  SceneFrame at(int frame);
+  /// The scene at a frame; frames beyond the animation hold its end, with one warning if the user has asked for them.
+  SceneFrame at(int frame, bool asked = true);
   /// The frozen emission table of the frame's segment.
   const EmissionTable& emission(int frame);
 

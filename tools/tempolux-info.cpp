@@ -12,6 +12,7 @@
 
 #include "formats/error.h"
 #include "tools/info_facts.h"
+#include "tools/option_words.h"
 #include "tools/tool_main.h"
 
 using namespace tempolux;
@@ -143,11 +144,11 @@ int main(int argc, char** argv) {
   app.add_option("--columns", request.picture.columns, "of --sheet; 0: about square")
       ->type_name("N")
       ->capture_default_str()
-      ->check(CLI::Range(0, 1000).description(""));
+      ->check(tools::number_between(0, 1000));
   app.add_option("--tile", request.picture.tile_width, "largest width of an image in --sheet, pixels")
       ->type_name("PX")
       ->capture_default_str()
-      ->check(CLI::Range(1, 65536).description(""));
+      ->check(tools::number_between(1, 65536));
   const std::vector<CLI::Option*> modes{check, digest, diff, format, png, sheet};
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)

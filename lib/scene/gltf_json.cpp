@@ -36,7 +36,7 @@ class Counter final : public nlohmann::json_sax<Json> {
   bool end_object() override { return leave(); }
   bool end_array() override { return leave(); }
   bool parse_error(std::size_t byte, const std::string&, const nlohmann::detail::exception& error) override {
-    trouble = std::string(error.what()).substr(0, 200);
+    trouble = what_is_wrong(error.what());
     trouble_byte = byte;
     return false;
   }
@@ -44,6 +44,13 @@ class Counter final : public nlohmann::json_sax<Json> {
  private:
   std::size_t depth_ = 0, values_ = 0;
 
+  /// "[json...101] parse error at line 1, column 2: WHAT - DETAIL; last read: ..." without what is for programmers and
+  /// without bytes of the file.
+  static std::string what_is_wrong(std::string text) {
+    text = text.substr(0, text.find("; last read"));
+    if (const std::size_t at = text.find("column "); at != std::string::npos) text = text.substr(at);
+    return text.substr(0, 200) + "; mend it, or export the scene again";
+  }
   bool count() {
     if (++values_ <= kMaxValues) return true;
     trouble = "more than " + std::to_string(kMaxValues) + " values";
@@ -333,6 +340,9 @@ std::size_t prune_value(Json& value, const std::set<std::string>& known, std::se
 }  // namespace
 
 Json parse_json(std::string_view text, const std::string& file) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+  if (first != std::string_view::npos && text[first] != '{' && text[first] != '[')
+    throw InputError(file + ": is neither a .glb nor a .gltf file; export the scene as glTF 2.0");
   Counter counter;
   if (!Json::sax_parse(text.begin(), text.end(), &counter)) {
     const auto line =
