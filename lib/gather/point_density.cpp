@@ -101,7 +101,7 @@ Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& rando
   if (!any) return Rgb(0.0f);
   const double inverse =
       whole ? 1 / (double(kPi) * double(radius) * double(radius))
-            : inverse_area(point, radius, options_.area_probes, Draw::spread, random);
+            : inverse_area(point, radius, options_.area_probes, Kernel::flat, random);
   return Rgb(Rgbd{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)} * inverse);
 }
 
@@ -112,17 +112,22 @@ Rgb PointDensity::estimate_sampled(Vec3 position, Vec3 normal, const PathRandom&
   if (radius == 0) return Rgb(0.0f);
   if (!(radius > 4 * reach_.offset())) return plain(position, normal, radius, found);
 
-  thread_local std::vector<std::uint32_t> photons;
+  struct Weighted {
+    std::uint32_t photon;
+    double weight;   // of the kernel: its mean over the disc is 1
+  };
+  thread_local std::vector<Weighted> photons;
   photons.clear();
+  const auto flux_of = [&](const Weighted& w) { return Rgbd(index_.flux(w.photon)) * w.weight; };
   Rgbd all{0.0};
   for (std::size_t i = 0; i < found.count(); ++i) {
     if (i == farthest) continue;
-    photons.push_back(found.photons()[i]);
-    all += Rgbd(index_.flux(photons.back()));
+    photons.push_back({found.photons()[i], 2 * std::max(0.0, 1 - found.distance2()[i] / (found_radius * found_radius))});
+    all += flux_of(photons.back());
   }
   const std::size_t n = photons.size(), first = std::min(n, kFirstTested);
-  const auto reached = [&](std::uint32_t photon) {
-    return reach_(position, normal, index_.position(photon), index_.normal(photon));
+  const auto reached = [&](const Weighted& w) {
+    return reach_(position, normal, index_.position(w.photon), index_.normal(w.photon));
   };
   bool open = true;
   for (std::size_t i = 0; i < first && open; ++i) {   // drawn without replacement [Fisher & Yates]
@@ -134,8 +139,8 @@ Rgb PointDensity::estimate_sampled(Vec3 position, Vec3 normal, const PathRandom&
   if (!open) {
     flux = Rgbd{0.0};
     std::size_t out = 0;
-    for (const std::uint32_t photon : photons)
-      if (reached(photon)) flux += Rgbd(index_.flux(photon));
+    for (const Weighted& w : photons)
+      if (reached(w)) flux += flux_of(w);
       else ++out;
     if (out == n) return Rgb(0.0f);
     double none = 1;
@@ -143,7 +148,7 @@ Rgb PointDensity::estimate_sampled(Vec3 position, Vec3 normal, const PathRandom&
     flux = (flux - all * none) / (1 - none);
   }
   const IrradiancePoint point{position, normal};
-  const double inverse = inverse_area(point, radius, open ? kProbesIfOpen : options_.area_probes, Draw::independent, random);
+  const double inverse = inverse_area(point, radius, open ? kProbesIfOpen : options_.area_probes, Kernel::round, random);
   return Rgb(Rgbd{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)} * inverse);
 }
 
@@ -168,8 +173,9 @@ bool PointDensity::open_and_flat(const IrradiancePoint& point, float radius, flo
 /// until a fixed number m of them arrives: the mean of (number drawn) / m is exactly 1 / (share that arrives) if they
 /// are independent [inverse binomial sampling, Haldane 1945], where m / (a fixed number drawn) would be too small in
 /// the mean. Spread evenly they are less noisy, but the mean is low by up to 1 / (2 m): m arrive as soon as m - 1/2 are
-/// to be expected.
-double PointDensity::inverse_area(const IrradiancePoint& point, float radius, int probes, Draw draw,
+/// to be expected. So for the flat kernel they are spread, for look-ups that are averaged they are independent. With the
+/// round kernel the area counts by its weight, which is what the columns are drawn by: density 2 (1 - d^2) / pi.
+double PointDensity::inverse_area(const IrradiancePoint& point, float radius, int probes, Kernel kernel,
                                   const PathRandom& random) const {
   const Frame frame(point.normal);
   const std::uint64_t key = random.bits(1, Purpose::points);
@@ -177,9 +183,15 @@ double PointDensity::inverse_area(const IrradiancePoint& point, float radius, in
   double surface = 0;  // m^2 per m^2 of the disc, summed
   while (arrived < probes && drawn < kMostProbes * probes) {
     const auto i = std::uint32_t(drawn++);
-    const Vec2 d = sample_disc_concentric(draw == Draw::spread ? sobol_owen_2d(i, key) : random.get2(i, Purpose::place));
+    const bool round = kernel == Kernel::round;
+    Vec2 d = sample_disc_concentric(round ? random.get2(i, Purpose::place) : sobol_owen_2d(i, key));
+    if (round) {
+      const float uniform = std::min(1.0f, d.x * d.x + d.y * d.y), inward = 1 / std::sqrt(1 + std::sqrt(1 - uniform));
+      d = {d.x * inward, d.y * inward};   // d^2 = 1 - sqrt(1 - uniform)
+    }
     const float height = radius / kFlattening * std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y));
-    const float here = column(point, (frame.tangent * d.x + frame.bitangent * d.y) * radius, height);
+    const float here = column(point, (frame.tangent * d.x + frame.bitangent * d.y) * radius, height,
+                              round ? random.get1(i, Purpose::place, 1) : 0);
     arrived += here > 0;
     surface += double(here);
   }
@@ -188,8 +200,10 @@ double PointDensity::inverse_area(const IrradiancePoint& point, float radius, in
 }
 
 /// Surface that can be reached in a column from `height` above the plane to as much below it, `across` from
-/// the point, over the column's section: sum of 1 / cos of the surfaces' tilts.
-float PointDensity::column(const IrradiancePoint& point, Vec3 across, float height) const {
+/// the point, over the column's section: sum of 1 / cos of the surfaces' tilts. For the round kernel they count with the
+/// probability of its weight there over its weight in the plane, 1 - (h / height)^2 at h from it, by `u` of [0, 1): weights
+/// themselves, which differ from column to column, would make the inverse of their sum too large. Flat kernel: u = 0.
+float PointDensity::column(const IrradiancePoint& point, Vec3 across, float height, float u) const {
   const float half = std::max(4 * reach_.offset(), height);
   Vec3 top = point.position + across + point.normal * half;
   float left = 2 * half, sum = 0;
@@ -199,7 +213,8 @@ float PointDensity::column(const IrradiancePoint& point, Vec3 across, float heig
     const SurfacePoint there = tracer_.surface_point(hit);
     const float side = dot(there.normal_geometric, point.normal), cosine = std::abs(side);
     const Vec3 up = side < 0 ? -there.normal_geometric : there.normal_geometric;
-    if (cosine > kMinCos && stores_[there.material] &&
+    const float off_plane = dot(there.position - point.position, point.normal);
+    if (cosine > kMinCos && stores_[there.material] && off_plane * off_plane <= (1 - u) * half * half &&
         reach_(point.position, point.normal, there.position, up))
       sum += 1 / cosine;
     const float step = hit.t + 4 * reach_.offset();

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "lib/core/halton.h"
 #include "lib/photon/photon_trace.h"
 #include "lib/render/photon_light.h"
 #include "tests/support/scenes.h"
@@ -111,6 +112,38 @@ TEST(CausticLight, ASampledEstimateHasTheMeanOfTheWhole) {
   EXPECT_NEAR(all / 8000, 1, 0.04);
   EXPECT_NEAR(sampled / 8000, 1, 0.04);
   EXPECT_NEAR(sampled / all, 1, 0.02);
+}
+
+/// Irradiance 1 straight down on a floor, by photons that fall independently and by photons spread as evenly as Halton's
+/// sequence spreads them through a plane mirror. 30 of them: a flat disc would be dark by 1/60 in the second case, the round
+/// kernel by a third of that. 5000 places: some 20000 x 3/4 / 30 independent values of 21 % noise in the first case, 0.5 % in
+/// the mean of four maps, of which 3.5 are asked; evenly spread photons have a third of the noise.
+TEST(CausticLight, IsUnbiasedForIndependentAndForEvenlySpreadPhotons) {
+  HandMadeScene scene;
+  scene.add_quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, matte(Rgb(0.0f)));
+  const SceneFrame& frame = scene.frame();
+  const Tracer tracer(frame);
+  const auto up = formats::encode_normal({0, 1, 0});
+  constexpr std::uint32_t kPhotons = 20000;
+  for (const bool even : {false, true}) {
+    double sum = 0;
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+      const PathRandom random(seed, 5);
+      std::vector<formats::Photon> photons;
+      const RadicalInverse x(2, seed), z(7, seed);
+      for (std::uint32_t i = 0; i < kPhotons; ++i) {
+        const Vec2 u = even ? Vec2{float(x(i)), float(z(i))} : random.get2(i, Purpose::test);
+        const float flux = 4.0f / kPhotons;
+        photons.push_back({{2 * u.x - 1, 0, 2 * u.y - 1}, {flux, flux, flux}, up, 0, formats::PathKind::caustic, 1});
+      }
+      const PointDensity density(tracer, photons, {.neighbours = 30, .max_radius = 0.2f, .area_probes = 32});
+      for (std::uint32_t i = 0; i < 5000; ++i) {
+        const Vec2 u = random.get2(kPhotons + i, Purpose::test);
+        sum += double(density.estimate_sampled({1.6f * u.x - 0.8f, 0, 1.6f * u.y - 0.8f}, {0, 1, 0}, PathRandom(seed, i)).g);
+      }
+    }
+    EXPECT_NEAR(sum / 20000, 1, even ? 0.01 : 0.018) << (even ? "even" : "independent");
+  }
 }
 
 /// No caustic photon: nothing is built, nothing is found.
