@@ -29,7 +29,7 @@ namespace tempolux::tools {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
-
+constexpr std::size_t kDirectBytes = std::size_t{1} << 14;   ///< pieces from this size on are not copied first
 
 /// ".NAME.tmp.HOST." in the folder of `target`; a name too long for the file system is cut and hashed.
 std::filesystem::path temporary_stem(const std::filesystem::path& target, const std::string& host) {
@@ -257,8 +257,8 @@ struct Output::State : std::streambuf {
   }
   void put(const char* data, std::size_t size) {
     if (file < 0) throw std::logic_error(path + ": written after commit");
-    if (buffer.size() + size > kBufferBytes) flush_buffer();
-    if (size >= kBufferBytes) return write_all(data, size);
+    if (buffer.size() + size > kBufferBytes || size >= kDirectBytes) flush_buffer();
+    if (size >= kDirectBytes) return write_all(data, size);
     if (buffer.capacity() == 0) buffer.reserve(kBufferBytes);
     buffer.insert(buffer.end(), data, data + size);
   }

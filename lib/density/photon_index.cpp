@@ -95,18 +95,29 @@ std::uint32_t filter_code(const formats::Photon& photon) {
 
 }  // namespace
 
-PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons) : size_(photons.size()) {
-  if (size_ > std::size_t(1) << 31) throw std::length_error("PhotonIndex: more than 2^31 photons");
+PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t kinds, Vec3d shift) {
+  if (photons.size() > std::size_t(1) << 31) throw std::length_error("PhotonIndex: more than 2^31 photons");
+  const auto is_wanted = [kinds](const formats::Photon& photon) { return (kind_bit(photon.kind) & kinds) != 0; };
+  const std::size_t chunks = (photons.size() + kChunk - 1) / kChunk;
+  std::vector<std::size_t> places(chunks + 1, 0);   // by chunk: where its photons begin
+  parallel_chunks(photons.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    places[first / kChunk + 1] = std::size_t(std::count_if(&photons[first], &photons[first] + (last - first), is_wanted));
+  });
+  for (std::size_t chunk = 0; chunk < chunks; ++chunk) places[chunk + 1] += places[chunk];
+  size_ = places.back();
   if (size_ == 0) return;
   const auto items = std::make_unique_for_overwrite<Item[]>(size_);
-  std::vector<float> largest((size_ + kChunk - 1) / kChunk, 0.0f);
-  parallel_chunks(size_, kChunk, [&](std::size_t first, std::size_t last) {
+  std::vector<float> largest(chunks, 0.0f);
+  parallel_chunks(photons.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    std::size_t place = places[first / kChunk];
     for (std::size_t i = first; i < last; ++i) {
-      const Vec3 p{photons[i].position[0], photons[i].position[1], photons[i].position[2]};
+      if (!is_wanted(photons[i])) continue;
+      const auto& at = photons[i].position;
+      const Vec3 p(Vec3d{at[0], at[1], at[2]} + shift);
       const Rgb flux{photons[i].flux[0], photons[i].flux[1], photons[i].flux[2]};
       if (!is_finite(p) || !is_finite(flux))
         throw std::invalid_argument("PhotonIndex: a position or flux is not finite");
-      items[i] = {{p.x, p.y, p.z}, std::uint32_t(i)};
+      items[place++] = {{p.x, p.y, p.z}, std::uint32_t(i)};
       largest[first / kChunk] = std::max(largest[first / kChunk], max_component(abs(p)));
     }
   });

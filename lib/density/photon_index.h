@@ -79,10 +79,10 @@ class NeighbourList {
 class PhotonIndex {
  public:
   PhotonIndex() = default;
-  /// Copies what look-ups need, 35 bytes per photon (16 more while it builds); the photons may go
-  /// afterwards. Same index for any number of threads. O(n log n). Throws std::invalid_argument if a
-  /// position or flux is not finite, std::length_error beyond 2^31 photons.
-  explicit PhotonIndex(std::span<const formats::Photon> photons);
+  /// Copies what look-ups need of the photons of these kinds (kind_bit), 35 bytes per photon (16 more while it builds);
+  /// the photons may go afterwards. Their positions are moved by `shift` [m]. Same index for any number of threads.
+  /// O(n log n). Throws std::invalid_argument if a position or flux is not finite, std::length_error beyond 2^31 photons.
+  explicit PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t kinds = kAllKinds, Vec3d shift = {});
 
   std::size_t size() const { return size_; }
 

@@ -1,15 +1,18 @@
 #include "lib/gather/facing_grid.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 
+#include "lib/core/parallel.h"
 #include "lib/scene/at_frame.h"
 
 namespace tempolux {
 namespace {
 
 constexpr float kMostCells = 40;  ///< along the longest side
+constexpr std::size_t kChunk = 1 << 14;
 constexpr float kSlack = 0.01f;   ///< rad: photons' normals are kept to 1e-3 per component
 
 Vec3 decode(std::uint32_t u, std::uint32_t v, std::uint32_t steps) {
@@ -49,13 +52,16 @@ FacingGrid::FacingGrid(const PhotonIndex& photons, float max_radius) {
   bin_sine_ = std::sin(widest + kSlack);
   bin_cosine_ = std::cos(widest + kSlack);
 
-  for (std::size_t i = 0; i < photons.size(); ++i) {
-    const Vec3 at = (photons.position(i) - lower_) * inverse_cell_;
-    const std::size_t place =
-        (std::size_t(at.z) * size_[1] + std::size_t(at.y)) * size_[0] + std::size_t(at.x);
-    const std::uint32_t bin = bin_of(photons.normal(i));
-    cells_[place][bin / 64] |= std::uint64_t(1) << bin % 64;
-  }
+  parallel_chunks(photons.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec3 at = (photons.position(i) - lower_) * inverse_cell_;
+      const std::size_t place = (std::size_t(at.z) * size_[1] + std::size_t(at.y)) * size_[0] + std::size_t(at.x);
+      const std::uint32_t bin = bin_of(photons.normal(i));
+      const std::uint64_t bit = std::uint64_t(1) << bin % 64;
+      const std::atomic_ref<std::uint64_t> word(cells_[place][bin / 64]);   // bits have no order
+      if (!(word.load(std::memory_order_relaxed) & bit)) word.fetch_or(bit, std::memory_order_relaxed);
+    }
+  });
   spread(1, size_[0]);
   spread(size_[0], size_[1]);
   spread(size_[0] * size_[1], size_[2]);

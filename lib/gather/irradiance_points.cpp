@@ -85,18 +85,6 @@ Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoi
   return Rgb(sum / double(samples));
 }
 
-std::vector<formats::Photon> of_kind(std::span<const formats::Photon> photons, formats::PathKind kind,
-                                     Vec3d shift) {
-  std::vector<formats::Photon> chosen;
-  for (const formats::Photon& photon : photons) {
-    if (photon.kind != kind) continue;
-    chosen.push_back(photon);
-    auto& p = chosen.back().position;
-    p = {float(double(p[0]) + shift.x), float(double(p[1]) + shift.y), float(double(p[2]) + shift.z)};
-  }
-  return chosen;
-}
-
 }  // namespace
 
 float point_spacing(const SceneFrame& frame, const PointOptions& options) {
@@ -119,8 +107,8 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
                      Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points) {
   DensityOptions density{options.neighbours, options.max_radius, options.area_probes};
   if (!(density.max_radius > 0)) density.max_radius = 0.05f * tracer.frame().bounds.diagonal();
-  const PointDensity caustic(tracer, of_kind(photons, formats::PathKind::caustic, photon_shift), density);
-  const PointDensity indirect(tracer, of_kind(photons, formats::PathKind::indirect, photon_shift), density);
+  const PointDensity caustic(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);
+  const PointDensity indirect(tracer, photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
   const float offset = Reach(tracer).offset();
 
   // Neighbours in space one after the other: look-ups and rays find their data in cache.

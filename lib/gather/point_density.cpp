@@ -44,12 +44,12 @@ bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
   return free(start, corner) && free(corner, end);
 }
 
-PointDensity::PointDensity(const Tracer& tracer, std::vector<formats::Photon> photons,
-                           const DensityOptions& options)
+PointDensity::PointDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const DensityOptions& options,
+                           std::uint8_t kinds, Vec3d shift)
     : tracer_(tracer),
       options_(options),
       reach_(tracer),
-      index_(photons),
+      index_(photons, kinds, shift),
       facing_(index_, options.max_radius) {
   for (const Material& material : tracer.frame().materials) stores_.push_back(may_have_lambert(material));
 }

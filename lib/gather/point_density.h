@@ -1,6 +1,8 @@
 // lib/gather/point_density.h -- irradiance from photons where walls, edges and steps cut the disc.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lib/core/random.h"
@@ -50,7 +52,12 @@ struct DensityOptions {
 /// corners (prototype.md 7).
 class PointDensity {
  public:
-  PointDensity(const Tracer& tracer, std::vector<formats::Photon> photons, const DensityOptions& options);
+  /// Of the photons of these kinds (kind_bit), moved by `shift` [m] into the scene's space.
+  PointDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const DensityOptions& options,
+               std::uint8_t kinds = kAllKinds, Vec3d shift = {});
+
+  /// No photon is of these kinds.
+  bool empty() const { return index_.size() == 0; }
 
   /// Irradiance [W/m^2], >= 0; `radius` receives the half-axis of the ellipsoid, m, 0 if no photon is near.
   Rgb estimate(const IrradiancePoint& point, const PathRandom& random, float& radius) const;

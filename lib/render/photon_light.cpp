@@ -1,24 +1,11 @@
 #include "lib/render/photon_light.h"
 
 #include <bit>
-#include <vector>
 
 namespace tempolux {
 namespace {
 
 constexpr int kAreaProbes = 8;   ///< few: a pixel takes the mean of as many estimates
-
-std::vector<formats::Photon> of_kind(std::span<const formats::Photon> photons, formats::PathKind kind, Vec3d shift) {
-  std::vector<formats::Photon> chosen;
-  for (const formats::Photon& photon : photons) {
-    if (photon.kind != kind) continue;
-    chosen.push_back(photon);
-    auto& p = chosen.back().position;
-    if (!(shift == Vec3d{}))
-      p = {float(double(p[0]) + shift.x), float(double(p[1]) + shift.y), float(double(p[2]) + shift.z)};
-  }
-  return chosen;
-}
 
 }  // namespace
 
@@ -26,12 +13,11 @@ PhotonLight::PhotonLight(const Tracer& tracer, std::span<const formats::Photon> 
                          const PhotonLightOptions& options) {
   options_.neighbours = options.neighbours;
   options_.max_radius = options.max_radius > 0 ? options.max_radius : 0.05f * tracer.frame().bounds.diagonal();
-  if (!options.caustic_only) indirect_ = PhotonIndex(of_kind(photons, formats::PathKind::indirect, photon_shift));
-  std::vector<formats::Photon> caustic = of_kind(photons, formats::PathKind::caustic, photon_shift);
-  if (caustic.empty()) return;
+  if (!options.caustic_only) indirect_ = PhotonIndex(photons, kind_bit(formats::PathKind::indirect), photon_shift);
   const float radius = options.caustic_radius > 0 ? options.caustic_radius : tracer.frame().bounds.diagonal() / 60;
   const DensityOptions density{.neighbours = options.caustic_neighbours, .max_radius = radius, .area_probes = kAreaProbes};
-  caustic_ = std::make_unique<PointDensity>(tracer, std::move(caustic), density);
+  caustic_ = std::make_unique<PointDensity>(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);
+  if (caustic_->empty()) caustic_.reset();
 }
 
 /// Its random numbers are drawn for the place: the same for any order of look-ups, others in the next sample.

@@ -210,6 +210,34 @@ TEST(PhotonIndex, KeepsEveryPhotonOnceWithItsData) {
   }
 }
 
+// 40000 photons are several chunks of the parallel loops; a quarter is of each kind.
+TEST(PhotonIndex, OfSomeKindsMovedIsThatOfThesePhotonsAlone) {
+  const std::vector<Photon> photons = photons_of(Shape::cube, 40000);
+  const Vec3d shift{10, -20, 0.5};
+  std::vector<Photon> chosen;
+  std::vector<std::uint32_t> sources;
+  for (std::uint32_t i = 0; i < photons.size(); ++i) {
+    if (photons[i].kind != PathKind::caustic && photons[i].kind != PathKind::volume) continue;
+    const auto& p = photons[i].position;
+    chosen.push_back(photons[i]);
+    chosen.back().position = {float(p[0] + shift.x), float(p[1] + shift.y), float(p[2] + shift.z)};
+    sources.push_back(i);
+  }
+  const PhotonIndex expected(chosen);
+  const PhotonIndex index(photons, kind_bit(PathKind::caustic) | kind_bit(PathKind::volume), shift);
+  ASSERT_EQ(index.size(), 20000u);
+  ASSERT_EQ(expected.size(), index.size());
+  EXPECT_EQ(index.resolution(), expected.resolution());
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    ASSERT_EQ(index.position(i), expected.position(i));
+    ASSERT_EQ(index.source(i), sources[expected.source(i)]);
+    ASSERT_EQ(index.flux(i), expected.flux(i));
+    ASSERT_EQ(index.normal(i), expected.normal(i));
+    ASSERT_EQ(index.kind(i), expected.kind(i));
+    ASSERT_EQ(index.object(i), expected.object(i));
+  }
+}
+
 TEST(PhotonIndex, IsTheSameForAnyNumberOfThreads) {
   const std::vector<Photon> photons = photons_of(Shape::lattice, 40000);
   const PhotonIndex reference(photons);
