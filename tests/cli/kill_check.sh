@@ -6,8 +6,8 @@ command -v tool-probe > /dev/null && { kill_nine.sh 40 tool-probe s.glb -o a.out
 killed() { shift; kill_nine.sh "$rounds" "$@" || failed=1; }
 each_tool killed
 
-# A disk of one page, which no tool's output fits; larger ones, full in the middle of a file.
-filled() { shift; full_disk.sh 4 "$@" || failed=1; }
+# A disk of one page (of 1 KiB where none can be mounted), which no tool's output fits; larger ones, full in the middle of a file.
+filled() { shift; full_disk.sh 1 "$@" || failed=1; }
 each_tool filled
 full_disk.sh 1024 photon-trace "$mirror" --photons 100k -o a.photons || failed=1
 full_disk.sh 256 tempolux-info "$in/p.photons" --export csv -o a.csv || failed=1
