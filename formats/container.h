@@ -22,7 +22,7 @@ namespace tempolux::formats {
 struct Format {
   std::string_view magic;       ///< 8 bytes
   std::string_view name;        ///< ".photons"
-  std::string_view written_by;  ///< the tools, for a remedy: "photon-trace or photonmap-split"
+  std::string_view written_by;  ///< the tools, for a remedy: "photon-trace"
   std::uint16_t major = 1, minor = 0;
 };
 

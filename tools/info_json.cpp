@@ -51,6 +51,14 @@ void check_stats(const std::string& path, const Facts& document) {
   if (!document.value("tool", Facts()).is_string()) bad(path, "tool: is no text");
 }
 
+/// What error-report needs of a comparison.
+void check_comparison(const std::string& path, const Facts& document) {
+  const Facts total = document.value("total", Facts());
+  if (!total.is_object()) bad(path, "total: is missing, or no object");
+  for (const char* key : {"pixels", "mse"})
+    if (!total.value(key, Facts()).is_number()) bad(path, std::string("total: ") + key + ": is no number");
+}
+
 Facts load(const std::string& path) {
   Facts document = parse(path);
   const std::string schema = schema_of(document);
@@ -60,6 +68,7 @@ Facts load(const std::string& path) {
   if (text != "1" && !text.starts_with("1."))
     bad(path, "version " + text + " is not known; use a newer tempolux");
   if (schema == "tempolux.stats") check_stats(path, document);
+  if (schema == "tempolux.comparison") check_comparison(path, document);
   return document;
 }
 

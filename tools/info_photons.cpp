@@ -83,15 +83,24 @@ void append_vertex(std::string& to, const std::array<double, 3>& position, const
   put(point_color(photon.flux, white));
 }
 
-void append_row(std::string& to, const std::array<double, 3>& position, const Photon& photon) {
+/// A photon of a block, with the columns that the file has.
+void append_row(std::string& to, const std::array<double, 3>& position, const PhotonBlock& block, std::size_t i,
+                std::uint32_t columns) {
+  const Photon& photon = block.photons[i];
   const auto normal = decode_normal(photon.normal);
   char text[400];
   const int length =
-      std::snprintf(text, sizeof text, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6g,%.6g,%.6g,%u,%s,%u\n", position[0],
+      std::snprintf(text, sizeof text, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6g,%.6g,%.6g,%u,%s,%u", position[0],
                     position[1], position[2], double(photon.flux[0]), double(photon.flux[1]),
                     double(photon.flux[2]), double(normal[0]), double(normal[1]), double(normal[2]),
                     unsigned(photon.object), kKindNames[std::size_t(photon.kind)], unsigned(photon.bounce));
   to.append(text, std::size_t(length));
+  const auto add = [&](double value) { to.append(text, std::size_t(std::snprintf(text, sizeof text, ",%.6g", value))); };
+  if (columns & column_direction)
+    for (const float w : decode_normal(block.directions[i])) add(double(w));
+  if (columns & column_albedo)
+    for (std::size_t c = 0; c < 3; ++c) add(block.albedos[i][c] / 255.0);
+  to += '\n';
 }
 
 }  // namespace
@@ -155,7 +164,7 @@ Facts photon_difference(const std::string& a, const std::string& b) {
 void export_photons(const std::string& path, const std::string& format, Output& output) {
   const bool ply = format == "ply";
   double white = 0;
-  std::string text = "x_m,y_m,z_m,flux_r_W,flux_g_W,flux_b_W,nx,ny,nz,object,kind,bounce\n";
+  std::string text;
   if (ply) {  // its header says the count and colours need the brightest photon: the file is read twice
     if (path == "-") throw InputError("-: PLY reads its input twice; save the stream to a file first");
     PhotonReader first(path, {.digest = false});
@@ -165,15 +174,21 @@ void export_photons(const std::string& path, const std::string& format, Output& 
   }
   PhotonReader reader(path, {.digest = false});
   const std::array<double, 3> origin = reader.header().origin;
+  const std::uint32_t columns = reader.header().columns;
+  if (!ply)
+    text = std::string("x_m,y_m,z_m,flux_r_W,flux_g_W,flux_b_W,nx,ny,nz,object,kind,bounce") +
+           (columns & column_direction ? ",wi_x,wi_y,wi_z" : "") + (columns & column_albedo ? ",albedo_r,albedo_g,albedo_b" : "") +
+           "\n";
   PhotonBlock block;
   while (reader.read_block(block)) {
-    for (const Photon& photon : block.photons) {
+    for (std::size_t i = 0; i < block.photons.size(); ++i) {
+      const Photon& photon = block.photons[i];
       std::array<double, 3> position = origin;
       for (std::size_t c = 0; c < 3; ++c) position[c] += double(photon.position[c]);
       if (ply)
         append_vertex(text, position, photon, white);
       else
-        append_row(text, position, photon);
+        append_row(text, position, block, i, columns);
     }
     output.write(text.data(), text.size());
     text.clear();

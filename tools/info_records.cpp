@@ -193,13 +193,28 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
   const IrradcacheFile file = load_irradcache(path);
   double white = 0;
   for (const IrradianceCacheRecord& record : file.records) white = std::max(white, largest(record.irradiance));
-  PointTable table(format, output, file.records.size(), "irradiance records; irradiance in W/m^2, positions in m",
-                   {{"irradiance", "W_m2", 3}, {"radius", "m", 1}, {"radius_unclamped", "m", 1}});
+  std::vector<PointTable::Column> columns{{"irradiance", "W_m2", 3}, {"radius", "m", 1}, {"radius_unclamped", "m", 1}};
+  const bool csv = format == "csv", influence = csv && file.header.columns & column_influence,
+             update = csv && file.header.columns & column_update;
+  if (csv)
+    for (const auto& [gradient, unit] : {std::pair{"rotational", "W_m2"}, {"translational", "W_m3"}})
+      for (const char* channel : {"_r", "_g", "_b"})
+        for (const char* axis : {"_x", "_y", "_z"}) columns.push_back({std::string(gradient) + channel + axis, unit, 1});
+  if (influence) columns.push_back({"influence", "W_m2", 1});
+  if (update) columns.push_back({"update", "W_m2", 3});
+  PointTable table(format, output, file.records.size(), "irradiance records; irradiance in W/m^2, positions in m", columns);
   for (const IrradianceCacheRecord& record : file.records) {
     start_row(table, file.header.origin, record, record.normal);
     for (const float e : record.irradiance) table.add(double(e));
     table.add(double(record.radius));
     table.add(double(record.radius_unclamped));
+    if (csv)
+      for (const auto* gradients : {&record.rotational, &record.translational})
+        for (const auto& channel : *gradients)
+          for (const float g : channel) table.add(double(g));
+    if (influence) table.add(double(record.influence));
+    if (update)
+      for (const float e : record.update) table.add(double(e));
     add_colour(table, record.irradiance, white);
     table.end_row(record.object, std::uint8_t(record.set));
   }

@@ -117,7 +117,7 @@ int main(int argc, char** argv) {
                    argc, argv);
   Request request;
   CLI::App& app = tool.app();
-  app.add_option("files", request.files, "files; - is a .photons stream on standard input")
+  app.add_option("files", request.files, "files; - is one of ours on standard input: .photons, .irradpoints or .irradcache")
       ->type_name("FILE")
       ->required();
   CLI::Option* check =
