@@ -31,13 +31,18 @@ formats::SurfaceSet set_of(const std::vector<bool>& moves, std::uint32_t object)
   return object < moves.size() && moves[object] ? formats::SurfaceSet::dynamic_set : formats::SurfaceSet::static_set;
 }
 
+template <class In, class Convert>
+auto converted(std::span<const In> values, Convert convert) {
+  std::vector<decltype(convert(values[0]))> out;
+  out.reserve(values.size());
+  for (const In& value : values) out.push_back(convert(value));
+  return out;
+}
+
 }  // namespace
 
 std::vector<formats::IrradiancePointRecord> to_file(std::span<const IrradiancePoint> points, const SceneFrame& frame) {
-  const std::vector<bool> moves = moving_objects(frame);
-  std::vector<formats::IrradiancePointRecord> records;
-  records.reserve(points.size());
-  for (const IrradiancePoint& p : points) {
+  return converted(points, [moves = moving_objects(frame)](const IrradiancePoint& p) {
     formats::IrradiancePointRecord r;
     r.position = array_of(p.position);
     r.normal = formats::encode_normal(array_of(p.normal));
@@ -47,15 +52,12 @@ std::vector<formats::IrradiancePointRecord> to_file(std::span<const IrradiancePo
     r.direct = array_of(p.direct);
     r.caustic = array_of(p.caustic);
     r.indirect = array_of(p.indirect);
-    records.push_back(r);
-  }
-  return records;
+    return r;
+  });
 }
 
 std::vector<IrradiancePoint> from_file(std::span<const formats::IrradiancePointRecord> records, Vec3d shift) {
-  std::vector<IrradiancePoint> points;
-  points.reserve(records.size());
-  for (const auto& r : records) {
+  return converted(records, [shift](const formats::IrradiancePointRecord& r) {
     IrradiancePoint p;
     p.position = moved(r.position, shift);
     p.normal = vec_of(formats::decode_normal(r.normal));
@@ -64,16 +66,12 @@ std::vector<IrradiancePoint> from_file(std::span<const formats::IrradiancePointR
     p.direct = rgb_of(r.direct);
     p.caustic = rgb_of(r.caustic);
     p.indirect = rgb_of(r.indirect);
-    points.push_back(p);
-  }
-  return points;
+    return p;
+  });
 }
 
 std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRecord> records, const SceneFrame& frame) {
-  const std::vector<bool> moves = moving_objects(frame);
-  std::vector<formats::IrradianceCacheRecord> out;
-  out.reserve(records.size());
-  for (const IrradianceRecord& record : records) {
+  return converted(records, [moves = moving_objects(frame)](const IrradianceRecord& record) {
     formats::IrradianceCacheRecord r;
     r.position = array_of(record.position);
     r.normal = array_of(record.normal);
@@ -86,15 +84,12 @@ std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRe
     }
     r.radius = record.radius;
     r.radius_unclamped = record.radius_unclamped;
-    out.push_back(r);
-  }
-  return out;
+    return r;
+  });
 }
 
 std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCacheRecord> records, Vec3d shift) {
-  std::vector<IrradianceRecord> out;
-  out.reserve(records.size());
-  for (const auto& r : records) {
+  return converted(records, [shift](const formats::IrradianceCacheRecord& r) {
     IrradianceRecord record;
     record.position = moved(r.position, shift);
     record.normal = vec_of(r.normal);
@@ -106,9 +101,8 @@ std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCache
     }
     record.radius = r.radius;
     record.radius_unclamped = r.radius_unclamped;
-    out.push_back(record);
-  }
-  return out;
+    return record;
+  });
 }
 
 }  // namespace tempolux
