@@ -161,10 +161,10 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
       ++counts.points_read;
       const Rgb rho = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1);
       // A random threshold between half and one and a half times the near distance: no seam where it begins.
-      const float near = options_.near_factor * point->radius;
-      const bool is_near = depth == 0 && met.distance < 1.5f * near &&
-                           met.distance < near * (0.5f + random.get1(0, Purpose::gather));
-      result = rho * kInvPi * (is_near ? near_irradiance(met, *point, random, key, depth, counts) : point->total());
+      const float near = options_.near_factor * point->radius, threshold = 0.5f + random.get1(0, Purpose::gather);
+      const bool is_near = depth == 0 && met.distance < near * threshold;
+      const bool nearer = met.distance < points_.spacing() * threshold;
+      result = rho * kInvPi * (is_near ? near_irradiance(met, *point, nearer, random, key, depth, counts) : point->total());
     }
   }
   if (!specular || depth >= kDeepestSpecular) return result;
@@ -197,20 +197,23 @@ Rgb FinalGather::reflected_beyond(const SurfacePoint& from, Vec3 travel, float d
   return inside ? radiance * transmittance(*inside, length(there.position - from.position)) : radiance;
 }
 
-/// Irradiance at a hit too near for its point to be read: caustic light is the point's all the same, direct light
-/// by light sampling, the rest by one ray more.
-Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, const PathRandom& random,
+/// Irradiance at a hit too near for its point to be read: caustic light is the point's all the same; direct light too,
+/// which is known to the spacing of the points instead of an estimate's radius, or if the hit is `nearer` than that by
+/// light sampling; the rest by one ray more.
+Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, bool nearer, const PathRandom& random,
                                  std::uint64_t key, int depth, GatherCounts& counts) const {
   ++counts.near_hits;
   const Side side(met.hit, met.geometric, met.wo);
-  Rgb irradiance = point.caustic;
+  Rgb irradiance = nearer ? points_.point(point).caustic : point.first;
   LightSample light;
-  if (!lights_.empty() && lights_.sample(met.hit.position, side.shading, random.get1(1, Purpose::light_choice),
+  if (nearer && !lights_.empty() && lights_.sample(met.hit.position, side.shading, random.get1(1, Purpose::light_choice),
                                          random.get2(1, Purpose::light_point), light)) {
     const float cosine = dot(light.wi, side.shading);
-    if (cosine > 0 && dot(light.wi, met.geometric) > 0 &&
-        !tracer_.occluded(spawn_shadow_ray(met.hit, light.position, light.position_offset)))
-      irradiance += light.radiance * cosine;
+    if (cosine > 0 && dot(light.wi, met.geometric) > 0) {
+      ++counts.shadow_rays;
+      if (!tracer_.occluded(spawn_shadow_ray(met.hit, light.position, light.position_offset)))
+        irradiance += light.radiance * cosine;
+    }
   }
   const Vec3 travel = side.frame.to_world(sample_hemisphere_cos(random.get2(1, Purpose::scatter)));
   if (dot(travel, met.geometric) > 0)

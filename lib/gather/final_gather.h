@@ -25,9 +25,9 @@ struct GatherOptions {
 };
 
 struct GatherCounts {
-  std::uint64_t rays = 0, near_hits = 0, points_read = 0, unanswered = 0;
+  std::uint64_t rays = 0, near_hits = 0, shadow_rays = 0, points_read = 0, unanswered = 0;
   GatherCounts& operator+=(const GatherCounts& o) {
-    rays += o.rays; near_hits += o.near_hits; points_read += o.points_read; unanswered += o.unanswered;
+    rays += o.rays; near_hits += o.near_hits; shadow_rays += o.shadow_rays; points_read += o.points_read; unanswered += o.unanswered;
     return *this;
   }
 };
@@ -59,7 +59,7 @@ class FinalGather {
   Rgb reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts) const;
   Rgb reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key, int depth,
                        GatherCounts& counts, const MaterialValues* inside = nullptr) const;
-  Rgb near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key,
+  Rgb near_irradiance(const Met& met, const PointLight& point, bool nearer, const PathRandom& random, std::uint64_t key,
                       int depth, GatherCounts& counts) const;
 
   const Tracer& tracer_;

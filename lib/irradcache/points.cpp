@@ -86,7 +86,7 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
   }
   index_ = PhotonIndex(as_photons);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    lights_.push_back({points[i].total(), points[i].radius, points[i].caustic, std::uint32_t(i)});
+    lights_.push_back({points[i].total(), points[i].radius, points[i].direct + points[i].caustic, std::uint32_t(i)});
     objects_ = std::max(objects_, points[i].object + 2);  // one more for all objects without points
   }
   value_bits_ = int(std::bit_width(2 * (points.size() + 1)));  // a point + 1 or a crowd + 1, and kSeparated
@@ -212,19 +212,26 @@ std::uint32_t PointLookup::reachable_in(const PointCrowd& crowd, const Question&
   return 0;
 }
 
-/// The same without a crowd, or where none of it can be reached; in the end as search().
-std::uint32_t PointLookup::search_reachable(const Question& q) const {
+/// The same without a crowd (nullptr), or where none of it can be reached; in the end as search().
+std::uint32_t PointLookup::search_reachable(const Question& q, const PointCrowd* tried) const {
   thread_local NeighbourList found;
   const PhotonQuery query = facing(q.position, q.normal);
+  const auto was_tried = [tried](std::uint32_t point) {
+    return tried && std::find(tried->point, tried->point + tried->count, point) != tried->point + tried->count;
+  };
+  std::size_t done = 0;   // of the nearest: looked at in the round before
   for (int candidates : {kCandidates, kMoreCandidates}) {
     index_.find_nearest(query, candidates, found);
     found.sort_by_distance();
     for (bool same : {true, false})
-      for (std::uint32_t i : found.photons()) {
-        const IrradiancePoint& point = points_[index_.source(i)];
-        if ((point.object == q.object) == same && reach_(q.position, q.normal, point.position, point.normal))
-          return index_.source(i) + 1;
+      for (std::uint32_t i : found.photons().subspan(std::min(done, found.count()))) {
+        const std::uint32_t there = index_.source(i);
+        const IrradiancePoint& point = points_[there];
+        if ((point.object == q.object) == same && !was_tried(there) &&
+            reach_(q.position, q.normal, point.position, point.normal))
+          return there + 1;
       }
+    done = found.count();
   }
   return search(q.position, q.normal, q.object);
 }
@@ -244,8 +251,9 @@ PointLookup::Question PointLookup::ask(Vec3 position, Vec3 normal, std::uint32_t
 const PointLight* PointLookup::read(const Question& q, Answer answer) const {
   std::uint32_t found = answer.value / 2;
   if (answer.value & kSeparated) {
-    found = found ? reachable_in(crowds_[found - 1], q) : 0;
-    if (!found) found = search_reachable(q);
+    const PointCrowd* crowd = found ? &crowds_[found - 1] : nullptr;
+    found = crowd ? reachable_in(*crowd, q) : 0;
+    if (!found) found = search_reachable(q, crowd);
   }
   return found ? &lights_[found - 1] : nullptr;
 }

@@ -28,9 +28,9 @@ struct IrradiancePoint {
 
 /// What a gather ray reads of a point: half a cache line instead of two.
 struct alignas(32) PointLight {
-  Rgb all{0.0f};     ///< W/m^2, of all kinds
-  float radius = 0;  ///< as IrradiancePoint's
-  Rgb caustic{0.0f};
+  Rgb all{0.0f};            ///< W/m^2, of all kinds
+  float radius = 0;         ///< as IrradiancePoint's
+  Rgb first{0.0f};          ///< W/m^2, that no Lambert lobe has scattered before: direct and caustic
   std::uint32_t point = 0;  ///< index of the IrradiancePoint
   Rgb total() const { return all; }
 };
@@ -77,11 +77,13 @@ class PointLookup {
     return read(question, answer(question));
   }
   std::size_t size() const { return points_.size(); }
+  float spacing() const { return spacing_; }
+  const IrradiancePoint& point(const PointLight& read) const { return points_[read.point]; }
 
  private:
   std::uint32_t search(Vec3 position, Vec3 normal, std::uint32_t object) const;
   std::uint32_t search_cell(Vec3 middle, std::uint32_t bin, std::uint32_t object) const;
-  std::uint32_t search_reachable(const Question& question) const;
+  std::uint32_t search_reachable(const Question& question, const struct PointCrowd* tried) const;
   std::uint32_t remember_crowd(Vec3 middle, Vec3 normal, std::uint32_t object) const;
   std::uint32_t reachable_in(const struct PointCrowd& crowd, const Question& question) const;
   bool separated(std::uint32_t point) const;

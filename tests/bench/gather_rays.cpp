@@ -1,7 +1,7 @@
 // Gather rays with their look-ups against bare rtcIntersect1: how much of the time of final gathering is Embree's.
 //
 // The bare side traces the same rays from the records; and for each hit that FinalGather finds too near to read a point,
-// as it does, one more ray from there and one shadow ray (rtcOccluded1). "bare_over_gather" compares the whole,
+// as it does, one more ray from there and, as often as it traces one, a shadow ray (rtcOccluded1). "bare_over_gather" compares the whole,
 // "first_over_gather" leaves those further rays out of the bare side alone. Rays that ask whether a point can be
 // reached count as look-up. The sides alternate; medians. JSON on stdout.
 //
@@ -129,11 +129,13 @@ double time_bare_shadow(RTCScene tree, const std::vector<Ray>& rays, double& dis
   return cpu_seconds() - start;
 }
 
-/// What follows at near hits: cosine rays and shadow rays from the hits of every n-th ray.
+/// What follows at near hits: cosine rays from the hits of every n-th ray, and shadow rays from some of these. Shares are
+/// those of all rays.
 struct FurtherRays {
   std::vector<Ray> cosine, shadow;
 
-  FurtherRays(const Tracer& tracer, const Lights& lights, const std::vector<Ray>& rays, double share) {
+  FurtherRays(const Tracer& tracer, const Lights& lights, const std::vector<Ray>& rays, double share,
+              double shadow_share) {
     for (double next = 0; share > 0 && next < double(rays.size()); next += 1 / share) {
       const std::size_t i = std::size_t(next);
       Hit hit;
@@ -144,6 +146,7 @@ struct FurtherRays {
       const PathRandom random(2, i);
       cosine.push_back(spawn_ray(point, Frame(normal).to_world(sample_hemisphere_cos(random.get2(0, Purpose::test)))));
       LightSample light;
+      if (double(shadow.size()) >= shadow_share * double(i + 1)) continue;
       if (lights.sample(point.position, normal, random.get2(1, Purpose::test), light) && dot(light.wi, normal) > 0)
         shadow.push_back(spawn_shadow_ray(point, light.position, light.position_offset));
     }
@@ -200,7 +203,8 @@ void run(const Options& options) {
   GatherCounts counts;
   time_gather(FinalGather(tracer, lights, first_lookup, gather_options), rays, counts, sum);
   const double per_ray = double(counts.rays) / double(rays.size());
-  const FurtherRays further(tracer, lights, rays, double(counts.near_hits) / double(rays.size()));
+  const FurtherRays further(tracer, lights, rays, double(counts.near_hits) / double(rays.size()),
+                            double(counts.shadow_rays) / double(rays.size()));
   std::vector<double> bare, bare_first, with_lookup, filling, ratio, ratio_first;
   for (int repeat = 0; repeat < 5; ++repeat) {
     const PointLookup lookup(points, frame.bounds, point_spacing(frame, point_options), point_reach(tracer));
@@ -216,9 +220,10 @@ void run(const Options& options) {
   std::printf(
       "{\"rays\": %zu, \"points\": %zu, \"photons\": %zu, \"estimate_points_cpu_s\": %.4f, \"bare_cpu_s\": %.4f, "
       "\"bare_first_cpu_s\": %.4f, \"gather_cpu_s\": %.4f, \"gather_again_cpu_s\": %.4f, \"bare_over_gather\": %.3f, "
-      "\"first_over_gather\": %.3f, \"rays_per_gather_ray\": %.3f, \"mean_distance_m\": %.3f}\n",
+      "\"first_over_gather\": %.3f, \"rays_per_gather_ray\": %.3f, \"shadow_rays_per_gather_ray\": %.3f, \"mean_distance_m\": %.3f}\n",
       rays.size(), points.size(), photons.size(), estimate, median(bare), median(bare_first), median(filling),
-      median(with_lookup), median(ratio), median(ratio_first), per_ray, distance / double(5 * rays.size()));
+      median(with_lookup), median(ratio), median(ratio_first), per_ray, double(further.shadow.size()) / double(rays.size()),
+      distance / double(5 * rays.size()));
   rtcReleaseScene(tree);
   rtcReleaseDevice(device);
 }
