@@ -40,8 +40,8 @@ def noise_of_halves(bench, halves, layer):
 
 def quality_of(bench, name, settings, size):
     """relMSE, bias and bias by object of the indirect layer over the seeds."""
-    # S3 is dark: its reference needs four times the samples for relMSE to be known to a third of 5e-4.
-    halves = bench.reference_halves(name, size, bench.reference_samples // (2 if name == "S3" else 8))
+    # S3 is dark: two halves of 512 samples leave 2e-4 of doubt in relMSE, of 2048 a quarter of it (half an hour, once).
+    halves = bench.reference_halves(name, size, int(bench.reference_samples * (2 if name == "S3" else 1 / 8)))
     # What relMSE divides by: the same picture with little noise, from more photons and rays and a seed of its own.
     smooth, _ = chain.frame(bench, name, 1009, Settings(5 * settings.photons, (), ("--rays", 2000)), size)
     noise = noise_of_halves(bench, halves, "indirect")
@@ -91,7 +91,7 @@ def gather_quality(bench, _):
                    ["scene", "CPU s of a frame", "RMSE", "relMSE", "bias", "scatter of one seed's bias", "worst object"], rows,
                    None if bench.quick else met,
                    [f"Settings of Makefile.example, {SEEDS} seeds; layer indirect against path-traced halves of "
-                    f"{bench.reference_samples // 16} samples each (S3: {bench.reference_samples // 4}). relMSE is relative to a smooth frame (aqm-compare --relative-to): in the denominator the "
+                    f"{bench.reference_samples // 16} samples each (S3: {bench.reference_samples}). relMSE is relative to a smooth frame (aqm-compare --relative-to): in the denominator the "
                     "reference's noise would count."] + notes)
     found["more"] = {"title": "By object", "header": ["scene", "object", "pixels", "bias", "standard error",
                                                       "share of squared error"], "rows": more}
