@@ -9,8 +9,8 @@
 
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
-#include "lib/photon/photon_trace.h"
 #include "tests/support/closed_box.h"
+#include "tests/support/photons.h"
 
 namespace tempolux {
 namespace {
@@ -50,13 +50,7 @@ std::vector<formats::Photon> traced_photons(const Tracer& tracer, const Lights& 
   options.photon_count = count;
   options.seed = seed;
   options.store_direct = false;
-  const PhotonTracer photon_tracer(tracer, lights, options);
-  std::vector<formats::Photon> photons;
-  for (std::size_t b = 0; b < photon_tracer.batch_count(); ++b) {
-    const PhotonBatch batch = photon_tracer.trace(b);
-    photons.insert(photons.end(), batch.block.photons.begin(), batch.block.photons.end());
-  }
-  return photons;
+  return test::photons_of(PhotonTracer(tracer, lights, options));
 }
 
 struct Mean {

@@ -12,9 +12,12 @@
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "tests/lib/material/ggx_reference.h"
+#include "tests/support/materials.h"
 
 namespace tempolux {
 namespace {
+
+using test::direction;
 
 Material dielectric(Rgb base, float roughness, float specular = 1) {
   Material m;
@@ -29,10 +32,6 @@ Material metal(Rgb base, float roughness) {
   m.base_color = base;
   m.roughness = roughness;
   return m;
-}
-Vec3 direction(float cos_theta, float phi) {
-  const float s = std::sqrt(std::max(0.0f, 1 - cos_theta * cos_theta));
-  return {s * std::cos(phi), s * std::sin(phi), cos_theta};
 }
 
 /// Mean of the weights of one event over `count` samples: its albedo towards wo.

@@ -11,23 +11,13 @@
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "lib/material/bsdf.h"
+#include "tests/support/materials.h"
 
 namespace tempolux {
 namespace {
 
-Vec3 direction(float cos_theta, float phi) {
-  const float s = std::sqrt(std::max(0.0f, 1 - cos_theta * cos_theta));
-  return {s * std::cos(phi), s * std::sin(phi), cos_theta};
-}
-Material glass(float roughness, bool thin, float index = 1.5f) {
-  Material m;
-  m.metallic = 0;
-  m.roughness = roughness;
-  m.transmission = 1;
-  m.ior = index;
-  m.thin_walled = thin;
-  return m;
-}
+using test::direction;
+using test::glass;
 
 class RoughGlassTest : public testing::TestWithParam<std::tuple<float, bool, bool>> {   // roughness, thin, front
  protected:

@@ -7,9 +7,9 @@
 
 #include "lib/core/sobol.h"
 #include "lib/gather/irradiance_points.h"
-#include "lib/photon/photon_trace.h"
 #include "lib/render/path_tracer.h"
 #include "tests/support/closed_box.h"
+#include "tests/support/photons.h"
 
 namespace tempolux {
 namespace {
@@ -29,11 +29,10 @@ Traced trace(const Tracer& tracer, const Lights& lights, std::uint64_t count) {
   options.store_direct = false;
   const PhotonTracer photons(tracer, lights, options);
   Traced traced;
-  for (std::size_t b = 0; b < photons.batch_count(); ++b)
-    for (const formats::Photon& photon : photons.trace(b).block.photons) {
-      traced.photons.push_back(photon);
-      traced.stored_indirect += double(photon.flux[1]);
-    }
+  for (const formats::Photon& photon : test::photons_of(photons)) {
+    traced.photons.push_back(photon);
+    traced.stored_indirect += double(photon.flux[1]);
+  }
   return traced;
 }
 

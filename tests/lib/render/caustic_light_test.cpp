@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "lib/core/halton.h"
-#include "lib/photon/photon_trace.h"
 #include "lib/render/photon_light.h"
+#include "tests/support/materials.h"
+#include "tests/support/photons.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
@@ -14,26 +15,12 @@ namespace {
 using test::HandMadeScene;
 using test::matte;
 
-Material pane() {
-  Material m;
-  m.metallic = 0;
-  m.roughness = 0;
-  m.transmission = 1;
-  m.ior = 1.5f;
-  m.thin_walled = true;
-  return m;
-}
+Material pane() { return test::glass(0, true); }
 std::vector<formats::Photon> trace(const Tracer& tracer, const Lights& lights, std::uint64_t count, std::uint64_t seed) {
   PhotonOptions options;
   options.photon_count = count;
   options.seed = seed;
-  const PhotonTracer photon_tracer(tracer, lights, options);
-  std::vector<formats::Photon> photons;
-  for (std::size_t b = 0; b < photon_tracer.batch_count(); ++b) {
-    const PhotonBatch batch = photon_tracer.trace(b);
-    photons.insert(photons.end(), batch.block.photons.begin(), batch.block.photons.end());
-  }
-  return photons;
+  return test::photons_of(PhotonTracer(tracer, lights, options));
 }
 /// Of a thin wall: (1 - F) / (1 + F), both faces and all reflections between them.
 double pane_transmittance(double mu) {

@@ -7,9 +7,9 @@
 
 #include "formats/error.h"
 #include "lib/core/parallel.h"
-#include "lib/photon/photon_trace.h"
 #include "lib/render/photon_light.h"
 #include "lib/scene/gltf_load.h"
+#include "tests/support/photons.h"
 
 namespace tempolux {
 namespace {
@@ -189,11 +189,7 @@ TEST(FrameRenderer, PhotonLayersAgreeWithPathLayers) {
   PhotonOptions photon_options;
   photon_options.photon_count = 300000;
   const PhotonTracer tracer(c.tracer, c.lights, photon_options);
-  std::vector<formats::Photon> photons;
-  for (std::size_t b = 0; b < tracer.batch_count(); ++b) {
-    const PhotonBatch batch = tracer.trace(b);
-    photons.insert(photons.end(), batch.block.photons.begin(), batch.block.photons.end());
-  }
+  const std::vector<formats::Photon> photons = test::photons_of(tracer);
   const PhotonLight light(c.tracer, photons, {}, {});
   options.diffuse_light = &light;
   const RenderedFrame direct = render_frame(c.render_scene(), c.view, options);

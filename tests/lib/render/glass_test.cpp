@@ -6,23 +6,16 @@
 
 #include "lib/material/bsdf.h"
 #include "lib/render/path_tracer.h"
+#include "tests/support/materials.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
 namespace {
 
+using test::glass;
 using test::HandMadeScene;
 using test::matte;
 
-Material glass(float roughness, float index = 1.5f) {
-  Material m;
-  m.metallic = 0;
-  m.roughness = roughness;
-  m.transmission = 1;
-  m.ior = index;
-  m.thin_walled = false;
-  return m;
-}
 /// A box, fronts outwards.
 void add_box(HandMadeScene& scene, Vec3 l, Vec3 u, const Material& m) {
   scene.add({{l.x, l.y, l.z}, {u.x, l.y, l.z}, {u.x, u.y, l.z}, {l.x, u.y, l.z}, {l.x, l.y, u.z}, {u.x, l.y, u.z}, {u.x, u.y, u.z}, {l.x, u.y, u.z}},

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "lib/photon/photon_trace.h"
 #include "lib/render/path_tracer.h"
+#include "tests/support/photons.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
@@ -27,9 +27,8 @@ Light by_photons(const Tracer& tracer, const Lights& lights, double wall_area, d
   options.store_direct = false;
   const PhotonTracer photons(tracer, lights, options);
   Light light;
-  for (std::size_t b = 0; b < photons.batch_count(); ++b)
-    for (const formats::Photon& photon : photons.trace(b).block.photons)
-      if (photon.object <= kBall) (photon.object == kWalls ? light.walls : light.ball) += double(photon.flux[1]);
+  for (const formats::Photon& photon : test::photons_of(photons))
+    if (photon.object <= kBall) (photon.object == kWalls ? light.walls : light.ball) += double(photon.flux[1]);
   return {light.walls / wall_area, light.ball / ball_area};
 }
 

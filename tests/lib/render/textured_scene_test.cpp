@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "lib/light/lights.h"
-#include "lib/photon/photon_trace.h"
 #include "lib/render/path_tracer.h"
 #include "lib/scene/texture_lookup.h"
 #include "tests/lib/light/light_scene.h"
 #include "tests/support/png_bytes.h"
+#include "tests/support/photons.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
@@ -199,9 +199,8 @@ TEST(Alpha, PhotonsOnAVeilStandForAllThatArrive) {
   options.photon_count = 200'000;
   const PhotonTracer photons(tracer, lights, options);
   double sum = 0;
-  for (std::size_t b = 0; b < photons.batch_count(); ++b)
-    for (const formats::Photon& photon : photons.trace(b).block.photons)
-      if (photon.kind == formats::PathKind::direct) sum += double(photon.flux[0]);
+  for (const formats::Photon& photon : test::photons_of(photons))
+    if (photon.kind == formats::PathKind::direct) sum += double(photon.flux[0]);
   // 33 333 photons of which a quarter is stored: sigma = sqrt(3 / 33333) = 0.95 %
   EXPECT_NEAR(sum, 4 * M_PI / 6, 4 * 0.0095 * 4 * M_PI / 6);
 }
@@ -287,11 +286,10 @@ TEST(Unlit, ShowsItselfToTheEyeAndLightsNothing) {
   PhotonOptions options;
   options.photon_count = 1000;
   const PhotonTracer photons(tracer, lights, options);
-  for (std::size_t b = 0; b < photons.batch_count(); ++b)
-    for (const formats::Photon& photon : photons.trace(b).block.photons) {
-      EXPECT_EQ(photon.object, 1);
-      EXPECT_EQ(photon.kind, formats::PathKind::direct);
-    }
+  for (const formats::Photon& photon : test::photons_of(photons)) {
+    EXPECT_EQ(photon.object, 1);
+    EXPECT_EQ(photon.kind, formats::PathKind::direct);
+  }
 }
 
 /// Inside a hollow sphere of matte walls every place sends the same light to every other: after one reflection light
@@ -320,9 +318,8 @@ TEST(TexturedReflectance, PhotonsInASphere) {
   options.photon_count = 100'000;
   const PhotonTracer photons(tracer, lights, options);
   double sum = 0;
-  for (std::size_t b = 0; b < photons.batch_count(); ++b)
-    for (const formats::Photon& photon : photons.trace(b).block.photons)
-      if (photon.kind == formats::PathKind::indirect) sum += double(photon.flux[0]);
+  for (const formats::Photon& photon : test::photons_of(photons))
+    if (photon.kind == formats::PathKind::indirect) sum += double(photon.flux[0]);
   // Path lengths are geometric with mean 1: sigma about 1.5 / sqrt(100 000) = 0.5 %
   const double expected = 4 * M_PI * kMeanReflectance / (1 - kMeanReflectance);
   EXPECT_NEAR(sum, expected, 4 * 0.005 * expected);
