@@ -10,6 +10,7 @@
 #include "lib/gather/hemisphere.h"
 #include "lib/material/bsdf.h"
 #include "lib/material/inside.h"
+#include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
 
 namespace tempolux {
@@ -69,18 +70,6 @@ class Shots {
     keys.push_back(ray_key);
     cells.push_back(cell);
   }
-};
-
-/// Normals on the lit side and the direction back along the ray in the shading normal's frame.
-struct Side {
-  Vec3 shading;
-  Frame frame;
-  Vec3 wo_local;
-  Side(const SurfacePoint& p, Vec3 geometric, Vec3 wo)
-      : shading(viewed(dot(p.normal, geometric) < 0 ? -p.normal : p.normal, geometric, wo)),
-        frame(shading),
-        wo_local(frame.to_local(wo)) {}
-  static Vec3 viewed(Vec3 n, Vec3 geometric, Vec3 wo) { return dot(n, wo) > 1e-4f ? n : geometric; }
 };
 
 }  // namespace
@@ -150,8 +139,8 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
                            GatherCounts& counts) const {
   const Bsdf& bsdf = *met.bsdf;
   const bool specular = bsdf.has_specular();
-  std::optional<Side> side;
-  if (specular) side.emplace(met.hit, met.geometric, met.wo);
+  std::optional<SeenSide> side;
+  if (specular) side.emplace(met.hit, met.wo);
   const PathRandom random(key, std::uint64_t(depth));
   Rgb result{0.0f};
   if (bsdf.has_diffuse()) {
@@ -203,16 +192,15 @@ Rgb FinalGather::reflected_beyond(const SurfacePoint& from, Vec3 travel, float d
 Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, bool nearer, const PathRandom& random,
                                  std::uint64_t key, int depth, GatherCounts& counts) const {
   ++counts.near_hits;
-  const Side side(met.hit, met.geometric, met.wo);
+  const SeenSide side(met.hit, met.wo);
   Rgb irradiance = nearer ? points_.point(point).caustic : point.first;
   LightSample light;
-  if (nearer && !lights_.empty() && lights_.sample(met.hit.position, side.shading, random.get1(1, Purpose::light_choice),
+  if (nearer && !lights_.empty() && lights_.sample(met.hit.position, side.normal, random.get1(1, Purpose::light_choice),
                                          random.get2(1, Purpose::light_point), light)) {
-    const float cosine = dot(light.wi, side.shading);
-    if (cosine > 0 && dot(light.wi, met.geometric) > 0) {
+    if (side.sees(light.wi)) {
       ++counts.shadow_rays;
       if (!tracer_.occluded(spawn_shadow_ray(met.hit, light.position, light.position_offset)))
-        irradiance += light.radiance * cosine;
+        irradiance += light.radiance * dot(light.wi, side.normal);
     }
   }
   const Vec3 travel = side.frame.to_world(sample_hemisphere_cos(random.get2(1, Purpose::scatter)));
