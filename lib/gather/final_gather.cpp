@@ -199,13 +199,15 @@ Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, bool n
                                          random.get2(1, Purpose::light_point), light)) {
     if (side.sees(light.wi)) {
       ++counts.shadow_rays;
+      const float cosine = dot(light.wi, side.normal);
       if (!tracer_.occluded(spawn_shadow_ray(met.hit, light.position, light.position_offset)))
-        irradiance += light.radiance * dot(light.wi, side.normal);
+        irradiance += light.radiance * (cosine * met.bsdf->arrival_weight(cosine));
     }
   }
-  const Vec3 travel = side.frame.to_world(sample_hemisphere_cos(random.get2(1, Purpose::scatter)));
+  const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
   if (dot(travel, met.geometric) > 0)
-    irradiance += kPi * reflected_beyond(met.hit, travel, 0, mix64(key + 1), depth + 1, counts);
+    irradiance += kPi * met.bsdf->arrival_weight(drawn.z) *
+                  reflected_beyond(met.hit, travel, 0, mix64(key + 1), depth + 1, counts);
   return irradiance;
 }
 
@@ -218,6 +220,10 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   const Vec3 geometric = dot(from.normal_geometric, normal) < 0 ? -from.normal_geometric : from.normal_geometric;
   const std::uint64_t key = key_of(from.position, normal, options_.seed);
   const float closest = std::max(4 * from.offset, 1e-30f);
+  SurfacePoint here = from;
+  std::optional<Bsdf> textured;
+  const Bsdf& bsdf = *meet(here, normal, 0, textured).bsdf;
+  const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
   const auto aim = [&](std::uint32_t cell, std::uint32_t sample) {
     const PathRandom random(key, cell);
     const Vec2 first = random.get2(0, Purpose::gather);
@@ -229,6 +235,9 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     shots.radiance.resize(shots.rays.size());
     shots.distance.resize(shots.rays.size());
     radiance(shots.rays, shots.keys, shots.radiance, shots.distance, counts);
+    if (coated)
+      for (std::size_t i = 0; i < shots.rays.size(); ++i)
+        shots.radiance[i] *= bsdf.arrival_weight(dot(shots.rays[i].direction, normal));
   };
 
   const auto inverse = [closest](float distance) { return 1 / std::max(distance, closest); };   // 0 for a miss

@@ -38,10 +38,11 @@ class FinalGather {
   FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options);
 
   /// Irradiance at `from` over the hemisphere about `normal` (unit, on the lit side), with its gradients, by about
-  /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). radius_unclamped
-  /// receives the harmonic mean distance, radius the distance across the tangent plane to the nearest of what the
-  /// outermost ring met (limit_radius makes the validity of both). Random numbers come from the position: the record
-  /// of a place does not depend on which records were made before.
+  /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). Under a coat light counts
+  /// by Bsdf::arrival_weight, as photons do: what the coat reflects more of at grazing angles does not reach the Lambert
+  /// lobe. radius_unclamped receives the harmonic mean distance, radius the distance across the tangent plane to the
+  /// nearest of what the outermost ring met (limit_radius makes the validity of both). Random numbers come from the
+  /// position: the record of a place does not depend on which records were made before.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
 
   /// Radiance arriving along rays that counts as indirect at their starts, and the distance to what each meets

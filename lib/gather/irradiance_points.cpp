@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
 #include "lib/density/morton.h"
+#include "lib/material/bsdf.h"
 #include "lib/material/surface_material.h"
 
 namespace tempolux {
@@ -62,10 +64,26 @@ void place_on(const Surface& surface, std::uint32_t rank, double area_per_point,
   }
 }
 
+/// Are there Lambert lobes under a coat that reflects? Then light counts by the angle it arrives at.
+bool any_coated(const SceneFrame& frame) {
+  return std::any_of(frame.materials.begin(), frame.materials.end(),
+                     [](const Material& m) { return may_have_lambert(m) && Bsdf(m).has_specular(); });
+}
+
+/// Scattering of the surface a point is on; nothing if it is not found or has no Lambert lobe there.
+std::optional<Bsdf> coat_at(const Tracer& tracer, const IrradiancePoint& point, float offset) {
+  Hit hit;
+  if (!tracer.intersect({point.position + point.normal * (4 * offset), -point.normal, 0, 8 * offset, true}, hit)) return {};
+  SurfacePoint there = tracer.surface_point(hit);
+  const SurfaceMaterial material(tracer.frame(), there, 0);
+  const Bsdf bsdf(material, dot(there.normal_geometric, point.normal) > 0);
+  return bsdf.has_diffuse() && bsdf.has_specular() ? std::optional(bsdf) : std::nullopt;
+}
+
 /// Direct light at a point: mean over stratified light samples of radiance cos / pdf where nothing is in
-/// between.
+/// between, times arrival_weight under a coat.
 Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset,
-                 int samples, const PathRandom& random) {
+                 int samples, const std::optional<Bsdf>& coat, const PathRandom& random) {
   SurfacePoint from;
   from.position = point.position;
   from.normal = from.normal_geometric = point.normal;
@@ -80,7 +98,7 @@ Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoi
     const float cosine = dot(light.wi, point.normal);
     if (!(cosine > 0) || tracer.occluded(spawn_shadow_ray(from, light.position, light.position_offset)))
       continue;
-    sum += Rgbd(light.radiance) * double(cosine);
+    sum += Rgbd(light.radiance) * double(coat ? cosine * coat->arrival_weight(cosine) : cosine);
   }
   return Rgb(sum / double(samples));
 }
@@ -110,6 +128,7 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
   const PointDensity caustic(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);
   const PointDensity indirect(tracer, photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
   const float offset = Reach(tracer).offset();
+  const bool coated = !lights.empty() && any_coated(tracer.frame());
 
   // Neighbours in space one after the other: look-ups and rays find their data in cache.
   std::vector<Vec3> positions;
@@ -121,7 +140,8 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
       const PathRandom random(options.seed ^ 0x706f696e74ull, order[i]);
       point.direct = lights.empty()
                          ? Rgb(0.0f)
-                         : direct_light(tracer, lights, point, offset, options.light_samples, random);
+                         : direct_light(tracer, lights, point, offset, options.light_samples,
+                                        coated ? coat_at(tracer, point, offset) : std::nullopt, random);
       float unused;
       point.caustic = caustic.estimate(point, random, unused);
       point.indirect = indirect.estimate(point, random, point.radius);

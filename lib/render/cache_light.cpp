@@ -10,7 +10,7 @@ constexpr std::uint32_t kMirrorsInARow = 16;
 
 }  // namespace
 
-DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const {
+DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool) const {
   Irradiance result;
   if (photons_) result.caustic = photons_->caustic(surface.position, geometric);
   const RecordStore::Interpolated found = records_.interpolate(surface.position, shading);

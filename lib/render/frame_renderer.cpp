@@ -61,7 +61,8 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
 }
 
 /// A pixel's first samples ask for caustic and indirect light; if they all met one surface, later samples that meet
-/// it take the mean of those answers: that light is smooth, and they are there for the direct light.
+/// it take the mean of those answers: that light is smooth, and they are there for the direct light. What is seen in a
+/// mirror or gloss may be far away on the same surface: it is always asked for.
 class PixelLight : public DiffuseLight {
  public:
   struct Memory {
@@ -71,13 +72,14 @@ class PixelLight : public DiffuseLight {
   };
   PixelLight(const DiffuseLight& light, Memory& memory, bool reuse) : light_(light), memory_(memory), reuse_(reuse) {}
 
-  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const override {
+  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const override {
+    if (!direct_view) return light_.at(surface, geometric, shading, false);
     if (reuse_) {
-      if (memory_.count == 0 || surface.surface != memory_.surface) return light_.at(surface, geometric, shading);
+      if (memory_.count == 0 || surface.surface != memory_.surface) return light_.at(surface, geometric, shading, true);
       const float scale = 1 / float(memory_.count);
       return {memory_.sum.caustic * scale, memory_.sum.indirect * scale};
     }
-    const Irradiance found = light_.at(surface, geometric, shading);
+    const Irradiance found = light_.at(surface, geometric, shading, true);
     const bool same = memory_.surface == kNone || (memory_.count > 0 && memory_.surface == surface.surface);
     memory_.surface = surface.surface;
     memory_.count = same ? memory_.count + 1 : 0;

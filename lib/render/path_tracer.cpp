@@ -113,11 +113,11 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     const bool ends_here = diffuse_light && x.bsdf.has_diffuse();
     add_sampled_light(scene, x, throughput, path, inside, random, bounce, !ends_here, result, counts);
     if (ends_here) {
-      const DiffuseLight::Irradiance e = diffuse_light->at(point, x.normal_geometric, x.normal);
+      const bool seen_directly = path.layer() == Layer::emission;
+      const DiffuseLight::Irradiance e = diffuse_light->at(point, x.normal_geometric, x.normal, seen_directly);
       ++counts.lookups;
       // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
       const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi;
-      const bool seen_directly = path.layer() == Layer::emission;
       result[seen_directly ? Layer::caustic : Layer::specular] += reflected * e.caustic;
       result[seen_directly ? Layer::indirect : Layer::specular] += reflected * e.indirect;
     }

@@ -94,8 +94,9 @@ class DiffuseLight {
     Rgb caustic{0.0f}, indirect{0.0f};
   };
   virtual ~DiffuseLight() = default;
-  /// Light arriving at the point; both normals are unit and on the side seen. Thread-safe.
-  virtual Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const = 0;
+  /// Light arriving at the point; both normals are unit and on the side seen. `direct_view`: the camera ray itself met it,
+  /// no mirror, glass or gloss sent the path there. Thread-safe.
+  virtual Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const = 0;
 };
 
 /// The scene as a renderer sees it; all must outlive it.

@@ -33,7 +33,7 @@ Rgb PhotonLight::indirect(Vec3 position, Vec3 normal) const {
   return Rgb(estimate_irradiance(indirect_, position, normal, options_, scratch).irradiance);
 }
 
-DiffuseLight::Irradiance PhotonLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3) const {
+DiffuseLight::Irradiance PhotonLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3, bool) const {
   return {caustic(surface.position, geometric), indirect(surface.position, geometric)};
 }
 

@@ -28,7 +28,7 @@ class PhotonLight : public DiffuseLight {
   PhotonLight(const Tracer& tracer, std::span<const formats::Photon> photons, Vec3d photon_shift,
               const PhotonLightOptions& options);
 
-  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const override;
+  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const override;
   Rgb caustic(Vec3 position, Vec3 normal) const;
   std::size_t photon_count() const { return (caustic_ ? caustic_->photon_count() : 0) + indirect_.size(); }
 

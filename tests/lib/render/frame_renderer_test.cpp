@@ -97,7 +97,7 @@ TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
 TEST(FrameRenderer, SamplesWhereTheyAreNeededBringNoBias) {
   const Cornell c;
   struct NoLight : DiffuseLight {
-    Irradiance at(const SurfacePoint&, Vec3, Vec3) const override { return {}; }
+    Irradiance at(const SurfacePoint&, Vec3, Vec3, bool) const override { return {}; }
   } none;
   FrameOptions options;
   options.diffuse_light = &none;
