@@ -152,7 +152,7 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
       // A random threshold between half and one and a half times the near distance: no seam where it begins.
       const float near = options_.near_factor * point->radius, threshold = 0.5f + random.get1(0, Purpose::gather);
       const bool is_near = depth == 0 && met.distance < near * threshold;
-      const bool nearer = met.distance < points_.spacing() * threshold;
+      const bool nearer = met.distance < points_.spacing() * threshold || std::isinf(near);
       result = rho * kInvPi * (is_near ? near_irradiance(met, *point, nearer, random, key, depth, counts) : point->total());
     }
   }

@@ -7,10 +7,10 @@
 namespace tempolux {
 
 TextureImages::TextureImages(std::vector<EncodedImage> images, const TextureLimits& limits)
-    : images_(std::move(images)), limits_(limits), entries_(std::make_unique<Entry[]>(2 * images_.size())) {}
+    : images_(std::move(images)), limits_(limits), entries_(std::make_unique<Entry[]>(kTextureTransfers * images_.size())) {}
 
 const TexturePyramid& TextureImages::decode(std::size_t image, TextureTransfer transfer) const {
-  Entry& entry = entries_[2 * image + std::size_t(transfer)];
+  Entry& entry = entries_[kTextureTransfers * image + std::size_t(transfer)];
   const std::lock_guard lock(entry.decoding);
   if (entry.pyramid) return *entry.pyramid;
   const EncodedImage& source = images_[image];

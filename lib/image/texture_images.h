@@ -29,7 +29,7 @@ class TextureImages {
   /// The image as a texture, decoded by the first call. Throws InputError if it is damaged or the limit of bytes is
   /// reached, naming the image; ResourceError without memory.
   const TexturePyramid& pyramid(std::size_t image, TextureTransfer transfer) const {
-    const Entry& entry = entries_[2 * image + std::size_t(transfer)];
+    const Entry& entry = entries_[kTextureTransfers * image + std::size_t(transfer)];
     const TexturePyramid* ready = entry.ready.load(std::memory_order_acquire);
     return ready ? *ready : decode(image, transfer);
   }
@@ -47,7 +47,7 @@ class TextureImages {
 
   std::vector<EncodedImage> images_;
   TextureLimits limits_;
-  std::unique_ptr<Entry[]> entries_;  ///< two for each image
+  std::unique_ptr<Entry[]> entries_;  ///< kTextureTransfers for each image
   mutable std::atomic<std::size_t> decoded_{0};
   mutable std::atomic<std::uint64_t> bytes_{0};
 };

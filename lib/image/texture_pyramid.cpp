@@ -87,7 +87,8 @@ Rgba mix(const Rgba& a, const Rgba& b, float share) {
 TexturePyramid::TexturePyramid(CodedPixels pixels, TextureTransfer transfer, int max_side)
     : channels_(pixels.channels),
       bits_(pixels.bits),
-      colour_(&table_of(pixels.bits, transfer == TextureTransfer::srgb)),
+      cutout_(transfer == TextureTransfer::srgb_cutout && pixels.channels % 2 == 0),
+      colour_(&table_of(pixels.bits, transfer != TextureTransfer::linear)),
       alpha_(&table_of(pixels.bits, false)) {
   TEMPOLUX_CHECK(pixels.width > 0 && pixels.height > 0 && max_side > 0);
   levels_.push_back({pixels.width, pixels.height, std::move(pixels.bytes)});
@@ -120,35 +121,45 @@ TexturePyramid::Level TexturePyramid::reduced(const Level& from, int width, int 
   Level to{width, height, std::vector<std::uint8_t>(std::size_t(width) * std::size_t(height) * channels *
                                                     std::size_t(bits_ / 8))};
   const bool has_alpha = channels_ % 2 == 0;
-  std::vector<float> row(std::size_t(from.width) * channels);  // a row of the result, not yet narrowed
+  // A row of the result, not yet narrowed; and the same with colours times alpha, for cutouts.
+  std::vector<float> row(std::size_t(from.width) * channels), shown(cutout_ ? row.size() : 0);
   for (int y = 0; y < height; ++y) {
     const Span tall(y, height, from.height);
     std::fill(row.begin(), row.end(), 0.0f);
+    std::fill(shown.begin(), shown.end(), 0.0f);
     float rows = 0;
     for (int j = tall.first; j <= tall.last; ++j) {
       const float share = tall.share(j);
       rows += share;
       for (std::size_t i = 0; i < row.size(); ++i) {
         const auto& table = has_alpha && i % channels == channels - 1 ? *alpha_ : *colour_;
-        row[i] += share * table[code(from, std::size_t(j) * row.size() + i)];
+        const float value = table[code(from, std::size_t(j) * row.size() + i)];
+        row[i] += share * value;
+        if (!cutout_) continue;
+        const std::size_t alpha = std::size_t(j) * row.size() + i / channels * channels + channels - 1;
+        shown[i] += share * value * (*alpha_)[code(from, alpha)];
       }
     }
     for (int x = 0; x < width; ++x) {
       const Span wide(x, width, from.width);
+      const auto sum_of = [&](const std::vector<float>& values, std::size_t c) {
+        float sum = 0;
+        for (int i = wide.first; i <= wide.last; ++i) sum += wide.share(i) * values[std::size_t(i) * channels + c];
+        return sum;
+      };
+      float columns = 0;
+      for (int i = wide.first; i <= wide.last; ++i) columns += wide.share(i);
+      const float covered = cutout_ ? sum_of(row, channels - 1) : 0;
       for (std::size_t c = 0; c < channels; ++c) {
-        float sum = 0, columns = 0;
-        for (int i = wide.first; i <= wide.last; ++i) {
-          sum += wide.share(i) * row[std::size_t(i) * channels + c];
-          columns += wide.share(i);
-        }
-        const std::uint32_t result =
-            nearest_code(has_alpha && c == channels - 1 ? *alpha_ : *colour_, sum / (rows * columns));
+        const bool is_alpha = has_alpha && c == channels - 1;
+        const float value = covered > 0 && !is_alpha ? sum_of(shown, c) / covered : sum_of(row, c) / (rows * columns);
+        const std::uint32_t result = nearest_code(is_alpha ? *alpha_ : *colour_, value);
         const std::size_t at = (std::size_t(y) * std::size_t(width) + std::size_t(x)) * channels + c;
         if (bits_ == 8) {
           to.codes[at] = std::uint8_t(result);
         } else {
-          const auto value = std::uint16_t(result);
-          std::memcpy(&to.codes[2 * at], &value, sizeof value);
+          const auto narrow = std::uint16_t(result);
+          std::memcpy(&to.codes[2 * at], &narrow, sizeof narrow);
         }
       }
     }

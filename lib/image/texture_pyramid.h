@@ -11,14 +11,17 @@
 
 namespace tempolux {
 
-/// What the codes of an image mean.
-enum class TextureTransfer : std::uint8_t { linear, srgb };
+/// What the codes of an image mean. srgb_cutout: sRGB colours of which alpha shows a part (alpha modes MASK and BLEND):
+/// what it hides has no share in the means of coarser levels, or leaves would turn the colour of what is between them.
+enum class TextureTransfer : std::uint8_t { linear, srgb, srgb_cutout };
+inline constexpr std::size_t kTextureTransfers = 3;
 
 /// Linear R, G, B and alpha, each in [0, 1].
 using Rgba = std::array<float, 4>;
 
 /// Level 0 is the image, reduced by a box filter where it is larger than max_side; every further level is half as wide
-/// and high (rounded down, at least 1), each texel the mean of the linear light over the area it covers. Texels keep
+/// and high (rounded down, at least 1), each texel the mean of the linear light over the area it covers (of a cutout,
+/// weighted by alpha; the plain mean where all is hidden). Texels keep
 /// the code of the image (sRGB or linear, 8 or 16 bits; rounded to nearest, but never to 0 what is above it: a texel
 /// is 0 only if all it covers is 0). Alpha is linear always. (0, 0) is the top left corner, (1, 1) the lower right.
 class TexturePyramid {
@@ -50,6 +53,7 @@ class TexturePyramid {
   Rgba texel(const Level& level, int x, int y) const;
 
   int channels_ = 0, bits_ = 8;
+  bool cutout_ = false;                         ///< means of colours are weighted by alpha
   const std::vector<float>* colour_ = nullptr;  ///< by code: linear value
   const std::vector<float>* alpha_ = nullptr;
   std::vector<Level> levels_;

@@ -20,6 +20,8 @@ constexpr float kCellsPerSpacing = 1.4f;
 constexpr float kMostCells = 1 << 20;     ///< per axis: more than coordinates can tell apart
 constexpr float kNeighbourhood = 2.5f;    ///< spacings: how far the neighbours are that a point must reach
 constexpr float kCellDiagonal = 1.4142f;  ///< of a cell's section along a surface
+constexpr float kHot = 20;        ///< times the mean: light of which little must not be read beside where it falls
+constexpr float kContrast = 8;    ///< to a neighbour, from which on neither stands for what lies between them
 constexpr std::uint32_t kSeparated = 1;   ///< of an answer: its hits are answered one by one
 
 /// 3 bits of each octahedral coordinate; n need not be encoded to the last bit for that.
@@ -89,6 +91,7 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
     lights_.push_back({points[i].total(), points[i].radius, points[i].direct + points[i].caustic, std::uint32_t(i)});
     objects_ = std::max(objects_, points[i].object + 2);  // one more for all objects without points
   }
+  mark_hot_edges();
   value_bits_ = int(std::bit_width(2 * (points.size() + 1)));  // a point + 1 or a crowd + 1, and kSeparated
   const Vec3 extent = bounds.empty() ? Vec3{1, 1, 1} : bounds.upper - bounds.lower;
   cell_ = std::max(spacing / kCellsPerSpacing, max_component(extent) / kMostCells);
@@ -107,6 +110,27 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
   if (!reach_) return;
   separated_ = std::make_unique<std::atomic<std::uint8_t>[]>(points.size());
   crowds_ = std::make_unique_for_overwrite<PointCrowd[]>(points.size());
+}
+
+/// Points at the edges of spots much brighter than the mean (the gap between a lamp and the ceiling above it) get an infinite
+/// radius: hits near them continue, whatever their distance. Read instead, a spacing's width of the spot would be seen
+/// beside it: a gap of a tenth of the spacing brought 28 % more indirect light to a room.
+void PointLookup::mark_hot_edges() {
+  const auto light = [](const Rgb& e) { return e.r + e.g + e.b; };
+  double sum = 0;
+  for (const PointLight& point : lights_) sum += double(light(point.all));
+  const double mean = sum / double(std::max<std::size_t>(1, lights_.size()));
+  NeighbourList found;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const float here = light(lights_[i].all);
+    if (!(double(here) > kHot * mean)) continue;
+    PhotonQuery query = facing(points_[i].position, points_[i].normal);
+    query.max_radius = kNeighbourhood * spacing_;
+    index_.find_within(query, found);
+    for (const std::uint32_t other : found.photons())
+      if (PointLight& there = lights_[index_.source(other)]; light(there.all) * kContrast < here)
+        there.radius = lights_[i].radius = INFINITY;
+  }
 }
 
 /// The nearest point of the object among the nearest few, else the nearest of all.

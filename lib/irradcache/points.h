@@ -29,7 +29,7 @@ struct IrradiancePoint {
 /// What a gather ray reads of a point: half a cache line instead of two.
 struct alignas(32) PointLight {
   Rgb all{0.0f};            ///< W/m^2, of all kinds
-  float radius = 0;         ///< as IrradiancePoint's
+  float radius = 0;         ///< as IrradiancePoint's; infinite at the edge of a spot much brighter than the mean
   Rgb first{0.0f};          ///< W/m^2, that no Lambert lobe has scattered before: direct and caustic
   std::uint32_t point = 0;  ///< index of the IrradiancePoint
   Rgb total() const { return all; }
@@ -81,6 +81,7 @@ class PointLookup {
   const IrradiancePoint& point(const PointLight& read) const { return points_[read.point]; }
 
  private:
+  void mark_hot_edges();
   std::uint32_t search(Vec3 position, Vec3 normal, std::uint32_t object) const;
   std::uint32_t search_cell(Vec3 middle, std::uint32_t bin, std::uint32_t object) const;
   std::uint32_t search_reachable(const Question& question, const struct PointCrowd* tried) const;

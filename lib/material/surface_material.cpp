@@ -11,7 +11,7 @@ void SurfaceMaterial::read_textures(const SceneFrame& frame, SurfacePoint& point
   const TextureSpot spot(frame, point.surface, point.triangle, point.u, point.v, width);
   MaterialValues& values = textured_.emplace(material);
   if (textures.base_color) {
-    const Rgba colour = spot.read(textures.base_color, TextureTransfer::srgb);
+    const Rgba colour = spot.read(textures.base_color, base_color_transfer(material));
     values.base_color *= Rgb{colour[0], colour[1], colour[2]};
   }
   if (textures.metallic_roughness) {

@@ -83,12 +83,16 @@ bool lets_rays_pass(const Material& material) {
                                                                    : material.alpha < 1);
 }
 
+TextureTransfer base_color_transfer(const Material& material) {
+  return material.alpha_mode == Material::Alpha::opaque ? TextureTransfer::srgb : TextureTransfer::srgb_cutout;
+}
+
 float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v) {
   const Material& material = frame.materials[frame.surfaces[surface].material];
   if (!lets_rays_pass(material)) return 1;
   float alpha = material.alpha;
   if (material.textures && material.textures->base_color)
-    alpha *= TextureSpot(frame, surface, triangle, u, v, 0).read(material.textures->base_color, TextureTransfer::srgb)[3];
+    alpha *= TextureSpot(frame, surface, triangle, u, v, 0).read(material.textures->base_color, base_color_transfer(material))[3];
   if (material.alpha_mode == Material::Alpha::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
   return alpha;
 }

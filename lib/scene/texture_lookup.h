@@ -58,6 +58,8 @@ Rgb emission_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t tr
 float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v);
 /// Can a ray pass a surface of this material?
 bool lets_rays_pass(const Material& material);
+/// How its base colour's texture is to be read.
+TextureTransfer base_color_transfer(const Material& material);
 
 /// Mean over a triangle of emission times coverage: 0 only if it is 0 everywhere, at least 1 % of the material's factor
 /// elsewhere (so that nothing that emits is chosen too rarely). By 64 points, each over its share of the triangle.

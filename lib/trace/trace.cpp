@@ -308,7 +308,7 @@ struct Tracer::Impl {
       for (const Vec3 p : surface.positions) tree.bounds.add(p);
       if (const Material& material = frame->materials[surface.material]; lets_rays_pass(material)) {
         if (material.textures && material.textures->base_color)   // decoded here, not in the filter
-          frame->images->pyramid(material.textures->base_color.image, TextureTransfer::srgb);
+          frame->images->pyramid(material.textures->base_color.image, base_color_transfer(material));
         alpha.push_back({frame, std::uint32_t(s)});
         rtcSetGeometryUserData(geometry, &alpha.back());
         rtcSetGeometryIntersectFilterFunction(geometry, pass_by_alpha);

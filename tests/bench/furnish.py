@@ -6,6 +6,9 @@ import shutil
 import struct
 
 
+LEAST_ROUGHNESS = 0.1
+
+
 class Asset:
     """A glTF file in parts."""
 
@@ -26,6 +29,14 @@ class Asset:
     def has_light(self):
         return (any("KHR_lights_punctual" in node.get("extensions", {}) for node in self.gltf["nodes"])
                 or any(any(m.get("emissiveFactor", [])) for m in self.gltf.get("materials", [])))
+
+    @property
+    def hides_light(self):
+        """Lights without extent and surfaces (nearly) without roughness: what reaches a matte surface from the one by the other
+        no eye path can find."""
+        return (any("KHR_lights_punctual" in node.get("extensions", {}) for node in self.gltf["nodes"])
+                and any(m.get("pbrMetallicRoughness", {}).get("roughnessFactor", 1) < LEAST_ROUGHNESS
+                        for m in self.gltf.get("materials", [])))
 
     def copied(self, folder):
         """Another one in a new folder, beside copies of the files it names."""
@@ -106,6 +117,17 @@ def with_sun(asset, folder):
             primitive["material"] = 0
             primitive.get("extensions", {}).pop("KHR_materials_variants", None)
     copy.sun([-0.5, -0.8, -0.6])
+    return copy.save()
+
+
+def roughened(asset, folder):
+    """A copy whose surfaces are rough enough for a path tracer to find lights without extent in them."""
+    copy = asset.copied(folder)
+    for material in copy.gltf["materials"]:
+        values = material.setdefault("pbrMetallicRoughness", {})
+        values["roughnessFactor"] = max(LEAST_ROUGHNESS, values.get("roughnessFactor", 1))
+    for animation in copy.gltf.get("animations", []):
+        animation["channels"] = [c for c in animation["channels"] if "roughnessFactor" not in json.dumps(c["target"])]
     return copy.save()
 
 

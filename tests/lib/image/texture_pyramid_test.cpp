@@ -93,6 +93,21 @@ TEST(TexturePyramid, LevelsAreMeansOfLinearLight) {
   EXPECT_NEAR(at(row(), 0.25f, kClamp, false, 0.5f), 0.1f, 0.26f / 255);   // half way between levels
 }
 
+/// White where it is shown (alpha 1 and 1/3), green where it is hidden: means of a cutout are white, a third of it is shown.
+TEST(TexturePyramid, WhatACutoutHidesHasNoShareInItsMeans) {
+  const std::vector<std::uint8_t> codes{255, 255, 255, 255, 0, 255, 0, 0, 0, 255, 0, 0, 255, 255, 255, 85};
+  const TexturePyramid cutout{CodedPixels{2, 2, 4, 8, codes}, TextureTransfer::srgb_cutout, 1024};
+  const TexturePyramid plain{CodedPixels{2, 2, 4, 8, codes}, TextureTransfer::srgb, 1024};
+  EXPECT_EQ(cutout.texel(1, 0, 0)[0], 1);
+  EXPECT_EQ(cutout.texel(1, 0, 0)[1], 1);
+  EXPECT_NEAR(plain.texel(1, 0, 0)[0], 0.5f, 0.003f);
+  EXPECT_FLOAT_EQ(cutout.texel(1, 0, 0)[3], plain.texel(1, 0, 0)[3]);
+  EXPECT_FLOAT_EQ(cutout.texel(1, 0, 0)[3], 85.0f / 255);
+  // All hidden: the plain mean.
+  const TexturePyramid hidden{CodedPixels{2, 1, 2, 8, {0, 0, 255, 0}}, TextureTransfer::srgb_cutout, 1024};
+  EXPECT_NEAR(hidden.texel(1, 0, 0)[0], 0.5f, 0.003f);
+}
+
 TEST(TexturePyramid, OddSizesKeepTheMean) {
   CodedPixels pixels{37, 11, 3, 8, {}};
   double mean = 0;

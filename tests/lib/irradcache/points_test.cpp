@@ -57,6 +57,29 @@ TEST(PointLookup, ReadsAPointNotMuchFartherThanTheNearest) {
   }
 }
 
+/// A spot of 1000 on a square of 1: points within 2.5 spacings across its edge are not to be read from anywhere, those
+/// farther away are, and so are all of a spot of 5, and of one half as bright on one of 1000 everywhere.
+TEST(PointLookup, WhatLiesAtTheEdgeOfAHotSpotIsNotReadFromAfar) {
+  constexpr float kSpacing = 0.01f, kSpot = 0.05f;
+  const auto infinite_at = [](float spot, float rest, Vec3 hit) {
+    std::vector<IrradiancePoint> points;
+    for (int i = 0; i < 100; ++i)
+      for (int j = 0; j < 100; ++j) {
+        const Vec3 place{(float(i) + 0.5f) * kSpacing, 0, (float(j) + 0.5f) * kSpacing};
+        points.push_back(point_at(place, {0, 1, 0}, 0, std::max(place.x, place.z) < kSpot ? spot : rest));
+        points.back().radius = 0.02f;
+      }
+    const PointLookup lookup(points, box({0, 0, 0}, {1, 0, 1}), kSpacing);
+    return std::isinf(lookup.find(hit, {0, 1, 0}, 0)->radius);
+  };
+  EXPECT_TRUE(infinite_at(1000, 1, {0.056f, 0, 0.02f}));    // just outside
+  EXPECT_TRUE(infinite_at(1000, 1, {0.044f, 0, 0.02f}));    // just inside
+  EXPECT_FALSE(infinite_at(1000, 1, {0.015f, 0, 0.015f}));  // in the middle
+  EXPECT_FALSE(infinite_at(1000, 1, {0.11f, 0, 0.02f}));
+  EXPECT_FALSE(infinite_at(5, 1, {0.056f, 0, 0.02f}));
+  EXPECT_FALSE(infinite_at(500, 1000, {0.056f, 0, 0.02f}));
+}
+
 /// Two sheets 1 mm apart that face away from each other, and one that is seen from both sides.
 TEST(PointLookup, SidesAreNeverMixedUp) {
   std::vector<IrradiancePoint> points = square(400);
