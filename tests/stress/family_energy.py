@@ -107,7 +107,7 @@ def closed_boxes_cache(s):
             for seed in range(seeds):
                 for camera, size, share in views:
                     size = s.pick((size[0] // 2, size[1] // 2), size)
-                    image = s.cached(path, size, photons=paths, common=("--camera", camera), seed=seed, timeout=600)
+                    image = s.cached(path, size, photons=paths, common=("--camera", camera), seed=seed, timeout=1800)
                     mean += share * image.mean("indirect.G") / seeds
                     s.forget()
             expected = rho / math.pi * FLUX * rho / (area * (1 - rho))
@@ -149,13 +149,13 @@ def furnace(s):
             for material in scene.document["materials"]:
                 material["emissiveFactor"] = [1, 1, 1]
             path = scene.save(s.path(".gltf"))
-            image = s.render(path, (32, 32), s.pick(16, 1024 if rho > 0.95 else 256), "--camera", views[0][0],
-                             "--seed", list(SHAPES).index(shape))
+            image = s.render(path, (32, 32), s.pick(16, 640 if rho > 0.95 else 256), "--camera", views[0][0],
+                             "--seed", list(SHAPES).index(shape), timeout=1800)
             s.near(f"{shape}, rho {rho:g}: radiance", 1 / (1 - rho), image.mean(),
                    min(4 * image.sigma_of_mean() * (1 - rho) + 1e-5, s.pick(1, 0.005)))
             if s.pick(rho == 0.9, rho < 0.95):
                 image = s.cached(path, (32, 32), 16, photons=s.pick(None, "1M"), common=("--camera", views[0][0]),
-                                 points=s.pick((), ("--light-samples", 16)), timeout=600)
+                                 points=s.pick((), ("--light-samples", 16)), timeout=1800)
                 s.near(f"{shape}, rho {rho:g}, cache: radiance", 1 / (1 - rho), image.mean(), s.pick(0.04, 0.005))
                 s.forget()
 
