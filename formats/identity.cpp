@@ -10,11 +10,12 @@ struct Concern {
   std::string_view name;
   std::string Identity::* hash;
 };
-constexpr std::array<Concern, 5> kConcerns{{{"static_geometry", &Identity::static_geometry},
+constexpr std::array<Concern, 6> kConcerns{{{"static_geometry", &Identity::static_geometry},
                                             {"moving_geometry", &Identity::moving_geometry},
                                             {"materials", &Identity::materials},
                                             {"lights", &Identity::lights},
-                                            {"media", &Identity::media}}};
+                                            {"media", &Identity::media},
+                                            {"emission", &Identity::emission}}};
 
 std::string Identity::* hash_of(std::string_view name) {
   for (const Concern& concern : kConcerns)

@@ -32,8 +32,9 @@ bool is_printable(std::string_view text) { return std::none_of(text.begin(), tex
 std::string_view fault_of_common(const std::array<double, 3>& origin, const Identity& identity) {
   for (double x : origin)
     if (!std::isfinite(x)) return "origin is not finite";
-  for (const HashKey& key : kHashKeys) {
-    const std::string& hash = identity.*key.hash;
+  const auto hashes = {identity.static_geometry, identity.moving_geometry, identity.materials,
+                       identity.lights,          identity.media,           identity.emission};
+  for (const std::string& hash : hashes) {
     if (!hash.empty() && !is_hash(hash)) return "an identity hash is not 1 to 128 visible ASCII characters";
     if (!hash.empty() && !identity.known()) return "identity hashes without frames";
   }

@@ -92,6 +92,7 @@ Facts identity_facts(const formats::Identity& identity) {
   add("materials", identity.materials);
   add("lights", identity.lights);
   add("media", identity.media);
+  add("emission", identity.emission);
   return facts;
 }
 

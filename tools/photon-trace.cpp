@@ -47,6 +47,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   formats::PhotonHeader header;
   header.history = tool.history_line(frame_number);
   header.identity = tools::identity_of(frame);
+  header.identity.emission = emission_hash(emission, frame.segment);
   header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
 
   tool.stats().phase("trace", true);

@@ -57,6 +57,7 @@ Line take_line(std::string_view key, std::string_view value, PhotonHeader& h) {
   }
   if (key == "groups") return result(parse_numbers(value, &h.group_count, 1));
   if (key == "emitted") return result(parse_numbers(value, &h.emitted_count, 1));
+  if (key == "emission") return h.identity.emission = value, result(!value.empty());
   if (key == "base") return h.base_name = value, result(!value.empty());
   if (key == "base-digest") return h.base_digest = value, result(!value.empty());
   return take_common_line(key, value, common_keys(h));
@@ -74,6 +75,7 @@ std::string header_text(const PhotonHeader& h) {
   text.line("groups", text_of(h.group_count));
   text.line("emitted", text_of(h.emitted_count));
   text.identity(h.identity);
+  if (!h.identity.emission.empty()) text.line("emission", h.identity.emission);
   if (!h.base_name.empty()) {
     text.line("base", h.base_name);
     text.line("base-digest", h.base_digest);

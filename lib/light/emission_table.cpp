@@ -3,6 +3,7 @@
 #include <numbers>
 #include <vector>
 
+#include "formats/hash.h"
 #include "lib/core/check.h"
 #include "lib/light/lights.h"
 #include "lib/light/punctual.h"
@@ -89,6 +90,17 @@ EmissionTable build_emission_table(const Scene& scene, const Segment& segment, c
   if (any_flux_changes(frames.front()))
     for (int f = segment.first + 1; f <= segment.last; ++f) frames.push_back(stage.at(f));
   return build_emission_table(frames);
+}
+
+std::string emission_hash(const EmissionTable& table, const Segment& segment) {
+  Hasher hasher;
+  hasher.add_array(std::span<const double>(table.probability));
+  hasher.add(table.sphere_centre);
+  hasher.add(table.sphere_radius);
+  hasher.add(segment.origin);
+  hasher.add(segment.world_bounds.lower);
+  hasher.add(segment.world_bounds.upper);
+  return hasher.hex();
 }
 
 }  // namespace tempolux

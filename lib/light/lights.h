@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lib/core/vec.h"
@@ -47,6 +48,10 @@ EmissionTable build_emission_table(const Scene& scene, const Segment& segment, c
 /// Of frames already evaluated, all of one segment (the same surfaces and lights in the same order); at
 /// least one. To be the segment's table they must be all frames at which an emitter's size differs.
 EmissionTable build_emission_table(std::span<const SceneFrame> frames);
+
+/// Content hash of what the segment freezes beyond its static geometry: probabilities of lights, distance scales. Photons
+/// whose tables hash alike may replace each other path by path.
+std::string emission_hash(const EmissionTable& table, const Segment& segment);
 
 struct LightSample {
   Vec3 wi{};                  ///< unit, from the point towards the light

@@ -16,19 +16,6 @@
 namespace tempolux {
 namespace {
 
-/// Hash of what a segment freezes beyond its static geometry: probabilities of lights, distance scales.
-std::string frozen_hash(const Scene& scene, const Segment& segment, const TimeOptions& options) {
-  const EmissionTable table = build_emission_table(scene, segment, options);
-  Hasher hasher;
-  hasher.add_array(std::span<const double>(table.probability));
-  hasher.add(table.sphere_centre);
-  hasher.add(table.sphere_radius);
-  hasher.add(segment.origin);
-  hasher.add(segment.world_bounds.lower);
-  hasher.add(segment.world_bounds.upper);
-  return hasher.hex();
-}
-
 std::vector<MovingNode> moving_nodes(const Scene& scene, const Segment& segment) {
   std::vector<MovingNode> moves;
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
@@ -140,7 +127,7 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const st
   planned.first = segment.first;
   planned.last = segment.last;
   planned.static_geometry = begin.hashes.static_geometry;
-  planned.frozen = frozen_hash(scene, segment, options);
+  planned.frozen = emission_hash(build_emission_table(scene, segment, options), segment);
   planned.moves = moving_nodes(scene, segment);
   const bool light_moves = light_transport_moves(planned.moves);
   planned.frames = planned_frames(stage, scene, asked, camera_node, light_moves, options);

@@ -33,6 +33,23 @@ for file in p.photons p.irradpoints c.irradcache; do
     cat $file | tempolux-info $mode - >piped.txt && cmp -s named.txt piped.txt || bad "cat $file | tempolux-info $mode -"
   done
 done
+# A map says by which emission table its paths were started: the one that scene-plan calls frozen. Readers do not mind another.
+emission=$(tempolux-info --json p.photons | sed -n 's/.*"emission": *"\([^"]*\)".*/\1/p')
+[ -n "$emission" ] && [ "$emission" = "$(cat plan/state/frozen.0000)" ] || bad "emission '$emission', frozen $(cat plan/state/frozen.0000)"
+"${PYTHON:-python3}" -B - "$HERE/../formats" <<'END' || bad 'another emission table'
+import sys
+sys.path.insert(0, sys.argv[1])
+from read_photons import read_photons, write_photons
+photons = read_photons("p.photons")
+photons.header["emission"] = "other"
+write_photons("other.photons", photons)
+del photons.header["emission"]
+write_photons("older.photons", photons)
+END
+for map in other older; do
+  irradcache-build points "$scene" --photons $map.photons --point-count 50 -o o.irradpoints 2>errors.txt || bad "$map: exit $?"
+  [ -s errors.txt ] && bad "$map: $(cat errors.txt)"
+done
 header() { tempolux-info --export csv -o header.csv "$1"; head -1 header.csv; }
 accept=$HERE/../formats
 header "$accept/photons/accept/columns.photons" | grep 'bounce,wi_x,wi_y,wi_z,albedo_r,albedo_g,albedo_b' >/dev/null || bad 'csv without photons columns'

@@ -21,6 +21,15 @@ TEST(Identity, NamesJustTheConcernsThatDifferAndWereAskedFor) {
   EXPECT_EQ(stale_concerns(file, kScene, {"media", "materials"}), Names{"media"});
 }
 
+TEST(Identity, EmissionIsComparedByWhoeverAsksForIt) {
+  Identity file = kScene, scene = kScene;
+  file.emission = "e";
+  EXPECT_EQ(stale_concerns(file, scene, {"emission"}), Names());
+  scene.emission = "other";
+  EXPECT_EQ(stale_concerns(file, scene, {"emission"}), Names{"emission"});
+  EXPECT_EQ(stale_concerns(file, scene, kAll), Names());
+}
+
 TEST(Identity, FramesAreNotCompared) {
   Identity file = kScene;
   file.first_frame = file.last_frame = 7;

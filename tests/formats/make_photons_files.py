@@ -90,6 +90,7 @@ def accept():
     example = photons(**IDENTITY)
     example.history = ["example"]
     save("accept/worked-example", example)
+    save("accept/identity-with-emission", photons(**IDENTITY, emission="d4"))
     save("accept/no-identity", photons())
     no_history = photons()
     no_history.history = []

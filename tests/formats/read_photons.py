@@ -30,7 +30,7 @@ ENTRY = struct.Struct("<I9d")                           # section 6
 END = struct.Struct("<4sQ12dI")                         # section 7
 KINDS = ["direct", "caustic", "indirect", "volume"]
 COLUMNS = {"none": [], "direction": ["direction"], "albedo": ["albedo"], "direction,albedo": ["direction", "albedo"]}
-HASHES = ["static-geometry", "moving-geometry", "materials", "lights", "media"]
+HASHES = ["static-geometry", "moving-geometry", "materials", "lights", "media", "emission"]
 REQUIRED = ["map", "kinds", "columns", "origin", "groups", "emitted"]
 KEYS = REQUIRED + ["frames"] + HASHES + ["base", "base-digest"]          # and history
 
