@@ -125,8 +125,8 @@ HEADER = ["scene", "asked: RMSE in CPU s", "RMSE", "CPU s", "bias", "reached", "
 FAST = {"S2": [(0.0025, 1.5, Settings(100000, (), ("--rays", 350), ("--pixel-error", 0.0055))),
                (0.0076, 0.6, Settings(30000, ("--point-count", "6k", "--light-samples", 2), ("--rays", 150, "--error-bound", 0.3),
                                       ("--spp", 4, "--pixel-error", 0.03)))],
-        "S3": [(0.0030, 3.0, Settings(100000, (), ("--rays", 400), ("--pixel-error", 0.005))),
-               (0.0143, 0.74, Settings(20000, ("--point-count", "4k", "--light-samples", 2), ("--rays", 60, "--error-bound", 0.5),
+        "S3": [(0.0030, 3.0, Settings(100000, (), ("--rays", 250), ("--pixel-error", 0.005))),
+               (0.0143, 0.74, Settings(15000, ("--point-count", "3k", "--light-samples", 2), ("--rays", 40, "--error-bound", 0.5),
                                        ("--spp", 2, "--pixel-error", 0.05)))]}
 
 
