@@ -107,7 +107,8 @@ def lamp_out(s):
 
 @case("time", "10^4 frames")
 def ten_thousand(s):
-    """Of a tiny scene whose block moves in every frame: linear in the frames, 1 ms of CPU each is the bound."""
+    """Of a tiny scene whose block moves in every frame: linear in the frames, 2.5 ms of CPU each is the bound: of three
+    new files each the system takes 0.4 ms where creating one is slow."""
     n = s.pick(2000, 10000)
     keys = [f / 24 for f in range(n)]
     scene = stage(s, lambda scene, block, lamp: scene.animate(block, "translation", keys,
@@ -116,7 +117,7 @@ def ten_thousand(s):
     for frames in (f"0-{n // 10 - 1}", f"0-{n - 1}"):
         _, run, out = plan(s, scene, frames, timeout=300)
         cost.append(run.cpu)
-    s.cost_at_most(f"scene-plan of {n} frames: CPU seconds", 1e-3 * n, cost[1])
+    s.cost_at_most(f"scene-plan of {n} frames: CPU seconds", 2.5e-3 * n, cost[1])
     s.cost_at_most("CPU seconds, ratio to linear growth", 2, cost[1] / cost[0] / 10)
     run = s.done(s.run("scene-plan", scene, "--frames", f"0-{n - 1}", "-o", out))
     s.cost_at_most("again, nothing changed: CPU seconds", 1e-4 * n + 1, run.cpu)
