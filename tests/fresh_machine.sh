@@ -11,7 +11,7 @@ root=$1
 scratch=$(mktemp -d /tmp/fresh-machine.XXXXXX) || exit 3
 [ -n "$root" ] || root=$scratch/debian
 clean_up() {
-  for place in proc dev sys; do if mountpoint -q "$root/$place"; then umount "$root/$place" || umount -l "$root/$place"; fi; done
+  for place in proc dev/pts dev sys; do if mountpoint -q "$root/$place"; then umount "$root/$place" || umount -l "$root/$place"; fi; done
   rm -rf --one-file-system "$scratch"
 }
 trap clean_up EXIT
@@ -28,6 +28,7 @@ make_debian() {
 make_debian || { tail -n 5 "$scratch/log"; echo 'skipped: no Debian could be installed'; exit 77; }
 mountpoint -q "$root/proc" || mount -t proc proc "$root/proc" || { echo 'skipped: no /proc can be mounted'; exit 77; }
 mountpoint -q "$root/dev" || mount --bind /dev "$root/dev" || { echo 'skipped: no /dev can be mounted'; exit 77; }
+mountpoint -q "$root/dev/pts" || mount --bind /dev/pts "$root/dev/pts"   # script(1) makes terminals there
 mountpoint -q "$root/sys" || mount -t sysfs -o ro sysfs "$root/sys" || { echo 'skipped: no /sys can be mounted'; exit 77; }
 cp /etc/resolv.conf "$root/etc/" && cp /etc/apt/apt.conf.d/*proxy* "$root/etc/apt/apt.conf.d/" 2> /dev/null
 [ ! -e "$root/tempolux" ] || { echo "$root/tempolux: is there already; name another folder"; exit 2; }

@@ -1,5 +1,6 @@
 # A bar is drawn only on a terminal, only when the work takes longer than a second, and is gone at the end.
 command -v script > /dev/null || { echo 'skipped: no script(1), which makes a terminal'; exit 77; }
+script -qec true /dev/null < /dev/null > /dev/null 2>&1 || { echo 'skipped: no terminal can be made here'; exit 77; }
 failed=0
 bad() { echo "$*"; failed=1; }
 on_terminal() { script -qec "TERM=${terminal:-xterm} $1" /dev/null < /dev/null > seen 2>&1; }
