@@ -1,14 +1,10 @@
 #include "lib/image/any_io.h"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <new>
 #include <string_view>
-#include <system_error>
 
 #include "formats/error.h"
 #include "lib/image/byte_file.h"
@@ -16,6 +12,7 @@
 #include "lib/image/hdr_io.h"
 #include "lib/image/module.h"
 #include "lib/image/png_io.h"
+#include "lib/image/srgb.h"
 
 namespace tempolux {
 namespace {
@@ -38,22 +35,9 @@ std::string format_of(const ByteFile& file) {
 
 ImageModuleEntry* find_module(const std::string& path, const std::string& format,
                               const std::vector<std::string>& folders) {
-  std::string looked;
-  for (const std::string& folder : folders) {
-    const std::string file = folder + "/" + kModuleFile;
-    looked += (looked.empty() ? "" : ", ") + folder;
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) continue;
-    // Never unloaded: OpenImageIO's own libraries do not survive it. The loader counts and shares repeated
-    // opens.
-    void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-    void* entry = module ? ::dlsym(module, kImageModuleSymbol) : nullptr;
-    if (!entry) throw InputError(path + ": reading " + format + ": " + file + ": " + one_line(::dlerror()));
-    return reinterpret_cast<ImageModuleEntry*>(entry);
-  }
-  throw InputError(path + ": reading " + format + " needs " + kModuleFile +
-                   ", which was not built or not installed (looked in " + looked +
-                   "); build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG");
+  return reinterpret_cast<ImageModuleEntry*>(
+      module_symbol(kModuleFile, kImageModuleSymbol, folders, path + ": reading " + format,
+                    "build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG"));
 }
 
 /// What the module fills.
@@ -120,17 +104,6 @@ Image load_by_module(const std::string& path, const std::string& format, const I
 }
 
 }  // namespace
-
-std::vector<std::string> default_module_folders() {
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  const std::filesystem::path prefix = program.parent_path().parent_path();
-  std::vector<std::string> folders;
-  for (const char* folder : {"lib/tempolux", "lib/x86_64-linux-gnu/tempolux", "lib64/tempolux", "modules"})
-    folders.push_back(prefix / folder);
-  return folders;
-}
 
 Image load_image(const std::string& path, const ImageReadOptions& options) {
   const std::string format = format_of(ByteFile(path));

@@ -7,14 +7,9 @@
 #include <vector>
 
 #include "lib/image/image.h"
+#include "lib/image/open_module.h"
 
 namespace tempolux {
-
-/// Folders in which tempolux-oiio.so is looked for, best first, relative to the running program
-/// (/proc/self/exe):
-/// ../lib/tempolux and its variants where it is installed, ../modules in a build tree. The environment is not
-/// read.
-std::vector<std::string> default_module_folders();
 
 struct ImageReadOptions {
   std::uint64_t max_pixels = 512ull << 20;

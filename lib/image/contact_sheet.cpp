@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "lib/image/png_io.h"
 #include "lib/image/preview.h"
+#include "lib/image/srgb.h"
 
 namespace tempolux {
 namespace {

@@ -4,8 +4,6 @@
 #include <string_view>
 
 #include "formats/error.h"
-#include "lib/image/jpeg_io.h"
-#include "lib/image/png_io.h"
 
 namespace tempolux {
 namespace {
@@ -94,15 +92,6 @@ ImageHeader read_image_header(Bytes bytes, const std::string& place) {
   if (!found) fail(std::string("no size in its header; the ") + name + " is damaged or cut short");
   if (header.width < 1 || header.height < 1) fail(std::string("a ") + name + " without pixels");
   return header;
-}
-
-CodedPixels decode_image(const EncodedImage& image, std::uint64_t max_pixels) {
-  const ImageHeader header = read_image_header(image.bytes, image.place);
-  CodedPixels pixels = header.format == ImageHeader::Format::png ? decode_png(image.bytes, image.place, max_pixels)
-                                                                 : decode_jpeg(image.bytes, image.place, max_pixels);
-  if (pixels.width != header.width || pixels.height != header.height)
-    throw InputError(image.place + ": is not of the size its header says; it is damaged");
-  return pixels;
 }
 
 }  // namespace tempolux

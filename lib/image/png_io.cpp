@@ -11,6 +11,7 @@
 #include "formats/error.h"
 #include "lib/image/byte_file.h"
 #include "lib/image/preview.h"
+#include "lib/image/srgb.h"
 
 namespace tempolux {
 namespace {
@@ -148,16 +149,6 @@ bool write_all(Session& session, png_structp png, png_infop info, const Picture&
 }
 
 }  // namespace
-
-float srgb_to_linear(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
-float linear_to_srgb(float linear) {
-  if (!(linear > 0)) return 0;
-  if (linear >= 1) return 1;
-  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-}
 
 Image load_png(const std::string& path, std::uint64_t max_pixels) {
   const ByteFile file(path);

@@ -20,9 +20,4 @@ Image load_png(const std::string& path, std::uint64_t max_pixels);
 /// Pixels of a PNG in memory as they are coded, palette expanded. Checks and errors as load_png.
 CodedPixels decode_png(std::span<const unsigned char> bytes, const std::string& place, std::uint64_t max_pixels);
 
-/// sRGB transfer (IEC 61966-2-1), encoded [0, 1] to linear [0, 1] and back; values below 0 give 0 in the
-/// latter, above 1 give 1.
-float srgb_to_linear(float encoded);
-float linear_to_srgb(float linear);
-
 }  // namespace tempolux

@@ -8,7 +8,7 @@
 #include "formats/error.h"
 #include "lib/core/random.h"
 #include "lib/core/vec.h"
-#include "lib/image/png_io.h"
+#include "lib/image/srgb.h"
 
 namespace tempolux {
 namespace {

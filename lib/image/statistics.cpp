@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "lib/image/png_io.h"
+#include "lib/image/srgb.h"
 
 namespace tempolux {
 namespace {

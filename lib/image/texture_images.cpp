@@ -3,6 +3,7 @@
 #include <new>
 
 #include "formats/error.h"
+#include "lib/image/images_by_module.h"
 
 namespace tempolux {
 
@@ -16,7 +17,7 @@ const TexturePyramid& TextureImages::decode(std::size_t image, TextureTransfer t
   const EncodedImage& source = images_[image];
   std::unique_ptr<TexturePyramid> pyramid;
   try {
-    pyramid = std::make_unique<TexturePyramid>(decode_image(source, limits_.max_pixels), transfer, limits_.max_side);
+    pyramid = std::make_unique<TexturePyramid>(decode_by_module(source, limits_.max_pixels), transfer, limits_.max_side);
   } catch (const std::bad_alloc&) {
     throw ResourceError(source.place + ": not enough memory to decode it; reduce textures with --max-texture");
   }

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "lib/core/check.h"
-#include "lib/image/png_io.h"
+#include "lib/image/srgb.h"
 
 namespace tempolux {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
-#include "lib/image/any_io.h"
+#include "lib/image/images_by_module.h"
 
 namespace tempolux {
 namespace {
@@ -65,20 +65,17 @@ bool Environment::emits() const {
 }
 
 Environment load_environment(const std::string& path, const EnvironmentOptions& options) {
-  ImageReadOptions read;
-  read.max_pixels = options.max_pixels;
-  Image image = load_image(path, read);
+  const LinearPixels image = load_by_module(path, options.max_pixels);
   Environment environment;
   environment.path = path;
   environment.width = image.width;
   environment.height = image.height;
   // Turns whole circles off: equal light has an equal hash.
   environment.rotation_rad = std::remainder(options.rotation_deg, 360.0) * std::numbers::pi / 180;
-  environment.radiance.resize(image.pixel_count());
+  environment.radiance.resize(image.pixels.size());
   Scale scale(environment, options.strength);
-  const auto planes = image.rgb("");
   for (std::size_t i = 0; i < environment.radiance.size(); ++i)
-    environment.radiance[i] = {scale((*planes[0])[i], i), scale((*planes[1])[i], i), scale((*planes[2])[i], i)};
+    environment.radiance[i] = {scale(image.pixels[i].r, i), scale(image.pixels[i].g, i), scale(image.pixels[i].b, i)};
   scale.warn(environment.warnings);
   environment.hash = content_hash(environment);
   return environment;

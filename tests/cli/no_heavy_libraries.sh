@@ -1,6 +1,8 @@
 #!/bin/sh
 # no_heavy_libraries.sh BIN_DIR -- no tool may link OpenImageIO or OpenVDB, itself or through another library: they
-# cost 0.4 s and 130 MB at every start. They live in modules, opened at need.
+# cost 0.4 s and 130 MB at every start. They live in modules, opened at need. Nor may a tool link what reads images, unless it
+# reads or writes frames: most scenes have no image, and starting OpenEXR and its like takes as many instructions as
+# planning a small scene.
 [ -d "$1" ] || { echo "no folder of tools: $1"; exit 1; }
 bad=0 count=0
 for tool in "$1"/*; do
@@ -8,6 +10,12 @@ for tool in "$1"/*; do
   count=$((count + 1))
   libraries=$(ldd "$tool") || { echo "$tool: ldd failed"; bad=1; continue; }
   if echo "$libraries" | grep -iE 'openimageio|openvdb|opencv|ffmpeg|libav'; then echo "^ $tool links these"; bad=1; fi
+  case $(basename "$tool") in
+    frame-render) images='png|jpeg';;   # writes frames
+    aqm-compare | tempolux-info) images='jpeg';;
+    *) images='png|jpeg|openexr|imath';;
+  esac
+  if echo "$libraries" | grep -iE "lib($images)"; then echo "^ $tool links these: they belong into tempolux-images.so"; bad=1; fi
   if echo "$libraries" | grep 'not found'; then echo "^ $tool cannot be started"; bad=1; fi
 done
 echo "$count tools looked at"

@@ -18,4 +18,12 @@ done
 make -s -f Makefile.example demo BIN="$scratch/usr/bin" OUT="$scratch/out" FRAMES=0,40 SIZE=32x18 QUALITY=draft PHOTONS=2k \
   POINTS='--point-count 500' > "$scratch/log" 2>&1 || bad "$(tail -5 "$scratch/log")"
 [ -s "$scratch/out/sheet.png" ] && [ -s "$scratch/out/frames/0040.exr" ] || bad 'no frames were made'
+# Images come through a module, which must be found where it is installed, and missed where it is not.
+trace() { "$scratch/usr/bin/photon-trace" pipelines/scenes/S1_cornell.glb --environment "$scratch/out/frames/0040.exr" \
+  --photons 100 -q -o "$scratch/p.photons" 2> "$scratch/log"; }
+trace || bad "environment: $(cat "$scratch/log")"
+find "$scratch/usr" -name tempolux-images.so -exec rm {} +
+trace
+[ $? = 2 ] && [ "$(wc -l < "$scratch/log")" = 1 ] && grep -q 'tempolux-images.so, which was not' "$scratch/log" ||
+  bad "without its module: $(cat "$scratch/log")"
 echo 'installed, and rendered two frames'

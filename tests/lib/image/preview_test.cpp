@@ -5,6 +5,7 @@
 
 #include "formats/error.h"
 #include "lib/image/png_io.h"
+#include "lib/image/srgb.h"
 #include "tests/lib/image/image_fixture.h"
 
 namespace tempolux {
