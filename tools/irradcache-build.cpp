@@ -41,6 +41,7 @@ void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& op
   tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
+  tool.stats().phase("build");
   const Tracer tracer(frame);
   const Lights lights(frame, input.emission(frame.frame));
   tool.stats().phase("points", true);
@@ -82,6 +83,7 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   tools::Output output(options.output, tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame first = input.at(frames.front());
+  tool.stats().phase("build");
   const Tracer tracer(first);
   const Lights lights(first, input.emission(first.frame));
   tool.stats().phase("points", true);

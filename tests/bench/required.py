@@ -7,8 +7,10 @@ import math
 import os
 
 import gathering
+import million
 from estimate import estimate
 from found import found
+from two_threads import million_threads, threads
 from measure import Missing, big, figure, median, percent, quantity, timed, wait_for_quiet
 
 
@@ -132,51 +134,6 @@ def nearest(bench, _):
                   "thread, CPU time; the better of two leaf sizes of nanoflann."])
 
 
-def threads(bench, _):
-    """Wall time of the parallel phases with one thread and with two."""
-    quiet = True if bench.quick else wait_for_quiet(120)
-    load = os.getloadavg()[0]
-    scene, frame = bench.scene("S2")
-    output = bench.memory / f"tempolux-bench-{os.getpid()}"
-    photon_map, points, cache, image = (f"{output}.{end}" for end in ("photons", "irradpoints", "irradcache", "exr"))
-    photons = 20000 if bench.quick else 2 * 10**6
-    render = ["frame-render", scene, "--frame", frame, "--size", bench.size, "-o", image]
-    tools = {"photon-trace": ["photon-trace", scene, "--frame", frame, "--photons", photons, "-o", photon_map],
-             "irradcache-build points": ["irradcache-build", "points", scene, "--frame", frame, "--photons", photon_map,
-                                         *(["--point-count", "2k"] if bench.quick else []), "-o", points],
-             "irradcache-build records": ["irradcache-build", "records", scene, "--frame", frame, "--points", points, "--size",
-                                          bench.size, "-o", cache],
-             "frame-render, cache": [*render, "--irradcache", cache, "--points", points],
-             "frame-render, photons": [*render, "--photons", photon_map, "--spp", 16],
-             "frame-render, path": [*render, "--integrator", "path", "--spp", 16]}
-    rows, met = [], True
-    try:
-        for title, command in tools.items():
-            speed, work, seconds = [], [], {1: [], 2: []}
-            for _ in range(bench.rounds):
-                wall, cpu = {}, {}
-                for count in (1, 2):
-                    stats = bench.tool(*command, "--threads", count)
-                    phases = [p for p in stats["phases"] if p["parallel"]]
-                    wall[count], cpu[count] = (sum(p[kind] for p in phases) for kind in ("wall_s", "cpu_s"))
-                    seconds[count].append(wall[count])
-                speed.append(wall[1] / wall[2])
-                work.append(cpu[2] / cpu[1])
-            met = met and median(speed) >= 1.8
-            rows.append([title, quantity(median(seconds[1])), quantity(median(seconds[2])), quantity(median(speed)),
-                         f"{median(work):.3f}"])
-    finally:
-        for file in (photon_map, points, cache, image):
-            if os.path.exists(file):
-                os.remove(file)
-    notes = [f"Load average before: {load:.1f}."]
-    if not quiet:
-        notes.append("Others were using the processors: wall times say little here, run it again on a quiet machine.")
-    return figure("Two threads against one, parallel phases", "1.8x in wall time",
-                  ["", "1 thread, wall s", "2 threads, wall s", "ratio", "CPU s of 2 threads / 1"], rows,
-                  met if quiet and not bench.quick else None, notes)
-
-
 def start(bench, _):
     """--help of every tool, and what it links."""
     rows, met = [], True
@@ -241,4 +198,4 @@ def object_table(objects):
 
 FIGURES = {"path-tracer": path_tracer, "photon-rate": photon_rate, "photon-growth": photon_growth, "nearest": nearest,
            "threads": threads, "start": start, "estimate": estimate, "reading": reading, "references": references,
-           "found": found} | gathering.FIGURES
+           "found": found} | gathering.FIGURES | million.FIGURES | {"million-threads": million_threads}
