@@ -23,34 +23,40 @@ std::uint32_t permute_low_to_high(std::uint32_t x, std::uint32_t seed) {
   return x;
 }
 
-std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
-  return reverse_bits(permute_low_to_high(reverse_bits(x), seed));
+/// Second Sobol dimension from the first, the bits of both reversed: Pascal's triangle modulo 2 applied to binary
+/// fractions, in five steps. Ahmed, "An Implementation Algorithm of 2D Sobol Sequence Fast, Elegant, and Compact",
+/// EGSR 2024.
+std::uint32_t reversed_second(std::uint32_t x) {
+  x ^= x >> 16;
+  x ^= x >> 8 & 0x00ff00ffu;
+  x ^= x >> 4 & 0x0f0f0f0fu;
+  x ^= x >> 2 & 0x33333333u;
+  return x ^ (x >> 1 & 0x55555555u);
 }
 
-/// Second Sobol dimension from the first: Pascal's triangle modulo 2 applied to binary fractions, in five
-/// steps. Ahmed, "An Implementation Algorithm of 2D Sobol Sequence Fast, Elegant, and Compact", EGSR 2024.
-std::uint32_t sobol_second(std::uint32_t x) {
-  x ^= x << 16;
-  x ^= (x & 0x00ff00ffu) << 8;
-  x ^= (x & 0x0f0f0f0fu) << 4;
-  x ^= (x & 0x33333333u) << 2;
-  return x ^ (x & 0x55555555u) << 1;
+/// Nested uniform shuffle of indices: the first 2^k map onto one aligned block of 2^k. The first Sobol dimension is the
+/// index with its bits reversed, and scrambling is a permutation of reversed bits as well, so that each number need be
+/// reversed once only.
+std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) {
+  return reverse_bits(permute_low_to_high(reverse_bits(index), seed));
+}
+
+/// Owen scrambling of a coordinate, given with its bits reversed.
+float scrambled(std::uint32_t reversed, std::uint32_t seed) {
+  return unit_float(reverse_bits(permute_low_to_high(reversed, seed)));
 }
 
 }  // namespace
 
 Vec2 sobol_owen_2d(std::uint32_t index, std::uint64_t key) {
   const std::uint64_t a = mix64(key), b = mix64(key ^ 0x5851f42d4c957f2dull);
-  // Nested uniform shuffle: the first 2^k indices map onto one aligned block of 2^k.
-  const std::uint32_t shuffled = owen_scramble(index, std::uint32_t(a));
-  const std::uint32_t x = reverse_bits(shuffled), y = sobol_second(x);
-  return {unit_float(owen_scramble(x, std::uint32_t(a >> 32))), unit_float(owen_scramble(y, std::uint32_t(b)))};
+  const std::uint32_t x = shuffled(index, std::uint32_t(a));
+  return {scrambled(x, std::uint32_t(a >> 32)), scrambled(reversed_second(x), std::uint32_t(b))};
 }
 
 float sobol_owen_1d(std::uint32_t index, std::uint64_t key) {
   const std::uint64_t a = mix64(key);
-  const std::uint32_t shuffled = owen_scramble(index, std::uint32_t(a));
-  return unit_float(owen_scramble(reverse_bits(shuffled), std::uint32_t(a >> 32)));
+  return scrambled(shuffled(index, std::uint32_t(a)), std::uint32_t(a >> 32));
 }
 
 }  // namespace tempolux
