@@ -20,9 +20,9 @@ double sun_weight(const PlacedLight& placed, Vec3 normal) {
 
 /// Probability of choosing a light from infinitely far: their share of an estimate of the irradiance, at least a
 /// fifth for either kind that can be seen at all. total: the weights of the environment and the directional lights.
+/// Not asked where there is none.
 double Lights::Impl::distant_share(Vec3 point, Vec3 normal, double& total) const {
   total = environment_weight;
-  if (suns.empty() && !(total > 0)) return 0;
   for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
   if (!(total > 0)) return 0;
   const double others = tree.importance(point, normal);
@@ -98,7 +98,7 @@ bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool 
   const Impl& m = *this;
   sample = {};
   double total = 0;
-  const double share = m.distant_share(point, normal, total);
+  const double share = m.any_distant ? m.distant_share(point, normal, total) : 0;
   if (u_choice < share) {
     // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
     return m.sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, total, sample) &&
@@ -139,7 +139,7 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
   if (!(on_triangle > 0)) return 0;
   double total = 0;
-  const double share = m.distant_share(point, normal, total);
+  const double share = m.any_distant ? m.distant_share(point, normal, total) : 0;
   const float pdf = float(on_triangle * (1 - share) * m.tree.probability(point, normal, light));
   return pdf < INFINITY ? pdf : 0;
 }

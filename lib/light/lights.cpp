@@ -107,6 +107,7 @@ void Lights::Impl::build_tree() {
     tree_index[i] = std::uint32_t(tree_slot.size());
     tree_slot.push_back(i);
   }
+  any_distant = environment_weight > 0 || !suns.empty();
   tree = LightTree(bounds);
 }
 

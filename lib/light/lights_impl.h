@@ -30,6 +30,7 @@ struct Lights::Impl {
   std::vector<std::uint32_t> suns;        // indices of directional lights that shine
   std::shared_ptr<const EnvironmentLight> environment;
   double environment_weight = 0;  // irradiance by the environment, the mean over all normals; 0: none or black
+  bool any_distant = false;       // an environment that is not black, or a sun
   LightTree tree{{}};
 
   Impl(const SceneFrame& frame_, const EmissionTable& table);

@@ -96,9 +96,8 @@ TriangleLight::TriangleLight(const SceneFrame& frame, std::uint32_t surface, std
   if (varies) radiance = mean_emission(frame, surface, index);
 }
 
-Rgb TriangleLight::emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1,
+Rgb TriangleLight::varying_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1,
                               double b2) const {
-  if (!varies) return radiance;
   return emission_at(frame, surface, index, float(b1), float(b2), 0) *
          coverage_at(frame, surface, index, float(b1), float(b2));
 }

@@ -21,10 +21,15 @@ struct TriangleLight {
   /// Of a surface of the frame, with the mean over the triangle where a texture or alpha makes it vary.
   TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index);
   /// Radiance of the point of barycentrics (b1, b2), times the share of rays that meet it there.
-  Rgb emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const;
+  Rgb emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const {
+    return varies ? varying_at(frame, surface, index, b1, b2) : radiance;
+  }
   bool emits() const { return area > 0 && max_component(radiance) > 0; }
   Rgbd flux() const;                       ///< pi L A, twice that if two-sided [W]
   Vec3 point(double b1, double b2) const;  ///< by the barycentrics of corners 1 and 2
+
+ private:
+  Rgb varying_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const;
 };
 
 struct TrianglePoint {

@@ -87,6 +87,7 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
   Inside inside;
   LastScatter last;
   Ray ray = camera_ray;
+  const SceneFrame& frame = scene.frame();
   ++counts.camera;
 
   for (std::uint32_t bounce = 0;; ++bounce) {
@@ -99,12 +100,12 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     SurfacePoint point = scene.tracer.surface_point(hit);
     const Vec3 wo = -ray.direction;
     const bool front = dot(point.normal_geometric, wo) > 0;
-    if (inside.any() || (!front && is_solid_glass(scene.frame().materials[point.material])))
-      throughput *= inside.transmittance_to(scene.frame().materials, point.material, front, hit.t);
+    if (inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
+      throughput *= inside.transmittance_to(frame.materials, point.material, front, hit.t);
     cone.advance(hit.t);
     add_emission(scene, point, wo, last, throughput, path.layer(), cone.width, result);
 
-    const SurfaceMaterial material(scene.frame(), point, cone.width);
+    const SurfaceMaterial material(frame, point, cone.width);
     if (material.values().unlit) [[unlikely]] {
       if (path.sharp()) result[path.layer()] += throughput * material.values().base_color;
       break;

@@ -83,11 +83,31 @@ struct SurfaceArrays {
   const Vec2* uvs;
   const Surface* instance;           ///< null if positions and normals are there
   std::uint32_t object, material;
-  bool flipped;
+  bool flipped, smooth;
   float instance_offset = 0;
 
-  Vec3 position(std::uint32_t vertex) const { return instance ? instance->position(vertex) : positions[vertex]; }
-  Vec3 normal(std::uint32_t vertex) const { return instance ? instance->normal(vertex) : normals[vertex]; }
+  /// Positions or normals of a triangle's corners, in scene space: where they are (copies wait for their parts), those of
+  /// an instance made in `own`.
+  struct Corners {
+    const Vec3 *a, *b, *c;
+  };
+  using Own = std::array<Vec3, 3>;
+  Corners corner_positions(const std::array<std::uint32_t, 3>& corner, Own& own) const {
+    if (instance) [[unlikely]] return instance_positions(corner, own);
+    return {positions + corner[0], positions + corner[1], positions + corner[2]};
+  }
+  Corners corner_normals(const std::array<std::uint32_t, 3>& corner, Own& own) const {
+    if (instance) [[unlikely]] return instance_normals(corner, own);
+    return {normals + corner[0], normals + corner[1], normals + corner[2]};
+  }
+  [[gnu::noinline]] Corners instance_positions(const std::array<std::uint32_t, 3>& corner, Own& own) const {
+    for (std::size_t i = 0; i < 3; ++i) own[i] = instance->position(corner[i]);
+    return {&own[0], &own[1], &own[2]};
+  }
+  [[gnu::noinline]] Corners instance_normals(const std::array<std::uint32_t, 3>& corner, Own& own) const {
+    for (std::size_t i = 0; i < 3; ++i) own[i] = instance->normal(corner[i]);
+    return {&own[0], &own[1], &own[2]};
+  }
 
   explicit SurfaceArrays(const Surface& s)
       : triangles(s.primitive->triangles.data()),
@@ -97,7 +117,8 @@ struct SurfaceArrays {
         instance(s.instanced() ? &s : nullptr),
         object(s.object),
         material(s.material),
-        flipped(s.flipped) {}
+        flipped(s.flipped),
+        smooth(s.smooth()) {}
 };
 
 constexpr unsigned kAllBlend = 1;   ///< RTCRay::id of a ray with all_blend
@@ -291,7 +312,7 @@ struct Tracer::Impl {
     return kInstanceOffsetScale * float(max_component(abs(m.translation)) + 1.8 * stretch * reach);
   }
 
-  void find_point(const Hit& hit, SurfacePoint& point) const;
+  SurfacePoint point_of(const Hit& hit) const;
   void build(Tree& tree, std::size_t first, std::size_t last) {
     tree.first_surface = std::uint32_t(first);
     if (first == last) return;
@@ -407,20 +428,12 @@ bool Tracer::occluded(const Ray& ray) const {
   return false;
 }
 
-SurfacePoint Tracer::surface_point(const Hit& hit) const {
-  SurfacePoint point;
-  impl_->find_point(hit, point);
-  return point;
-}
-
-void Tracer::surface_points(std::span<const Hit> hits, SurfacePoint* points) const {
-  for (std::size_t i = 0; i < hits.size(); ++i) impl_->find_point(hits[i], points[i]);
-}
-
-inline void Tracer::Impl::find_point(const Hit& hit, SurfacePoint& point) const {
+[[gnu::always_inline]] inline SurfacePoint Tracer::Impl::point_of(const Hit& hit) const {
   const SurfaceArrays& surface = surfaces[hit.surface];
   const auto& corner = surface.triangles[hit.triangle];
-  const Vec3 a = surface.position(corner[0]), b = surface.position(corner[1]), c = surface.position(corner[2]);
+  SurfaceArrays::Own own;
+  const SurfaceArrays::Corners at = surface.corner_positions(corner, own);
+  const Vec3 a = *at.a, b = *at.b, c = *at.c;
   float u = std::max(hit.u, kSmallestBarycentric), v = std::max(hit.v, kSmallestBarycentric);
   float w = std::max(1 - hit.u - hit.v, kSmallestBarycentric);
   const float scale = 1 / (u + v + w);
@@ -432,15 +445,16 @@ inline void Tracer::Impl::find_point(const Hit& hit, SurfacePoint& point) const 
   Vec3 normal_geometric = normalize(cross(b - a, c - a));
   if (surface.flipped) normal_geometric = -normal_geometric;
   Vec3 normal = normal_geometric;
-  if (surface.normals || (surface.instance && surface.instance->smooth())) {
-    const Vec3 n =
-        normalize(surface.normal(corner[0]) * w + surface.normal(corner[1]) * u + surface.normal(corner[2]) * v);
+  if (surface.smooth) {
+    const SurfaceArrays::Corners normals = surface.corner_normals(corner, own);
+    const Vec3 n = normalize(*normals.a * w + *normals.b * u + *normals.c * v);
     if (length2(n) > 0) {
       const bool behind = dot(n, normal_geometric) < 0;
       normal = {behind ? -n.x : n.x, behind ? -n.y : n.y, behind ? -n.z : n.z};
     }
   }
 
+  SurfacePoint point;
   point.position = a * w + b * u + c * v;
   point.normal_geometric = normal_geometric;
   point.normal = normal;
@@ -455,6 +469,13 @@ inline void Tracer::Impl::find_point(const Hit& hit, SurfacePoint& point) const 
   point.material = surface.material;
   point.u = u;
   point.v = v;
+  return point;
+}
+
+SurfacePoint Tracer::surface_point(const Hit& hit) const { return impl_->point_of(hit); }
+
+void Tracer::surface_points(std::span<const Hit> hits, SurfacePoint* points) const {
+  for (std::size_t i = 0; i < hits.size(); ++i) points[i] = impl_->point_of(hits[i]);
 }
 
 std::uint64_t Tracer::refused_ray_count() const { return impl_->refused.load(); }
