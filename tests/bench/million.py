@@ -43,7 +43,8 @@ def processes(bench, file, size, base):
     render = ["frame-render", *common, "--size", size, "-o", image]
     return [("scene-plan", ["scene-plan", file, "--frames", "0-47", "-o", f"{base}.plan"]),
             ("photon-trace", ["photon-trace", *common, "--photons", photons, "-o", photon_map]),
-            ("irradcache-build points", ["irradcache-build", "points", *common, "--photons", photon_map, *DRAFT["points"], "-o", points]),
+            ("irradcache-build points", ["irradcache-build", "points", *common, "--photons", photon_map, *DRAFT["points"],
+                                         "-o", points]),
             ("irradcache-build records", ["irradcache-build", "records", *common, "--points", points, "--size", size,
                                           *DRAFT["records"], "-o", cache]),
             ("frame-render, cache", [*render, "--irradcache", cache, "--points", points, "--spp", 2, "--pixel-error", 0.05]),
@@ -121,11 +122,13 @@ def loading(bench, _):
         rows.append([name, "all, scene-plan too", "", quantity(spent), quantity(opened), percent(opened / spent, 1), ""])
         met = met and opened / spent < 0.1
     return figure("Opening the scene, over the demo's 48 frames", "below 10 % of the pipeline's CPU seconds",
-                  ["scene", "stage", "processes", "CPU s of one", "opening the scene", "share", "writing its file, share of elapsed time"],
+                  ["scene", "stage", "processes", "CPU s of one", "opening the scene", "share",
+                   "writing its file, share of elapsed time"],
                   rows, None if bench.quick else met,
-                  [*notes, f"Makefile.example as it stands, the hall at 960x540, S4 at 640x360; measured on frames 0-{last}x{step}, as many processes "
-                   f"as the plan of 0-{last} has. A stage started once with `--frames 0-{last}` opens the scene once.",
-                   "photon-trace writes while it traces: what is left at the end is the last block, fsync and rename."])
+                  [*notes, f"Makefile.example as it stands, the hall at 960x540, S4 at 640x360; measured on frames 0-{last}x{step}, "
+                   f"as many processes as the plan of 0-{last} has. A stage started once with `--frames 0-{last}` opens the scene "
+                   "once.", "photon-trace writes while it traces: what is left at the end is fsync and rename. Frames are "
+                   "compressed by all threads, the bytes the same for any number of them."])
 
 
 FIGURES = {"million": million, "loading": loading}

@@ -7,6 +7,7 @@ import math
 import os
 
 import gathering
+import instructions
 import million
 from estimate import estimate
 from found import found
@@ -198,4 +199,4 @@ def object_table(objects):
 
 FIGURES = {"path-tracer": path_tracer, "photon-rate": photon_rate, "photon-growth": photon_growth, "nearest": nearest,
            "threads": threads, "start": start, "estimate": estimate, "reading": reading, "references": references,
-           "found": found} | gathering.FIGURES | million.FIGURES | {"million-threads": million_threads}
+           "found": found} | gathering.FIGURES | million.FIGURES | {"million-threads": million_threads} | instructions.FIGURES

@@ -103,7 +103,8 @@ def make(path, triangles=10**6):
 
     def add(name, mesh, material):
         bounds = {f: [g(mesh.positions[i::3]) for i in range(3)] for f, g in (("min", min), ("max", max))}
-        attributes = {"POSITION": accessor(mesh.positions, "VEC3", 5126, **bounds), "NORMAL": accessor(mesh.normals, "VEC3", 5126)}
+        attributes = {"POSITION": accessor(mesh.positions, "VEC3", 5126, **bounds),
+                      "NORMAL": accessor(mesh.normals, "VEC3", 5126)}
         gltf["materials"].append({"name": name, **material})
         gltf["meshes"].append({"name": name, "primitives": [{"attributes": attributes, "material": len(gltf["materials"]) - 1,
                                                              "indices": accessor(mesh.indices, "SCALAR", 5125)}]})
@@ -112,7 +113,8 @@ def make(path, triangles=10**6):
 
     matte = {"KHR_materials_specular": {"specularFactor": 0}}
     for name, colour, mesh in meshes(triangles):
-        count += add(name, mesh, {"extensions": matte, "pbrMetallicRoughness": {"baseColorFactor": [*colour, 1], "metallicFactor": 0}})
+        count += add(name, mesh, {"extensions": matte,
+                                  "pbrMetallicRoughness": {"baseColorFactor": [*colour, 1], "metallicFactor": 0}})
     gltf["nodes"][-1]["translation"] = [4, 1.2, 3]
     times, places = array("f", [0, LAST_S]), array("f", [4, 1.2, 3, 11, 1.2, 4])
     gltf["animations"] = [{"samplers": [{"input": accessor(times, "SCALAR", 5126, min=[0], max=[LAST_S]),
@@ -120,7 +122,8 @@ def make(path, triangles=10**6):
                            "channels": [{"sampler": 0, "target": {"node": len(gltf["nodes"]) - 1, "path": "translation"}}]}]
     lamp = Mesh()
     lamp.grid(1, 1, lambda s, t: ([6 + 4 * s, 5.5, 3 + 2 * t], (0, -1, 0)))
-    count += add("Lamp", lamp, {"emissiveFactor": [1, 0.95, 0.85], "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0},
+    count += add("Lamp", lamp, {"emissiveFactor": [1, 0.95, 0.85],
+                                "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0},
                                 "extensions": matte | {"KHR_materials_emissive_strength": {"emissiveStrength": 12}}})
     gltf["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.01}}]
     gltf["nodes"].append({"name": "Camera", "camera": 0, "translation": [0.7, 3, 7], "rotation": [-0.05, -0.46, -0.026, 0.886]})
