@@ -32,7 +32,8 @@
 namespace tempolux {
 namespace {
 
-constexpr int kSlabLines = 64;  // a multiple of every chunk we write
+// Lines that a thread decompresses at a time, and compresses: one chunk of ZIP, so that 540 lines keep many threads busy.
+constexpr int kReadLines = 64, kSlabLines = 16;
 constexpr float kLargestHalf = 65504;
 // OpenEXR's level 4 of deflate; the default of a later OpenEXR must not change our bytes.
 constexpr int kDeflateLevel = 4;
@@ -292,7 +293,7 @@ Image read_data_window(const ByteFile& file, const ExrClaims& claims) {
             [](const Channel& a, const Channel& b) { return a.name < b.name; });
 
   const int height = image.height;
-  const int slab = claims.tile_width > 0 ? height : std::max(kSlabLines, claims.lines_per_chunk());
+  const int slab = claims.tile_width > 0 ? height : std::max(kReadLines, claims.lines_per_chunk());
   parallel_chunks(std::size_t(height), std::size_t(slab), [&](std::size_t first, std::size_t last) {
     read_lines(file, claims.data, image, int(first), int(last));
   });

@@ -1,6 +1,6 @@
 // lib/image/exr_io.h -- frames to and from OpenEXR; exr_io.cpp is the only user of OpenEXR.
 //
-// OpenEXR's own threads stay at 0: slabs of 64 lines are compressed and decompressed in our parallel loops,
+// OpenEXR's own threads stay at 0: slabs of lines are compressed and decompressed in our parallel loops,
 // which obey ThreadLimit, and joined in order. The bytes are those OpenEXR writes in one go.
 #pragma once
 
