@@ -62,7 +62,7 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
   if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
 }
 
-void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number) {
+void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing) {
   tools::FrameOutputs outputs(tools::frame_name(options.output, number), options.frame.halves, tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
@@ -78,7 +78,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
     frame_options.mask = base.mask;
   }
   tool.stats().phase("build");
-  const Tracer tracer(frame);
+  const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
   const RenderScene scene{tracer, lights};
   const tools::IndirectLight light(tool, options.light, tracer, lights, number);
@@ -213,7 +213,8 @@ int main(int argc, char** argv) {
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::a_camera);
     warn_of_darkness(tool, input.scene());
-    for (int frame : frames) render(tool, input, options, frame);
+    StandingTree standing;
+    for (int frame : frames) render(tool, input, options, frame, standing);
     return tools::exit_ok;
   });
 }

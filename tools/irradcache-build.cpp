@@ -37,12 +37,12 @@ struct Options {
   const std::string& scene() const { return inputs.back(); }
 };
 
-void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number) {
+void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing) {
   tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   tool.stats().phase("build");
-  const Tracer tracer(frame);
+  const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
   tool.stats().phase("points", true);
   const tools::GatherPoints points =
@@ -205,8 +205,9 @@ int main(int argc, char** argv) {
     options.point.seed = options.gather.seed = tool.common().seed_for_frame(frames.front());
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light);
+    StandingTree standing;
     if (options.mode() == "points")
-      for (int frame : frames) build_points(tool, input, options, frame);
+      for (int frame : frames) build_points(tool, input, options, frame, standing);
     else
       build_records(tool, input, options, frames);
     return tools::exit_ok;

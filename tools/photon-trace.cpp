@@ -30,13 +30,14 @@ std::uint32_t group_count(const std::string& text) {
   return std::uint32_t(count);
 }
 
-void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int frame_number) {
+void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int frame_number,
+                 StandingTree& standing) {
   tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(frame_number);
   const EmissionTable& emission = input.emission(frame.frame);
   tool.stats().phase("build");
-  const Tracer tracer(frame);
+  const Tracer tracer(frame, standing);
   const Lights lights(frame, emission);
 
   PhotonOptions photon_options;
@@ -85,7 +86,8 @@ int main(int argc, char** argv) {
       throw InputError("--output: several frames need a pattern, for example f.####.photons");
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light);
-    for (int frame : frames) trace_frame(tool, input, options, frame);
+    StandingTree standing;
+    for (int frame : frames) trace_frame(tool, input, options, frame, standing);
     return tools::exit_ok;
   });
 }

@@ -232,31 +232,71 @@ struct Packet {
 
 }  // namespace
 
+/// What all trees of a device come from.
+struct Forest {
+  RTCDevice device = rtcNewDevice(nullptr);
+  std::unordered_map<const Primitive*, SharedTree> shared_trees;
+
+  Forest() {
+    if (!device) throw ResourceError("Embree: cannot make a device");
+  }
+  Forest(const Forest&) = delete;
+  Forest& operator=(const Forest&) = delete;
+  ~Forest() {
+    for (const auto& [primitive, shared] : shared_trees)
+      if (shared.scene) rtcReleaseScene(shared.scene);
+    rtcReleaseDevice(device);
+  }
+};
+
+struct StandingTree::Kept {
+  std::shared_ptr<Forest> forest;
+  Tree tree;
+  std::vector<Surface> surfaces;   ///< those in it; they keep its arrays, so that equal addresses are equal arrays
+
+  ~Kept() {
+    if (tree.scene) rtcReleaseScene(tree.scene);
+  }
+  bool filtered = false;           ///< filters ask the frame they were made for: such a tree is of no other
+
+  bool holds_for(const SceneFrame& frame) const {
+    const auto same = [](const Surface& a, const Surface& b) {
+      return a.primitive == b.primitive && a.positions.data() == b.positions.data() && a.scene_from_node == b.scene_from_node;
+    };
+    return !filtered && surfaces.size() == frame.static_count &&
+           std::equal(surfaces.begin(), surfaces.end(), frame.surfaces.begin(), same) && !passable(frame);
+  }
+  static bool passable(const SceneFrame& frame) {
+    return std::any_of(frame.surfaces.begin(), frame.surfaces.begin() + std::ptrdiff_t(frame.static_count),
+                       [&](const Surface& s) { return lets_rays_pass(frame.materials[s.material]); });
+  }
+};
+
+StandingTree::StandingTree() = default;
+StandingTree::~StandingTree() = default;
+
 struct Tracer::Impl {
   const SceneFrame* frame = nullptr;
-  RTCDevice device = nullptr;
+  std::shared_ptr<Forest> forest;
+  std::shared_ptr<const StandingTree::Kept> standing;   ///< owns `fixed`
   Tree fixed, moving;
-  std::unordered_map<const Primitive*, SharedTree> shared_trees;
   std::vector<SurfaceArrays> surfaces;
   std::deque<AlphaSurface> alpha;   ///< of the surfaces that have a filter; they stay where they are
   mutable std::atomic<std::uint64_t> refused{0};
 
   ~Impl() {
-    if (fixed.scene) rtcReleaseScene(fixed.scene);
     if (moving.scene) rtcReleaseScene(moving.scene);
-    for (const auto& [primitive, shared] : shared_trees) rtcReleaseScene(shared.scene);
-    if (device) rtcReleaseDevice(device);
   }
 
   void throw_on_error() const {
-    const RTCError error = rtcGetDeviceError(device);
+    const RTCError error = rtcGetDeviceError(forest->device);
     if (error == RTC_ERROR_NONE) return;
     if (error == RTC_ERROR_OUT_OF_MEMORY) throw ResourceError("building the search tree: out of memory");
     throw ResourceError("building the search tree: Embree error " + std::to_string(int(error)));
   }
 
   RTCGeometry triangles_of(const Primitive& primitive, const Vec3* positions) {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Embree reads vertices in 16-byte loads, so the last one needs padding: a copy of its own.
     auto* vertices = static_cast<Vec3*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), primitive.positions.size()));
@@ -267,9 +307,9 @@ struct Tracer::Impl {
   }
 
   const SharedTree& shared_tree(const Primitive& primitive) {
-    SharedTree& shared = shared_trees[&primitive];
+    SharedTree& shared = forest->shared_trees[&primitive];
     if (shared.scene) return shared;
-    shared.scene = rtcNewScene(device);
+    shared.scene = rtcNewScene(forest->device);
     rtcSetSceneBuildQuality(shared.scene, RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneFlags(shared.scene, RTC_SCENE_FLAG_ROBUST);
     const RTCGeometry geometry = triangles_of(primitive, primitive.positions.data());
@@ -286,7 +326,7 @@ struct Tracer::Impl {
 
   void attach_instance(Tree& tree, const Surface& surface, unsigned id) {
     const SharedTree& shared = shared_tree(*surface.primitive);
-    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    const RTCGeometry geometry = rtcNewGeometry(forest->device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry, shared.scene);
     const Affine& m = surface.scene_from_node;
     const float rows[12] = {float(m.row[0].x), float(m.row[0].y), float(m.row[0].z), float(m.translation.x),
@@ -308,7 +348,7 @@ struct Tracer::Impl {
   float instance_offset(const Surface& surface) const {
     const Affine& m = surface.scene_from_node;
     const double stretch = std::sqrt(std::max({length2(m.row[0]), length2(m.row[1]), length2(m.row[2])}));
-    const double reach = double(shared_trees.at(surface.primitive).reach);
+    const double reach = double(forest->shared_trees.at(surface.primitive).reach);
     return kInstanceOffsetScale * float(max_component(abs(m.translation)) + 1.8 * stretch * reach);
   }
 
@@ -316,7 +356,7 @@ struct Tracer::Impl {
   void build(Tree& tree, std::size_t first, std::size_t last) {
     tree.first_surface = std::uint32_t(first);
     if (first == last) return;
-    tree.scene = rtcNewScene(device);
+    tree.scene = rtcNewScene(forest->device);
     rtcSetSceneBuildQuality(tree.scene, RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneFlags(tree.scene, RTC_SCENE_FLAG_ROBUST);
     for (std::size_t s = first; s < last; ++s) {
@@ -349,10 +389,27 @@ struct Tracer::Impl {
 };
 
 Tracer::Tracer(const SceneFrame& frame) : impl_(std::make_unique<Impl>()) {
+  StandingTree none;
+  build(frame, none);
+}
+
+Tracer::Tracer(const SceneFrame& frame, StandingTree& standing) : impl_(std::make_unique<Impl>()) { build(frame, standing); }
+
+void Tracer::build(const SceneFrame& frame, StandingTree& standing) {
   impl_->frame = &frame;
-  impl_->device = rtcNewDevice(nullptr);
-  if (!impl_->device) throw ResourceError("Embree: cannot make a device");
-  impl_->build(impl_->fixed, 0, frame.static_count);
+  if (!standing.kept_ || !standing.kept_->holds_for(frame)) {
+    standing.kept_.reset();   // before the next one: they need not fit into memory together
+    impl_->forest = std::make_shared<Forest>();
+    const auto made = std::make_shared<StandingTree::Kept>();
+    made->forest = impl_->forest;
+    made->surfaces.assign(frame.surfaces.begin(), frame.surfaces.begin() + std::ptrdiff_t(frame.static_count));
+    made->filtered = StandingTree::Kept::passable(frame);
+    impl_->build(made->tree, 0, frame.static_count);
+    standing.kept_ = made;
+  }
+  impl_->standing = standing.kept_;
+  impl_->forest = impl_->standing->forest;
+  impl_->fixed = impl_->standing->tree;
   impl_->build(impl_->moving, frame.static_count, frame.surfaces.size());
   for (const Surface& surface : frame.surfaces) {
     impl_->surfaces.emplace_back(surface);

@@ -24,6 +24,19 @@ struct Hit {
   float u = 0, v = 0;                            ///< barycentrics of corners 1 and 2
 };
 
+/// The search tree of what stands still, handed from the Tracer of one frame to that of the next: built anew only where that
+/// is something else. For the frames of one Scene, one Tracer made at a time.
+class StandingTree {
+ public:
+  StandingTree();
+  ~StandingTree();
+
+ private:
+  friend class Tracer;
+  struct Kept;
+  std::shared_ptr<const Kept> kept_;
+};
+
 /// Two search trees, what is static over the segment and what moves; the nearer hit wins, static at a tie.
 /// Surfaces of alpha mode MASK are not there where alpha is below the cut-off; those of BLEND are met with probability
 /// alpha, drawn from the bits of ray and triangle: in the mean a share 1 - alpha of all light goes through, straight on,
@@ -31,6 +44,9 @@ struct Hit {
 class Tracer {
  public:
   explicit Tracer(const SceneFrame& frame);
+  /// The same; the tree of the static surfaces is that of `standing` if they are the same arrays, as in all frames of a
+  /// SegmentScene, and let no ray pass by alpha. Else it is built, and left there for the next.
+  Tracer(const SceneFrame& frame, StandingTree& standing);
   ~Tracer();
   Tracer(Tracer&&) noexcept;
 
@@ -54,6 +70,7 @@ class Tracer {
 
  private:
   struct Impl;
+  void build(const SceneFrame& frame, StandingTree& standing);
   std::unique_ptr<Impl> impl_;
 };
 

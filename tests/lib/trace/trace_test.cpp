@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "lib/core/random.h"
 #include "tests/support/scenes.h"
@@ -102,6 +104,56 @@ TEST(Tracer, TheStaticSurfaceWinsATie) {
   Hit hits[2];
   tracer.intersect(rays, hits);
   for (const Hit& one : hits) EXPECT_EQ(tracer.surface_point(one).object, 1u);
+}
+
+/// Where a ray straight down from a height of 5 m is met: by what stands, by all.
+std::array<float, 2> heights(const Tracer& tracer) {
+  const Ray down{{0.25f, 5, 0.125f}, {0, -1, 0}, 0, INFINITY};
+  Hit standing, nearest;
+  const bool stands = tracer.intersect_static(down, standing), any = tracer.intersect(down, nearest);
+  return {stands ? 5 - standing.t : NAN, any ? 5 - nearest.t : NAN};
+}
+
+SceneFrame with_height(SceneFrame frame, std::size_t surface, float y) {
+  std::vector<Vec3> positions(frame.surfaces[surface].positions.begin(), frame.surfaces[surface].positions.end());
+  for (Vec3& p : positions) p.y = y;
+  frame.surfaces[surface].positions = std::move(positions);
+  return frame;
+}
+
+TEST(Tracer, WhatStandsIsTakenFromTheFrameBefore) {
+  HandMadeScene scene;
+  scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.1f)));
+  scene.add_quad({-1, 1, 1}, {1, 1, 1}, {1, 1, -1}, {-1, 1, -1}, matte(Rgb(0.9f)), true);
+  using Heights = std::array<float, 2>;
+  StandingTree standing;
+  const SceneFrame first = scene.frame(), second = with_height(first, 1, 2);
+  const Tracer a(first, standing), b(second, standing);
+  EXPECT_EQ(heights(b), (Heights{0, 2}));
+  EXPECT_EQ(heights(a), (Heights{0, 1}));   // still its own
+  const SceneFrame lower = with_height(second, 0, -1);   // other arrays, as in another segment
+  EXPECT_EQ(heights(Tracer(lower, standing)), (Heights{-1, 2}));
+  SceneFrame none = second;
+  none.surfaces.erase(none.surfaces.begin());
+  none.static_count = 0;
+  const Heights alone = heights(Tracer(none, standing));
+  EXPECT_TRUE(std::isnan(alone[0]));
+  EXPECT_EQ(alone[1], 2);
+  EXPECT_EQ(heights(Tracer(second, standing)), (Heights{0, 2}));
+}
+
+TEST(Tracer, WhatStandsIsNotTakenWhereRaysMayPass) {
+  HandMadeScene scene;
+  scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, matte(Rgb(0.1f)));
+  const SceneFrame solid = scene.frame();
+  auto hidden = std::make_unique<SceneFrame>(solid);
+  hidden->materials[0].alpha_mode = Material::Alpha::mask;
+  hidden->materials[0].alpha = 0;
+  StandingTree standing;
+  EXPECT_EQ(heights(Tracer(solid, standing))[0], 0);
+  EXPECT_TRUE(std::isnan(heights(Tracer(*hidden, standing))[0]));
+  hidden.reset();   // a filter left in the tree would ask it
+  EXPECT_EQ(heights(Tracer(solid, standing))[0], 0);
 }
 
 TEST(Tracer, RaysThatAreNotFiniteAreMissesAndCounted) {
