@@ -1,5 +1,6 @@
 // lib/light/light_sampling.cpp -- light samples as seen from a point, and their densities.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -16,17 +17,26 @@ double sun_weight(const PlacedLight& placed, Vec3 normal) {
   return normal == Vec3{} ? e : e * std::max(0.0f, -dot(normal, placed.direction));
 }
 
+double share_of_distant(double distant, double others) {
+  return others > 0 ? std::clamp(distant / (distant + others), 0.2, 0.8) : 1;
+}
+
+constexpr double kFew = 0.4;   // of the irradiance: lights that give less get a sample by chance
+
 }  // namespace
 
-/// Probability of choosing a light from infinitely far: their share of an estimate of the irradiance, at least a
-/// fifth for either kind that can be seen at all. total: the weights of the environment and the directional lights.
-/// Not asked where there is none.
-double Lights::Impl::distant_share(Vec3 point, Vec3 normal, double& total) const {
-  total = environment_weight;
+/// The weights of the environment and the directional lights.
+double Lights::Impl::sum_distant(Vec3 normal) const {
+  double total = environment_weight;
   for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
-  if (!(total > 0)) return 0;
-  const double others = tree.importance(point, normal);
-  return others > 0 ? std::clamp(total / (total + others), 0.2, 0.8) : 1;
+  return total;
+}
+
+/// Probability of choosing a light from infinitely far: their share of an estimate of the irradiance, at least a
+/// fifth for either kind that can be seen at all. total: their weights.
+double Lights::Impl::distant_share(Vec3 point, Vec3 normal, double& total) const {
+  total = distant_irradiance(normal);
+  return total > 0 ? share_of_distant(total, tree.importance(point, normal)) : 0;
 }
 
 /// u in [0, 1) chooses among them: the environment first.
@@ -87,29 +97,35 @@ bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double p
 }
 
 bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
-  return impl_->sample(point, normal, u_choice, u, false, sample);
+  const Impl& m = *impl_;
+  return m.sample(m.tree, m.tree_slot, m.tree.start(point, normal), m.distant_irradiance(normal), point, normal, u_choice, u, false, sample);
 }
 
 bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const {
-  return impl_->sample(point, normal, u.x, u, true, sample);
+  const Impl& m = *impl_;
+  return m.sample(m.tree, m.tree_slot, m.tree.start(point, normal), m.distant_irradiance(normal), point, normal, u.x, u, true, sample);
 }
 
-bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const {
-  const Impl& m = *this;
+/// Of the lights of a tree, slot_of its lights, and of those infinitely far.
+bool Lights::Impl::sample(const LightTree& from, const std::vector<std::uint32_t>& slot_of, const LightTree::Start& start,
+                          double distant, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const {
   sample = {};
-  double total = 0;
-  const double share = m.any_distant ? m.distant_share(point, normal, total) : 0;
+  const double share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
   if (u_choice < share) {
     // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
-    return m.sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, total, sample) &&
-           is_finite(sample.radiance);
+    return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) && is_finite(sample.radiance);
   }
-  if (m.tree.empty()) return false;
+  if (from.empty()) return false;
   LightTree::Choice choice;
-  const float left = to_float(stretch(u_choice, share, 1 - share));
-  if (!m.tree.choose(point, normal, left, choice)) return false;
-  const double probability = choice.probability * (1 - share);
-  const std::uint32_t slot = m.tree_slot[choice.light];
+  if (!from.choose(start, point, normal, to_float(stretch(u_choice, share, 1 - share)), choice)) return false;
+  return sample_slot(slot_of[choice.light], point, choice.probability * (1 - share), choice.left, u, joint, sample);
+}
+
+/// What Lights::sample has of the light in the slot, chosen with this probability. left: what the choice left of its number,
+/// if joint in place of u.x.
+bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
+                               LightSample& sample) const {
+  const Impl& m = *this;
   if (slot >= m.triangles.size())
     return m.sample_placed(m.frame->lights[m.slots[slot].light], point, probability, sample) &&
            is_finite(sample.radiance);
@@ -117,7 +133,7 @@ bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool 
   if (joint) {
     // A float has 24 bits: where the choice has used them up, bits of the other coordinate take their place.
     const double step = 0x1p-24 / probability, fill = unit_double(mix64(std::bit_cast<std::uint32_t>(u.y)));
-    u.x = to_float(std::min(choice.left + fill * step, 1.0));
+    u.x = to_float(std::min(left + fill * step, 1.0));
   }
   TrianglePoint on_triangle;
   if (!sample_triangle(t, point, u, on_triangle)) return false;
@@ -130,6 +146,54 @@ bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool 
   return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.radiance);
 }
 
+bool Lights::has_large() const { return !impl_->large.empty(); }
+
+bool Lights::sample_large(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, Rgb& irradiance) const {
+  const std::vector<LargeLight>& large = impl_->large;
+  std::array<float, Impl::kMostLarge> each;
+  float sum = 0;
+  irradiance = Rgb(0.0f);
+  for (std::size_t i = 0; i < large.size(); ++i) {
+    const float projected = float(projected_solid_angle(large[i], point, normal));
+    irradiance += large[i].triangle.radiance * projected;
+    sum += each[i] = max_component(large[i].triangle.radiance) * projected;
+  }
+  sample = {};
+  if (!(sum > 0)) return false;
+  float left = u.x * sum;
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < large.size(); ++i) {
+    if (!(each[i] > 0)) continue;
+    chosen = i;
+    if (left < each[i]) break;
+    left -= each[i];
+  }
+  u.x = std::min(left / each[chosen], kOneMinusEpsilon);
+  LargeLightPoint found;
+  if (!sample_large_light(large[chosen], point, u, found)) return false;
+  const double pdf = double(each[chosen] / sum) * found.pdf_solid_angle;
+  sample.wi = found.wi;
+  sample.position = found.position;
+  sample.position_offset = large[chosen].triangle.offset;
+  sample.radiance = Rgb(Rgbd(large[chosen].triangle.radiance) / pdf);
+  sample.pdf_solid_angle = float(pdf);
+  return is_finite(sample.radiance);
+}
+
+bool Lights::sample_rest(Vec3 point, Vec3 normal, float besides, Vec2 u, LightSample& sample) const {
+  const Impl& m = *impl_;
+  const LightTree::Start start = m.rest.start(point, normal);
+  const double distant = m.distant_irradiance(normal), all = distant + start.sum;
+  if (!(all > 0)) return false;
+  const double chance = std::min(1.0, all / (kFew * (all + double(besides))));
+  if (!(double(u.x) < chance)) return false;
+  u.x = to_float(double(u.x) / chance);
+  if (!m.sample(m.rest, m.rest_slot, start, distant, point, normal, u.x, u, true, sample)) return false;
+  sample.radiance *= float(1 / chance);
+  sample.pdf_solid_angle *= float(chance);
+  return is_finite(sample.radiance);
+}
+
 float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle,
                               Vec3 on_light, Vec3) const {
   const Impl& m = *impl_;
@@ -139,7 +203,7 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
   if (!(on_triangle > 0)) return 0;
   double total = 0;
-  const double share = m.any_distant ? m.distant_share(point, normal, total) : 0;
+  const double share = m.distant_share(point, normal, total);
   const float pdf = float(on_triangle * (1 - share) * m.tree.probability(point, normal, light));
   return pdf < INFINITY ? pdf : 0;
 }

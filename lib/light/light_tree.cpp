@@ -30,8 +30,9 @@ Vec3 rotate(Vec3 v, Vec3 axis, float angle) {
 
 /// Smallest cone that holds both. Widened a little for rounding.
 void join_cones(LightBounds& a, const LightBounds& b) {
-  // The lines of two-sided lights have no sign of their own.
-  const Vec3 axis_b = a.two_sided && b.two_sided && dot(a.axis, b.axis) < 0 ? -b.axis : b.axis;
+  // The lines of two-sided lights have no sign of their own; those of one shell have outside of it.
+  const bool no_sign = a.two_sided && b.two_sided && !(a.shell == b.shell && a.shell.radius < INFINITY);
+  const Vec3 axis_b = no_sign && dot(a.axis, b.axis) < 0 ? -b.axis : b.axis;
   const float angle_a = std::acos(std::clamp(a.cos_spread, -1.0f, 1.0f));
   const float angle_b = std::acos(std::clamp(b.cos_spread, -1.0f, 1.0f));
   const float between = std::atan2(length(cross(a.axis, axis_b)), dot(a.axis, axis_b));
@@ -56,6 +57,7 @@ LightBounds join(LightBounds a, const LightBounds& b) {
   a.box.add(b.box);
   a.weight += b.weight;
   a.cos_reach = std::min(a.cos_reach, b.cos_reach);
+  if (!(a.shell == b.shell)) a.shell = {};
   a.two_sided = a.two_sided || b.two_sided;
   return a;
 }
@@ -186,6 +188,9 @@ void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) {
   node.sin_spread[lane] = safe_sqrt(1 - bounds.cos_spread * bounds.cos_spread);
   node.cos_reach[lane] = bounds.cos_reach - kSlack;
   node.two_sided[lane] = bounds.two_sided ? 1.0f : 0.0f;
+  for (int axis = 0; axis < 3; ++axis) node.shell[axis][lane] = bounds.shell.centre[axis];
+  node.shell_radius2[lane] = bounds.shell.radius * bounds.shell.radius;
+  node.shells = node.shells || bounds.shell.radius < INFINITY;
   node.weight[lane] = bounds.weight;
 }
 
@@ -238,7 +243,15 @@ std::size_t LightTree::split(std::vector<Item>& items, std::size_t first, std::s
 }
 
 double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double importance[kWidth]) {
-  float factor[kWidth];
+  float factor[kWidth], within[kWidth];
+  const float* two_sided = node.two_sided;
+  if (node.shells) {
+    for (int i = 0; i < kWidth; ++i) {
+      const float x = node.shell[0][i] - point.x, y = node.shell[1][i] - point.y, z = node.shell[2][i] - point.z;
+      within[i] = x * x + y * y + z * z <= node.shell_radius2[i] ? node.two_sided[i] : 0.0f;
+    }
+    two_sided = within;
+  }
   const float no_normal = normal == Vec3{} ? 1.0f : 0.0f;
   for (int i = 0; i < kWidth; ++i) {
     const float x = node.centre[0][i] - point.x, y = node.centre[1][i] - point.y,
@@ -247,7 +260,7 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
     const float inverse = 1 / std::sqrt(std::max(distance2, 1e-18f));
     const float sin_size = std::min(1.0f, radius * inverse), cos_size = safe_sqrt(1 - sin_size * sin_size);
     const float along = -(node.axis[0][i] * x + node.axis[1][i] * y + node.axis[2][i] * z) * inverse;
-    const float cos_axis = node.two_sided[i] > 0 ? std::abs(along) : along;
+    const float cos_axis = two_sided[i] > 0 ? std::abs(along) : along;
     const float sin_axis = safe_sqrt(1 - cos_axis * cos_axis);
     // Angle from the nearest normal, less the angle that the box fills.
     const float cos_x = cos_difference(sin_axis, cos_axis, node.sin_spread[i], node.cos_spread[i]);
@@ -277,13 +290,25 @@ double LightTree::importance(Vec3 point, Vec3 normal) const {
   return nodes_.empty() ? 0 : whole_ * importances(nodes_[0], point, normal, each);
 }
 
+LightTree::Start LightTree::start(Vec3 point, Vec3 normal) const {
+  Start start;
+  if (!nodes_.empty()) start.sum = whole_ * importances(nodes_[0], point, normal, start.each);
+  return start;
+}
+
 bool LightTree::choose(Vec3 point, Vec3 normal, float u, Choice& choice) const {
+  return choose(start(point, normal), point, normal, u, choice);
+}
+
+bool LightTree::choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const {
   double probability = 1, left = u;
   for (const Node* node = &nodes_[0];;) {
     int lane = 0;
     if (node->count > 1) {
-      double each[kWidth];
-      const double sum = importances(*node, point, normal, each);
+      double below[kWidth];
+      const bool first = node == &nodes_[0];
+      const double* each = first ? start.each : below;
+      const double sum = first ? start.sum / whole_ : importances(*node, point, normal, below);
       if (!(sum > 0)) return false;
       left *= sum;
       // The lane in which the running sum passes `left`; the last one that counts, should rounding pass them

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lib/core/vec.h"
+#include "lib/light/convex_shell.h"
 
 namespace tempolux {
 
@@ -21,6 +21,7 @@ struct LightBounds {
   float cos_spread = 1;    ///< all normals are within this angle of the axis
   float cos_reach = 0;     ///< and shine no farther than this angle from their normal (at most pi/2)
   bool two_sided = false;  ///< some shine backwards as well
+  Ball shell;              ///< backwards only to points in here
 };
 
 class LightTree {
@@ -37,6 +38,14 @@ class LightTree {
     double probability = 0;  ///< of the light, at this point and normal
     double left = 0;         ///< what the choice left of u, in [0, 1): uniform again
   };
+  /// The walk's first step, before anything is chosen. [of weight / m^2]
+  static constexpr int kWidth = 8;
+  struct Start {
+    double each[kWidth];  ///< importance of the children, in parts of the whole tree's weight
+    double sum = 0;       ///< of all, as importance()
+  };
+  Start start(Vec3 point, Vec3 normal) const;
+  bool choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const;
   /// Walks down by the importance of both children: an upper bound of weight cos cos / distance^2. `normal`:
   /// unit, or zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at
   /// a node of which no light can reach the point.
@@ -45,11 +54,12 @@ class LightTree {
   double probability(Vec3 point, Vec3 normal, std::uint32_t light) const;
 
  private:
-  static constexpr int kWidth = 8;
   struct alignas(32) Node {
     float centre[3][kWidth], radius[kWidth];  ///< of the sphere around the child's box
     float axis[3][kWidth], cos_spread[kWidth], sin_spread[kWidth], cos_reach[kWidth];
     float two_sided[kWidth];      ///< 1 or 0
+    float shell[3][kWidth], shell_radius2[kWidth];
+    bool shells;                  ///< is there a finite one?
     double weight[kWidth];        ///< in parts of the whole tree's; 0: no child
     std::uint32_t child[kWidth];  ///< a node, or the light of a leaf
     std::uint32_t parent;         ///< kWidth x node + lane

@@ -24,7 +24,8 @@ EmissionSlot::Kind slot_kind(PunctualLight::Kind kind) {
   return EmissionSlot::Kind::point;
 }
 
-LightBounds bounds_of(const TriangleLight& t) {
+/// shell: from outside of it the back is hidden.
+LightBounds bounds_of(const TriangleLight& t, const Ball& shell) {
   LightBounds b;
   b.box.add(t.corner);
   b.box.add(t.corner + t.edge1);
@@ -32,6 +33,7 @@ LightBounds bounds_of(const TriangleLight& t) {
   b.axis = t.normal;
   b.weight = double(max_component(t.radiance)) * t.area;
   b.two_sided = t.two_sided;
+  b.shell = shell;
   return b;
 }
 
@@ -87,13 +89,23 @@ Rgbd Lights::Impl::slot_flux(std::size_t slot) const {
   return punctual_flux(frame->lights[slots[slot].light].light, sphere_radius);
 }
 
+/// Of a surface both of whose sides shine.
+Ball Lights::Impl::shell_of(std::uint32_t surface) const {
+  const Material& material = frame->materials[frame->surfaces[surface].material];
+  if (!material.double_sided || lets_rays_pass(material)) return {};
+  return convex_shell(frame->surfaces[surface]).value_or(Ball{});
+}
+
 void Lights::Impl::build_tree() {
   std::vector<LightBounds> bounds;
   tree_index.assign(slots.size(), kNone);
+  std::uint32_t of = kNone;
+  Ball shell;
   for (std::uint32_t i = 0; i < slots.size(); ++i) {
     if (i < triangles.size()) {
       if (!triangles[i].emits()) continue;
-      bounds.push_back(bounds_of(triangles[i]));
+      if (slots[i].surface != of) shell = shell_of(of = slots[i].surface);
+      bounds.push_back(bounds_of(triangles[i], shell));
     } else {
       if (slots[i].kind == EmissionSlot::Kind::environment) continue;
       const PlacedLight& placed = frame->lights[slots[i].light];
@@ -109,6 +121,31 @@ void Lights::Impl::build_tree() {
   }
   any_distant = environment_weight > 0 || !suns.empty();
   tree = LightTree(bounds);
+  choose_large(bounds);
+}
+
+/// bounds: of the lights of `tree`.
+void Lights::Impl::choose_large(const std::vector<LightBounds>& bounds) {
+  double whole = 0;
+  for (const LightBounds& b : bounds) whole += b.weight;
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < bounds.size(); ++i)
+    if (tree_slot[i] < triangles.size() && !triangles[tree_slot[i]].varies && bounds[i].weight >= kLarge * whole) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return bounds[a].weight > bounds[b].weight; });
+  order.resize(std::min(order.size(), kMostLarge));
+  if (order.empty()) return;
+  std::vector<LightBounds> others;
+  std::vector<TriangleLight> chosen;
+  for (std::uint32_t i = 0; i < bounds.size(); ++i) {
+    if (std::find(order.begin(), order.end(), i) != order.end()) {
+      chosen.push_back(triangles[tree_slot[i]]);
+    } else {
+      rest_slot.push_back(tree_slot[i]);
+      others.push_back(bounds[i]);
+    }
+  }
+  large = join_rectangles(chosen);
+  rest = LightTree(others);
 }
 
 Lights::Lights(const SceneFrame& frame, const EmissionTable& table)

@@ -90,6 +90,15 @@ class Lights {
   /// The same from one stratified pair: u.x chooses the light and, stretched, is its first coordinate on it, so
   /// that samples stratified over the square are stratified over every light.
   bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const;
+  /// Are there large lights: up to four triangles of even radiance that each hold a twentieth of what the lights that are
+  /// somewhere emit?
+  bool has_large() const;
+  /// The same for the large lights alone, chosen by their exact irradiance where nothing is in the way, which is also given:
+  /// the mean of radiance cos over u. Needs a unit normal.
+  bool sample_large(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, Rgb& irradiance) const;
+  /// And for all others. Where they can give little against the irradiance `besides` of the same point a sample comes by chance
+  /// only, and is as much brighter.
+  bool sample_rest(Vec3 point, Vec3 normal, float besides, Vec2 u, LightSample& sample) const;
   /// Density per solid angle with which sample() at (point, normal) would have chosen the position
   /// `on_light` of this emissive triangle, seen from its front or (two-sided) back; 0 if it is no light. The
   /// triangle's own plane decides, as in sample(); light_normal is not looked at.

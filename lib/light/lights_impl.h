@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lib/core/sampling.h"
+#include "lib/light/large_light.h"
 #include "lib/light/light_tree.h"
 #include "lib/light/lights.h"
 #include "lib/light/triangle_light.h"
@@ -16,7 +17,8 @@
 namespace tempolux {
 
 struct Lights::Impl {
-  bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const;
+  bool sample(const LightTree& from, const std::vector<std::uint32_t>& slot_of, const LightTree::Start& start, double distant,
+              Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const;
   const SceneFrame* frame;
   Vec3 sphere_centre;
   double sphere_radius;
@@ -32,13 +34,25 @@ struct Lights::Impl {
   double environment_weight = 0;  // irradiance by the environment, the mean over all normals; 0: none or black
   bool any_distant = false;       // an environment that is not black, or a sun
   LightTree tree{{}};
+  std::vector<LargeLight> large;          // see Lights::has_large
+  LightTree rest{{}};                     // without them; only if there are any
+  std::vector<std::uint32_t> rest_slot;   // by light of `rest`
+
+  static constexpr std::size_t kMostLarge = 4;
+  static constexpr double kLarge = 0.05;  // of the weight of all lights in the tree
 
   Impl(const SceneFrame& frame_, const EmissionTable& table);
   void add_slots(const EmissionTable& table);
   void build_tree();
+  Ball shell_of(std::uint32_t surface) const;
 
   Rgbd slot_flux(std::size_t slot) const;   ///< W
+  void choose_large(const std::vector<LightBounds>& bounds);
+  double sum_distant(Vec3 normal) const;
+  double distant_irradiance(Vec3 normal) const { return any_distant ? sum_distant(normal) : 0; }
   double distant_share(Vec3 point, Vec3 normal, double& total) const;
+  bool sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
+                   LightSample& sample) const;
   bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
                       LightSample& s) const;
   bool sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const;

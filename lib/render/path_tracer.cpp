@@ -10,6 +10,8 @@ namespace {
 constexpr std::uint32_t kRouletteFrom = 3;     ///< bounces that always survive
 constexpr float kLargestSurvival = 0.998f;     ///< so that paths in a lossless box end, after 500 bounces in the mean
 
+float mean_channel(Rgb c) { return (c.r + c.g + c.b) / 3; }
+
 /// The last scattering: what a hit on a light must know to weigh itself against light sampling.
 struct LastScatter {
   bool weighed = false;                        ///< false: camera ray or delta lobe, light sampling could not find it
@@ -52,6 +54,37 @@ void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, const Rg
   result[path.after(false).layer()] += arriving * glossy;
 }
 
+bool reaches(const RenderScene& scene, const ShadingPoint& x, const LightSample& light, RayCounts& counts) {
+  if (!x.sees(light.wi)) return false;
+  ++counts.shadow;
+  return !scene.tracer.occluded(spawn_shadow_ray(x.surface, light.position, light.position_offset));
+}
+
+/// The same at a matte end of the path: large lights and the others apart.
+void add_controlled_light(const RenderScene& scene, const ShadingPoint& x, const Rgb& throughput, const EyePath& path,
+                          const PixelRandom& random, std::uint32_t bounce, Layers& result, LightControl& control, RayCounts& counts) {
+  const Layer layer = path.after(true).layer();
+  const Rgb reflected = throughput * x.bsdf.diffuse_albedo() * kInvPi;
+  const Vec3 position = x.surface.position;
+  Rgb& noise = layer == Layer::direct ? control.direct : control.specular;
+  LightSample light;
+  Rgb exact;
+  if (scene.lights.sample_large(position, x.normal, random.get2(bounce, Purpose::light_point), light, exact)) {
+    const Rgb arriving = reflected * light.radiance * std::max(0.0f, dot(light.wi, x.normal));
+    noise += arriving;
+    control.sampled += mean_channel(arriving);
+    if (!is_black(arriving) && reaches(scene, x, light, counts)) {
+      control.seen += mean_channel(arriving);
+      result[layer] += arriving;
+    }
+  }
+  noise += reflected * exact * -1.0f;
+
+  if (!scene.lights.sample_rest(position, x.normal, max_component(exact), random.get2(bounce, Purpose::light_choice), light)) return;
+  const Rgb arriving = reflected * light.radiance * std::max(0.0f, dot(light.wi, x.normal));
+  if (!is_black(arriving) && reaches(scene, x, light, counts)) result[layer] += arriving;
+}
+
 /// Emission of the surface that was hit, weighed against light sampling from the scattering before.
 /// Textures are read at their finest level where light sampling could have found the light: both read the same.
 void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, const LastScatter& last,
@@ -81,18 +114,26 @@ void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter
 
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
                       const DiffuseLight* diffuse_light, RayCounts& counts, RayCone cone) {
+  EyeRay eye{camera_ray, {}, cone};
+  scene.tracer.intersect(camera_ray, eye.hit);
+  return trace_eye_path(scene, eye, random, diffuse_light, counts, nullptr);
+}
+
+Layers trace_eye_path(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random, const DiffuseLight* diffuse_light,
+                      RayCounts& counts, LightControl* control) {
   Layers result;
   Rgb throughput{1.0f};
   EyePath path;
   Inside inside;
   LastScatter last;
-  Ray ray = camera_ray;
   const SceneFrame& frame = scene.frame();
+  RayCone cone = eye.cone;
+  Ray ray = eye.ray;
+  Hit hit = eye.hit;
   ++counts.camera;
 
   for (std::uint32_t bounce = 0;; ++bounce) {
-    Hit hit;
-    if (!scene.tracer.intersect(ray, hit)) {
+    if (hit.surface == kNone) {
       if (scene.lights.has_environment()) add_environment(scene, ray.direction, last, throughput, path.layer(), result);
       break;
     }
@@ -112,7 +153,10 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     }
     const ShadingPoint x(point, wo, material);
     const bool ends_here = diffuse_light && x.bsdf.has_diffuse();
-    add_sampled_light(scene, x, throughput, path, inside, random, bounce, !ends_here, result, counts);
+    if (ends_here && control && x.bsdf.is_matte() && !inside.any())
+      add_controlled_light(scene, x, throughput, path, random, bounce, result, *control, counts);
+    else
+      add_sampled_light(scene, x, throughput, path, inside, random, bounce, !ends_here, result, counts);
     if (ends_here) {
       const bool seen_directly = path.layer() == Layer::emission;
       const DiffuseLight::Irradiance e = diffuse_light->at(point, x.normal_geometric, x.normal, seen_directly);
@@ -147,6 +191,8 @@ Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Pix
     last.pdf_solid_angle = next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.wo_local) : x.bsdf.pdf_specular(next.wi, x.wo_local);
     ray = spawn_ray(point, wi);
     ++counts.bounce;
+    hit = {};
+    scene.tracer.intersect(ray, hit);
   }
   return result;
 }

@@ -99,6 +99,13 @@ class DiffuseLight {
   virtual Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const = 0;
 };
 
+/// Samples of the large lights (Lights::has_large) at the ends of eye paths, shadows left out, less what they are in the mean,
+/// which is known: the noise of sampling but for its shadows. Sums over samples of a pixel.
+struct LightControl {
+  Rgb direct{0.0f}, specular{0.0f};   ///< by layer: sampled less exact [W/m^2/sr]; 0 in the mean
+  float sampled = 0, seen = 0;        ///< samples without and with shadows, mean of the channels
+};
+
 /// The scene as a renderer sees it; all must outlive it.
 struct RenderScene {
   const Tracer& tracer;
@@ -114,8 +121,19 @@ struct RenderScene {
 ///
 /// An unlit material shows its base colour as radiance to the eye, directly and through events S alone (layers emission
 /// and specular); it lights nothing and scatters nothing, here and in photon-trace alike.
+/// `control`, with `diffuse_light` and where Lights::has_large(): at matte ends the large lights and the others get a sample
+/// each, and `control` is told what shadows have no part in.
 /// `cone` is the pixel's, for the level of textures (CameraView::cone); the default reads their finest level.
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
                       const DiffuseLight* diffuse_light, RayCounts& counts, RayCone cone = {});
+
+/// A camera ray and what it meets first; surface kNone: nothing.
+struct EyeRay {
+  Ray ray;
+  Hit hit;
+  RayCone cone;
+};
+Layers trace_eye_path(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random, const DiffuseLight* diffuse_light,
+                      RayCounts& counts, LightControl* control);
 
 }  // namespace tempolux

@@ -1,0 +1,209 @@
+#include "lib/render/adaptive_frame.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lib/render/pixel_samples.h"
+
+namespace tempolux {
+namespace {
+
+/// A pixel's first sample on a surface asks for caustic and indirect light, later ones that meet it there with about the
+/// same normal take its answer: that light is smooth, the first sample's place is random, and the others are there for the
+/// direct light. What is seen in a mirror or gloss may be far away on the same surface: it is always asked for.
+class PixelLight : public DiffuseLight {
+ public:
+  struct Answer {
+    std::uint32_t surface = kNone;
+    Vec3 normal;
+    Irradiance irradiance;
+  };
+  using Memory = std::array<Answer, 2>;   ///< of the pixel; surfaces beyond are asked for each time
+  PixelLight(const DiffuseLight& light, Memory& memory) : light_(light), memory_(memory) {}
+
+  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const override {
+    if (!direct_view) return light_.at(surface, geometric, shading, false);
+    for (Answer& answer : memory_) {
+      if (answer.surface == kNone) {
+        answer = {surface.surface, shading, light_.at(surface, geometric, shading, true)};
+        return answer.irradiance;
+      }
+      if (answer.surface == surface.surface && dot(answer.normal, shading) > kSameNormal) return answer.irradiance;
+    }
+    return light_.at(surface, geometric, shading, true);
+  }
+
+ private:
+  static constexpr float kSameNormal = 0.98f;   // 11 degrees
+  const DiffuseLight& light_;
+  Memory& memory_;
+};
+
+float mean_channel(Rgb c) { return (c.r + c.g + c.b) / 3; }
+
+/// What is kept of a pixel between its first and its further samples.
+struct PixelState {
+  PixelLight::Memory memory;
+  float mean = 0;                       ///< of the first samples, mean of the channels
+  Rgb direct_noise{0.0f}, specular_noise{0.0f};   ///< LightControl, of all samples
+  float sampled = 0, seen = 0;          ///< of the first
+  float sharp_variance = 0;             ///< of one of the first: PixelSum::sharp
+  float difference = 0, noise_difference = 0;     ///< of all else: mean over half of the first samples less that over the others
+
+  void add_noise(const LightControl& more) {
+    direct_noise += more.direct;
+    specular_noise += more.specular;
+  }
+};
+
+constexpr int kNear = 2;   // pixels: a pixel is judged by the 24 around it
+
+class AdaptiveFrame {
+ public:
+  AdaptiveFrame(const RenderScene& scene, const CameraView& view, const FrameOptions& options, LayerImage& image)
+      : scene_(scene), view_(view), options_(options), image_(image), controlled_(options.diffuse_light && scene.lights.has_large()),
+        first_half_((options.samples + 1) / 2), pixels_(image.pixels.size()) {}
+
+  void first_samples(RayCounts& rays) {
+    for_each_pixel(view_, options_, rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+      PixelState& state = pixels_[pixel];
+      const int n = options_.samples, a = first_half_, b = n - a;
+      LightControl control[2];
+      PixelSum first, second;
+      with_light(pixel, [&](const DiffuseLight* light) {
+        for_each_sample(scene_, view_, options_.seed, light, pixel, x, y, 0, n, counts,
+                        [&](int s) { return controlled_ ? &control[s < a ? 0 : 1] : nullptr; },
+                        [&](int s, const Layers& sample) { (s < a ? first : second).add(sample); });
+      });
+      join(first, 0, a, image_.pixels[pixel]);
+      if (b > 0) join(second, a, b, image_.pixels[pixel]);
+      state.mean = float((first.value() + second.value()) / n);
+      for (const LightControl& c : control) {
+        state.add_noise(c);
+        state.sampled += c.sampled;
+        state.seen += c.seen;
+      }
+      const double sharp = first.sharp + second.sharp;
+      state.sharp_variance = float(std::max(0.0, first.sharp_square + second.sharp_square - sharp * sharp / n) / std::max(1, n - 1));
+      if (b == 0) return;
+      const auto noise = [](const LightControl& c) { return double(mean_channel(c.direct)); };
+      state.difference = float((first.value() - first.sharp) / a - (second.value() - second.sharp) / b);
+      state.noise_difference = float(noise(control[0]) / a - noise(control[1]) / b);
+    });
+  }
+
+  /// Returns how many.
+  double further_samples(RayCounts& rays) {
+    const std::vector<int> missing = missing_samples();
+    for_each_pixel(view_, options_, rays, options_.progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+      const int count = missing[pixel];
+      if (count > 0) {
+        LightControl control;
+        with_light(pixel, [&](const DiffuseLight* light) {
+          join(sample_pixel(scene_, view_, options_.seed, light, pixel, x, y, options_.samples, count, counts,
+                            controlled_ ? &control : nullptr), options_.samples, count, image_.pixels[pixel]);
+        });
+        pixels_[pixel].add_noise(control);
+      }
+      if (controlled_) take_noise_out(pixel, x, y, options_.samples + count);
+    });
+    double sum = 0;
+    for (const int count : missing) sum += count;
+    return sum;
+  }
+
+ private:
+  template <class Body>
+  void with_light(std::size_t pixel, const Body& body) {
+    if (!options_.diffuse_light) return body(nullptr);
+    const PixelLight light(*options_.diffuse_light, pixels_[pixel].memory);
+    body(&light);
+  }
+
+  /// body(pixel) for the neighbours of a pixel that are rendered.
+  template <class Body>
+  void for_each_neighbour(int x, int y, const Body& body) const {
+    for (int j = std::max(0, y - kNear); j <= std::min(view_.height() - 1, y + kNear); ++j)
+      for (int i = std::max(0, x - kNear); i <= std::min(view_.width() - 1, x + kNear); ++i) {
+        const std::size_t at = std::size_t(j) * std::size_t(view_.width()) + std::size_t(i);
+        if ((i != x || j != y) && (options_.mask.empty() || options_.mask[at])) body(at);
+      }
+  }
+
+  /// Share of the large lights' light that shadows leave.
+  float seen_around(int x, int y) const {
+    float sampled = 0, seen = 0;
+    for_each_neighbour(x, y, [&](std::size_t at) {
+      sampled += pixels_[at].sampled;
+      seen += pixels_[at].seen;
+    });
+    return sampled > 0 ? seen / sampled : 0;
+  }
+
+  void take_noise_out(std::size_t pixel, int x, int y, int count) {
+    const float share = -seen_around(x, y) / float(count);
+    const auto take_out = [&](Rgb& radiance, const Rgb& noise) {
+      for (int c = 0; c < 3; ++c) radiance[c] = std::max(0.0f, radiance[c] + noise[c] * share);
+    };
+    take_out(image_.pixels[pixel][Layer::direct], pixels_[pixel].direct_noise);
+    take_out(image_.pixels[pixel][Layer::specular], pixels_[pixel].specular_noise);
+  }
+
+  /// Variance of a sample: what has edges may agree in a few samples and be wrong, it counts in full; all else as far as
+  /// stratification leaves it, by the difference of a pixel's halves.
+  double variance(std::size_t pixel, int x, int y) const {
+    const PixelState& state = pixels_[pixel];
+    const double a = first_half_, b = options_.samples - first_half_;
+    double difference = double(state.difference);
+    if (controlled_) difference -= double(seen_around(x, y) * state.noise_difference);
+    return double(state.sharp_variance) + difference * difference * a * b / (a + b);
+  }
+
+  /// Samples each pixel still needs, by what its neighbours saw. Its own samples are left out: a pixel whose
+  /// first samples happened to agree would keep them, and penumbrae would come out too bright.
+  std::vector<int> missing_samples() const {
+    double all = 0;
+    for (const PixelState& state : pixels_) all += double(state.mean);
+    const double picture = all / double(std::max<std::size_t>(1, pixels_.size()));
+    std::vector<double> variances(pixels_.size());
+    RayCounts none;
+    for_each_pixel(view_, options_, none, {},
+                   [&](std::size_t pixel, int x, int y, RayCounts&) { variances[pixel] = variance(pixel, x, y); });
+    std::vector<int> missing(pixels_.size());
+    for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) {
+      double pooled = 0, level = 0;
+      int n = 0;
+      for_each_neighbour(x, y, [&](std::size_t at) {
+        ++n;
+        pooled += variances[at];
+        level += double(pixels_[at].mean);
+      });
+      if (n == 0) return;   // a picture of one pixel
+      const double error = options_.pixel_error * (std::min(level / n, picture) + 0.1 * picture);
+      const double wanted = error > 0 ? std::sqrt(pooled / n) / error : 0;
+      missing[pixel] = std::clamp(int(std::min(wanted, double(options_.adaptive_limit))) - options_.samples, 0, options_.adaptive_limit);
+    });
+    return missing;
+  }
+
+  const RenderScene& scene_;
+  const CameraView& view_;
+  const FrameOptions& options_;
+  LayerImage& image_;
+  bool controlled_;
+  int first_half_;
+  std::vector<PixelState> pixels_;
+};
+
+}  // namespace
+
+void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
+  AdaptiveFrame adaptive(scene, view, options, frame.mean);
+  adaptive.first_samples(frame.rays);
+  const double further = adaptive.further_samples(frame.rays);
+  frame.mean.samples = options.samples;
+  frame.samples_per_pixel = options.samples + further / double(std::max<std::size_t>(1, frame.mean.pixels.size()));
+}
+
+}  // namespace tempolux

@@ -1,0 +1,17 @@
+// lib/render/adaptive_frame.h -- more samples where pixels are uncertain, and less noise where shadows are certain.
+#pragma once
+
+#include "lib/render/frame_renderer.h"
+
+namespace tempolux {
+
+/// options.samples for each pixel, then more where FrameOptions::pixel_error asks for them; frame.mean is empty before.
+///
+/// Where Lights::has_large() their light is controlled (LightControl): with C the noise that a pixel's samples of them would
+/// have without shadows, it gets
+///     max(0, L - b C),   b: the share of their light that the neighbours' first samples saw.
+/// C is 0 in the mean and independent of b: no bias, whatever b is, but for the few values below 0, at the edges of black
+/// shadows. Where all of their light is seen the noise is gone, where none is nothing changes.
+void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame);
+
+}  // namespace tempolux
