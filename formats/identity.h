@@ -1,9 +1,10 @@
 // formats/identity.h -- which state of which scene a file belongs to (conventions.md, "Identity").
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace tempolux::formats {
 
@@ -21,10 +22,23 @@ struct Identity {
   bool operator==(const Identity&) const = default;
 };
 
-/// Which concerns differ between what a file says and what the scene is, of those named in `concerns`
-/// ("static_geometry", "moving_geometry", "materials", "lights", "media", "emission"; another: std::invalid_argument).
-/// Unknown on either side never differs. Frames are not compared: which may differ, the reader knows.
-std::vector<std::string> stale_concerns(const Identity& file, const Identity& scene,
-                                        const std::vector<std::string_view>& concerns);
+/// A concern by the name that JSON and attributes of frames have for it; header lines write - for _.
+struct Concern {
+  std::string_view name;
+  std::string Identity::*hash;
+};
+inline constexpr std::array<Concern, 6> kConcerns{{{"static_geometry", &Identity::static_geometry},
+                                                   {"moving_geometry", &Identity::moving_geometry},
+                                                   {"materials", &Identity::materials},
+                                                   {"lights", &Identity::lights},
+                                                   {"media", &Identity::media},
+                                                   {"emission", &Identity::emission}}};
+/// Of the scene's state: all but the photons' emission.
+inline constexpr std::span<const Concern> kSceneConcerns = std::span(kConcerns).first(5);
+
+/// Which of `concerns` differ between what a file says and what the scene is: their names separated by ", ". Unknown on
+/// either side never differs. Frames are not compared: which may differ, the reader knows.
+std::string stale_concerns(const Identity& file, const Identity& scene,
+                           std::span<const Concern> concerns = kSceneConcerns);
 
 }  // namespace tempolux::formats

@@ -8,15 +8,12 @@
 namespace tempolux::formats {
 namespace {
 
-struct HashKey {
-  std::string_view key;
-  std::string Identity::*hash;
-};
-constexpr std::array<HashKey, 5> kHashKeys{{{"static-geometry", &Identity::static_geometry},
-                                            {"moving-geometry", &Identity::moving_geometry},
-                                            {"materials", &Identity::materials},
-                                            {"lights", &Identity::lights},
-                                            {"media", &Identity::media}}};
+/// Header lines write - where a concern's name has _.
+std::string key_of(const Concern& concern) {
+  std::string key(concern.name);
+  std::replace(key.begin(), key.end(), '_', '-');
+  return key;
+}
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
@@ -32,9 +29,8 @@ bool is_printable(std::string_view text) { return std::none_of(text.begin(), tex
 std::string_view fault_of_common(const std::array<double, 3>& origin, const Identity& identity) {
   for (double x : origin)
     if (!std::isfinite(x)) return "origin is not finite";
-  const auto hashes = {identity.static_geometry, identity.moving_geometry, identity.materials,
-                       identity.lights,          identity.media,           identity.emission};
-  for (const std::string& hash : hashes) {
+  for (const Concern& concern : kConcerns) {
+    const std::string& hash = identity.*concern.hash;
     if (!hash.empty() && !is_hash(hash)) return "an identity hash is not 1 to 128 visible ASCII characters";
     if (!hash.empty() && !identity.known()) return "identity hashes without frames";
   }
@@ -51,8 +47,8 @@ Line take_common_line(std::string_view key, std::string_view value, const Common
     keys.identity.last_frame = frames[1];
     return Line::good;
   }
-  for (const HashKey& hash : kHashKeys)
-    if (key == hash.key) return keys.identity.*hash.hash = value, result(!value.empty());
+  for (const Concern& concern : kSceneConcerns)
+    if (key == key_of(concern)) return keys.identity.*concern.hash = value, result(!value.empty());
   if (key == "history") return keys.history.append(value).append("\n"), Line::good;
   return Line::unknown_key;
 }
@@ -101,8 +97,8 @@ void HeaderText::origin(const std::array<double, 3>& origin) {
 void HeaderText::identity(const Identity& identity) {
   if (!identity.known()) return;
   line("frames", text_of(identity.first_frame) + " " + text_of(identity.last_frame));
-  for (const HashKey& key : kHashKeys)
-    if (!(identity.*key.hash).empty()) line(key.key, identity.*key.hash);
+  for (const Concern& concern : kSceneConcerns)
+    if (!(identity.*concern.hash).empty()) line(key_of(concern), identity.*concern.hash);
 }
 
 void HeaderText::history(std::string_view history) {

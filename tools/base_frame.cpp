@@ -4,6 +4,7 @@
 
 #include "formats/error.h"
 #include "lib/image/exr_io.h"
+#include "lib/image/frame_identity.h"
 
 namespace tempolux::tools {
 namespace {
@@ -19,22 +20,6 @@ std::vector<std::uint8_t> read_mask(const std::string& name, const Picture& pict
     for (std::size_t p = 0; p < mask.size(); ++p)
       mask[p] |= channel.ids.empty() ? channel.values[p] != 0 : channel.ids[p] != 0;
   return mask;
-}
-
-/// The identity in a frame's attributes (frames.md 3); not known() if there is none.
-formats::Identity identity_of(const Image& image, int frame) {
-  const auto text = [&](const char* concern) {
-    const auto found = image.text.find(std::string("tempolux:identity.") + concern);
-    return found == image.text.end() ? std::string() : found->second;
-  };
-  formats::Identity identity;
-  identity.static_geometry = text("static_geometry");
-  identity.moving_geometry = text("moving_geometry");
-  identity.materials = text("materials");
-  identity.lights = text("lights");
-  identity.media = text("media");
-  if (identity != formats::Identity{}) identity.first_frame = identity.last_frame = frame;
-  return identity;
 }
 
 /// Matrices are stored as float32, so that of one camera they are equal to the bit; absent: not known, not another.
@@ -53,7 +38,7 @@ BaseFrame read_base_frame(Tool& tool, const std::string& mask, const std::string
   BaseFrame result{read_mask(mask, picture), load_exr(base)};
   tool.depends_on(mask);
   tool.depends_on(base, InputRole::replaceable);
-  check_identity(tool, base, identity_of(result.base, frame.frame), frame);
+  check_identity(tool, base, identity_in(result.base), frame);
   if (is_other(result.base, "worldToCamera", picture.world_to_camera) ||
       is_other(result.base, "worldToNDC", picture.world_to_ndc)) {
     const std::string message = base + ": seen by another camera than frame " + std::to_string(frame.frame) + " is";

@@ -2,8 +2,8 @@
 #include "tools/compare_inputs.h"
 
 #include "formats/error.h"
-#include "lib/aqm/identity_check.h"
 #include "lib/image/exr_io.h"
+#include "lib/image/frame_identity.h"
 
 namespace tempolux::tools {
 
@@ -31,13 +31,14 @@ int LoadedFrame::frame_number() const {
 void IdentityGuard::check(const ComparedInputs& inputs) {
   for (const NamedImage* reference : {&inputs.reference, &inputs.second, &inputs.smooth}) {
     if (!reference->image) continue;
-    const IdentityMatch match = match_identities(*inputs.test.image, *reference->image);
+    const formats::Identity test = identity_in(*inputs.test.image), other = identity_in(*reference->image);
+    const std::string different = formats::stale_concerns(test, other);
     const std::string pair = inputs.test.name + " and " + reference->name;
-    if (!match.different.empty() && !allow_stale_)
-      throw InputError(pair + ": made for different states of the scene (" + match.different +
+    if (!different.empty() && !allow_stale_)
+      throw InputError(pair + ": made for different states of the scene (" + different +
                        "); render one of them again, or give --allow-stale");
-    if (!match.different.empty()) warn_once(pair + ": different states of the scene: " + match.different);
-    if (!match.known) warn_once(pair + ": do not both say which scene they show; compared unseen");
+    if (!different.empty()) warn_once(pair + ": different states of the scene: " + different);
+    if (!test.known() || !other.known()) warn_once(pair + ": do not both say which scene they show; compared unseen");
   }
 }
 

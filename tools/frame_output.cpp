@@ -1,5 +1,7 @@
 #include "tools/frame_output.h"
 
+#include "lib/image/frame_identity.h"
+
 namespace tempolux::tools {
 namespace {
 
@@ -12,12 +14,7 @@ std::string half_name(const std::string& path, char letter) {
 
 void describe(const FrameDescription& description, int samples, Image& image) {
   image.text["tempolux:history"] = description.history;
-  const formats::Identity& identity = description.identity;
-  image.text["tempolux:identity.static_geometry"] = identity.static_geometry;
-  image.text["tempolux:identity.moving_geometry"] = identity.moving_geometry;
-  image.text["tempolux:identity.materials"] = identity.materials;
-  image.text["tempolux:identity.lights"] = identity.lights;
-  image.text["tempolux:identity.media"] = identity.media;
+  set_identity(image, description.identity);
   image.numbers["tempolux:frame"] = description.frame;
   image.numbers["tempolux:samples"] = samples;
   image.numbers["framesPerSecond"] = description.fps;

@@ -84,15 +84,8 @@ Facts lines_of(const std::string& text) {
 Facts identity_facts(const formats::Identity& identity) {
   if (!identity.known()) return nullptr;
   Facts facts = {{"frames", {identity.first_frame, identity.last_frame}}};
-  const auto add = [&](const char* name, const std::string& hash) {
-    if (!hash.empty()) facts[name] = hash;
-  };
-  add("static_geometry", identity.static_geometry);
-  add("moving_geometry", identity.moving_geometry);
-  add("materials", identity.materials);
-  add("lights", identity.lights);
-  add("media", identity.media);
-  add("emission", identity.emission);
+  for (const auto& [name, hash] : formats::kConcerns)
+    if (!(identity.*hash).empty()) facts[std::string(name)] = identity.*hash;
   return facts;
 }
 

@@ -7,6 +7,7 @@
 #include "formats/error.h"
 #include "lib/image/any_io.h"
 #include "lib/image/exr_io.h"
+#include "lib/image/frame_identity.h"
 #include "lib/image/preview.h"
 #include "lib/image/statistics.h"
 #include "tools/info_facts.h"
@@ -27,7 +28,7 @@ Image load(const std::string& path, bool allow_nan) {
   return load_exr(path, options);
 }
 
-constexpr std::string_view kHistory = "tempolux:history", kIdentity = "tempolux:identity.";
+constexpr std::string_view kHistory = "tempolux:history";
 
 /// History and identity by themselves, then all other attributes by their names in the file.
 Facts attribute_facts(const Image& image) {
@@ -35,8 +36,8 @@ Facts attribute_facts(const Image& image) {
   for (const auto& [name, value] : image.text) {
     if (name == kHistory)
       facts["history"] = lines_of(value);
-    else if (name.starts_with(kIdentity))
-      facts["identity"][name.substr(kIdentity.size())] = value;
+    else if (name.starts_with(kIdentityPrefix))
+      facts["identity"][name.substr(kIdentityPrefix.size())] = value;
     else
       facts[name] = value;
   }

@@ -105,7 +105,7 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   const int camera = input.scene().camera_node(tool.common().camera);
   for (int number : frames) {
     const SceneFrame frame = input.at(number);
-    if (!formats::stale_concerns(tools::identity_of(frame), tools::identity_of(first), tools::all_concerns()).empty())
+    if (!formats::stale_concerns(tools::identity_of(frame), tools::identity_of(first)).empty())
       throw InputError(options.scene() + ": frame " + std::to_string(number) + " is lit or built differently from frame " +
                        std::to_string(first.frame) + ": one cache cannot hold for both; make one for each");
     const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);

@@ -75,21 +75,14 @@ formats::Identity identity_of(const SceneFrame& frame) {
   return {h.static_geometry, h.moving_geometry, h.materials, h.lights, h.media, frame.frame, frame.frame};
 }
 
-const std::vector<std::string_view>& all_concerns() {
-  static const std::vector<std::string_view> concerns{"static_geometry", "moving_geometry", "materials", "lights", "media"};
-  return concerns;
-}
-
 void check_identity(Tool& tool, const std::string& file, const formats::Identity& file_identity, const SceneFrame& frame) {
   if (!file_identity.known()) {
     tool.warn(file + ": does not say which scene it was made for; used as it is");
     return;
   }
-  const auto stale = formats::stale_concerns(file_identity, identity_of(frame), all_concerns());
+  const std::string stale = formats::stale_concerns(file_identity, identity_of(frame));
   if (stale.empty()) return;
-  std::string list;
-  for (const std::string& concern : stale) list += (list.empty() ? "" : ", ") + concern;
-  const std::string message = file + ": made for another state of the scene: " + list + " differ at frame " +
+  const std::string message = file + ": made for another state of the scene: " + stale + " differ at frame " +
                               std::to_string(frame.frame);
   if (!tool.common().allow_stale) throw InputError(message + "; make it again for this one, or pass --allow-stale");
   tool.warn(message);

@@ -45,9 +45,6 @@ class SceneInput {
   bool warned_range_ = false;
 };
 
-/// All concerns of an identity: what light in a file depends on.
-const std::vector<std::string_view>& all_concerns();
-
 /// Which state of the scene a file made at this frame belongs to.
 formats::Identity identity_of(const SceneFrame& frame);
 
