@@ -4,19 +4,7 @@ failed=0
 bad() { echo "$*"; failed=1; }
 scenes=$HERE/../../pipelines/scenes
 matte=$scenes/S1_cornell.glb moving=$scenes/S2_cornell_moving.glb
-# expect CODE WORDS COMMAND...: exits so, and says these words in its one line; "" for no word at all. Nothing stays of
-# what is refused.
-expect() {
-  code=$1 words=$2; shift 2
-  rm -f made.*
-  "$@" >out.txt 2>errors.txt
-  got=$?
-  [ $got = "$code" ] || bad "exit $got, not $code: $*: $(cat errors.txt)"
-  if [ -z "$words" ]; then [ -s errors.txt ] && bad "$*: $(cat errors.txt)"
-  else grep -q -- "$words" errors.txt && [ "$(wc -l <errors.txt)" = 1 ] || bad "not '$words': $*: $(cat errors.txt)"
-  fi
-  [ "$code" = 0 ] || [ ! -e "$(echo made.*)" ] || bad "left an output: $*"
-}
+. "$HERE/expect.sh"
 # A Cornell box whose short block is a mirror, with a second camera.
 "${PYTHON:-python3}" - "$scenes/cornell_classic.gltf" <<'END' || bad 'mirror.gltf'
 import copy, json, sys

@@ -3,19 +3,8 @@ failed=0
 bad() { echo "$*"; failed=1; }
 scenes=$HERE/../../pipelines/scenes
 scene=$scenes/S1_cornell.glb
-# expect CODE WORDS COMMAND...: as in light_check.sh, and no line beyond 300 characters.
-expect() {
-  code=$1 words=$2; shift 2
-  rm -f made.*
-  "$@" >out.txt 2>errors.txt
-  got=$?
-  [ $got = "$code" ] || bad "exit $got, not $code: $*: $(cat errors.txt)"
-  if [ -z "$words" ]; then [ -s errors.txt ] && bad "$*: $(cat errors.txt)"
-  else grep -q -- "$words" errors.txt && [ "$(wc -l <errors.txt)" = 1 ] || bad "not '$words': $*: $(cut -c1-300 errors.txt)"
-  fi
-  [ "$(wc -c <errors.txt)" -lt 300 ] || bad "$*: $(wc -c <errors.txt) bytes of message"
-  [ "$code" = 0 ] || [ ! -e "$(echo made.*)" ] || bad "left an output: $*"
-}
+longest=300
+. "$HERE/expect.sh"
 render="frame-render $scene --size 8x6 --spp 1"
 
 # Help: no types of the program, what is typed in the first line; limits as numbers.
