@@ -74,8 +74,10 @@ def gather_quality(bench, _):
     size = "64x36" if bench.quick else "640x360"
     for name in ["S1"] if bench.quick else ["S1", "S2", "S3"]:
         q = quality_of(bench, name, settings, size)
-        # What is known to a third of 2 % is judged; the rest counts if it is beyond 2 % by more than two standard errors.
-        settled = [o for o in q["objects"] if o["error"] <= 0.02 / 3 or abs(o["bias"]) - 2 * o["error"] > 0.02]
+        # Objects of 100 pixels are judged, and smaller ones that are known to a third of 2 % or are beyond it by more
+        # than two standard errors.
+        settled = [o for o in q["objects"] if o["pixels"] >= 100 or o["error"] <= 0.02 / 3
+                   or abs(o["bias"]) - 2 * o["error"] > 0.02]
         unsettled = [f"{o['id']} ({o['pixels']} pixels)" for o in q["objects"] if o not in settled]
         worst = settled[0] if settled else {"id": "-", "bias": 0.0, "error": 0.0}
         met = met and q["relmse"] <= 5e-4 and abs(q["bias"]) <= 0.003 and abs(worst["bias"]) <= 0.02
@@ -85,7 +87,8 @@ def gather_quality(bench, _):
         more += [[name, o["id"], o["pixels"], percent(o["bias"]), percent(o["error"]), percent(o["share"], 1)]
                  for o in q["objects"]]
         if unsettled:
-            notes.append(f"{name}: objects whose bias is known to worse than a third of 2 %, and may be below it: {', '.join(unsettled)}.")
+            notes.append(f"{name}: objects below 100 pixels whose bias is known to worse than a third of 2 % and may be below it: "
+                         f"{', '.join(unsettled)}.")
     found = figure("Indirect light of a final frame, 640x360",
                    "relMSE at most 5e-4; bias at most 0.3 %, of each object at most 2 %",
                    ["scene", "CPU s of a frame", "RMSE", "relMSE", "bias", "scatter of one seed's bias", "worst object"], rows,

@@ -141,7 +141,7 @@ def one_plane(s):
     inside = count * expected * math.pi / 0.8 * 4 / FLUX_OF_LAMP                    # photons within the picture
     s.near("caustic of a mirror: radiance of the floor", expected, image.mean("caustic.G"),
            0.01 + 4 / math.sqrt(inside))
-    # Beside the cache, with the 20 photons of the default.
+    # Beside the cache, with the 25 photons of the default.
     image = s.cached(path, (n, n), 16, photons=count)
     s.near("caustic of a mirror, beside the cache: radiance of the floor", expected, image.mean("caustic.G"),
            0.01 + 4 / math.sqrt(inside))
