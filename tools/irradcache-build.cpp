@@ -32,6 +32,7 @@ struct Options {
   PointOptions point;
   GatherOptions gather;
   PlacementOptions placement;
+  bool free_radii = false;
 
   std::string mode() const { return inputs.size() == 2 ? inputs[0] : "both"; }
   const std::string& scene() const { return inputs.back(); }
@@ -146,7 +147,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (mode == "both" && options.photons.empty() == options.points.empty())
     throw InputError("name either the photon map, --photons FILE, or the points made from it, --points FILE");
   if (mode == "points")
-    refuse_unread(app, "points", {"--points", "--records", "--rays", "--error-bound", "--radii", "--clamp-neighbours",
+    refuse_unread(app, "points", {"--points", "--records", "--rays", "--error-bound", "--radii", "--free-radii",
                                   "--min-radius-px", "--min-weight", "--size", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points", {"--photons", "--point-count", "--neighbours", "--light-samples", "--keep-points"});
@@ -177,8 +178,9 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--radii", options.radii,
                  "what the radius of a record follows from: ward (distances of what it sees) or hessian (second derivatives)")
       ->capture_default_str()->check(CLI::IsMember({"ward", "hessian"}));
-  app.add_flag("--clamp-neighbours", options.placement.clamp_neighbours,
-               "no record's radius exceeds a neighbour's by more than their distance: finer near small things");
+  app.add_flag("--free-radii", options.free_radii,
+               "leave radii as each record's own rays tell; else none exceeds a neighbour's by more than the error bound x "
+               "their distance: what is small is missed by many");
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
       ->capture_default_str()->check(tools::number_above(0));
   app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
@@ -201,6 +203,7 @@ int main(int argc, char** argv) {
     const std::vector<int>& frames = tool.common().frames;
     check(tool.app(), options, frames);
     options.point.count = std::uint32_t(options.point_count);
+    options.placement.clamp_neighbours = !options.free_radii;
     options.gather.curvature = options.placement.by_curvature = options.radii == "hessian";
     options.point.seed = options.gather.seed = tool.common().seed_for_frame(frames.front());
     tool.stats().phase("load");

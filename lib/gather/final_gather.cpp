@@ -26,6 +26,7 @@ std::uint64_t key_of(Vec3 p, Vec3 n, std::uint64_t seed) {
   return key;
 }
 
+constexpr int kFewRays = 64;         ///< of lit_share()
 constexpr std::size_t kAtOnce = 32;  ///< rays whose answers are fetched together
 constexpr int kTile = 4;             ///< sectors followed side by side: two rings of them are a packet of rays
 
@@ -43,41 +44,65 @@ std::vector<std::uint32_t> tiled_order(int rings, int sectors) {
   return order;
 }
 
+}  // namespace
+
+FinalGather::Strata FinalGather::strata(int rays) {
+  Strata made;
+  gather_strata(rays, made.rings, made.sectors);
+  made.order = tiled_order(made.rings, made.sectors);
+  return made;
+}
+
 /// Rays from one place through cells of the hemisphere above it, and what comes back along them.
-class Shots {
- public:
+struct FinalGather::Shots {
+  const SurfacePoint& from;
+  const Frame frame;
+  const Vec3 geometric;               ///< normal on the lit side
+  const Strata& strata;
+  const std::uint64_t key;
   std::vector<Ray> rays;
   std::vector<std::uint64_t> keys;
   std::vector<std::uint32_t> cells;   ///< of the rays
   std::vector<Rgb> radiance;
   std::vector<float> distance;
 
+  Shots(const SurfacePoint& point, Vec3 normal, const Strata& s, std::uint64_t seed)
+      : from(point),
+        frame(normal),
+        geometric(dot(point.normal_geometric, normal) < 0 ? -point.normal_geometric : point.normal_geometric),
+        strata(s),
+        key(key_of(point.position, normal, seed)) {}
+
   void clear() {
     rays.clear();
     keys.clear();
     cells.clear();
   }
-  /// The sample-th ray of a cell, `u` within it; none if it would start below the surface: nothing arrives from there.
-  void aim(const SurfacePoint& from, const Frame& frame, Vec3 geometric, Vec2 strata, std::uint32_t cell, Vec2 u,
-           std::uint64_t ray_key) {
-    const auto sectors = std::uint32_t(strata.y);
-    const float sin2 = (float(cell / sectors) + u.x) / strata.x;
-    const float phi = 2 * kPi * (float(cell % sectors) + u.y) / strata.y;
+  /// The sample-th ray of a cell; none if it would start below the surface: nothing arrives from there.
+  void aim(std::uint32_t cell, std::uint32_t sample) {
+    const PathRandom random(key, cell);
+    const Vec2 first = random.get2(0, Purpose::gather);
+    const Vec2 u{frac(first.x + float(sample) * kStep.x), frac(first.y + float(sample) * kStep.y)};
+    const auto sectors = std::uint32_t(strata.sectors);
+    const float sin2 = (float(cell / sectors) + u.x) / float(strata.rings);
+    const float phi = 2 * kPi * (float(cell % sectors) + u.y) / float(sectors);
     const float sine = std::sqrt(sin2), cosine = std::sqrt(std::max(1e-6f, 1 - sin2));
     const Vec3 travel = frame.to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
     if (!(dot(travel, geometric) > 0)) return;
     rays.push_back(spawn_ray(from, travel));
-    keys.push_back(ray_key);
+    keys.push_back(random.bits(1, Purpose::gather, sample));
     cells.push_back(cell);
+  }
+  void shoot(const FinalGather& gather, GatherCounts& counts) {
+    radiance.resize(rays.size());
+    distance.resize(rays.size());
+    gather.radiance(rays, keys, radiance, distance, counts);
   }
 };
 
-}  // namespace
-
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options)
-    : tracer_(tracer), lights_(lights), points_(points), options_(options) {
-  gather_strata(options.rays, rings_, sectors_);
-  cell_order_ = tiled_order(rings_, sectors_);
+    : tracer_(tracer), lights_(lights), points_(points), options_(options), few_(strata(kFewRays)) {
+  for (std::size_t i = 0; i < strata_.size(); ++i) strata_[i] = strata(options.rays << i);
   for (const Material& material : tracer.frame().materials)
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
 }
@@ -211,30 +236,31 @@ Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, bool n
   return irradiance;
 }
 
-IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {
+float FinalGather::lit_share(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {
+  Shots shots(from, normal, few_, options_.seed ^ 0x6c69745f73686172ull);
+  for (const std::uint32_t c : few_.order) shots.aim(c, 0);
+  shots.shoot(*this, counts);
   thread_local Hemisphere sky;
-  thread_local Shots shots;
+  sky.reset(few_.rings, few_.sectors);
+  for (std::size_t i = 0; i < shots.rays.size(); ++i) sky.radiance[shots.cells[i]] = shots.radiance[i];
+  return sky.lit_cells() / float(few_.order.size());
+}
+
+IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share) const {
+  thread_local Hemisphere sky;
   thread_local std::vector<std::uint8_t> further;
-  sky.reset(rings_, sectors_);
-  const Frame frame(normal);
-  const Vec3 geometric = dot(from.normal_geometric, normal) < 0 ? -from.normal_geometric : from.normal_geometric;
-  const std::uint64_t key = key_of(from.position, normal, options_.seed);
+  std::size_t times = 0;   // twofold
+  while (times + 1 < strata_.size() && expected_share * float(strata_[times].order.size()) < kWantedLit) ++times;
+  const std::vector<std::uint32_t>& order = strata_[times].order;
+  Shots shots(from, normal, strata_[times], options_.seed);
+  sky.reset(shots.strata.rings, shots.strata.sectors);
   const float closest = std::max(4 * from.offset, 1e-30f);
   SurfacePoint here = from;
   std::optional<Bsdf> textured;
   const Bsdf& bsdf = *meet(here, normal, 0, textured).bsdf;
   const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
-  const auto aim = [&](std::uint32_t cell, std::uint32_t sample) {
-    const PathRandom random(key, cell);
-    const Vec2 first = random.get2(0, Purpose::gather);
-    const Vec2 u{frac(first.x + float(sample) * kStep.x), frac(first.y + float(sample) * kStep.y)};
-    shots.aim(from, frame, geometric, {float(rings_), float(sectors_)}, cell, u,
-              random.bits(1, Purpose::gather, sample));
-  };
   const auto shoot = [&] {
-    shots.radiance.resize(shots.rays.size());
-    shots.distance.resize(shots.rays.size());
-    radiance(shots.rays, shots.keys, shots.radiance, shots.distance, counts);
+    shots.shoot(*this, counts);
     if (coated)
       for (std::size_t i = 0; i < shots.rays.size(); ++i)
         shots.radiance[i] *= bsdf.arrival_weight(dot(shots.rays[i].direction, normal));
@@ -242,8 +268,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
 
   const auto inverse = [closest](float distance) { return 1 / std::max(distance, closest); };   // 0 for a miss
 
-  shots.clear();
-  for (const std::uint32_t c : cell_order_) aim(c, 0);
+  for (const std::uint32_t c : order) shots.aim(c, 0);
   shoot();
   for (std::size_t i = 0; i < shots.rays.size(); ++i) {
     sky.radiance[shots.cells[i]] = shots.radiance[i];
@@ -253,8 +278,9 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   record.position = from.position;
   record.normal = normal;
   record.object = from.object;
-  sky.translational_gradient(frame, record);
+  sky.translational_gradient(shots.frame, record);
   record.lit_cells = sky.lit_cells();
+  record.lit_share = record.lit_cells / float(order.size());
   if (options_.curvature) record.curvature = sky.curvature();
   record.radius_unclamped = sky.harmonic_distance();
   record.radius = sky.nearest_across();
@@ -262,8 +288,8 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   // More rays where light is uneven: a cell's value becomes the mean of all of its own.
   sky.further_rays(further);
   shots.clear();
-  for (const std::uint32_t c : cell_order_)
-    for (std::uint32_t sample = 1; sample <= further[c]; ++sample) aim(c, sample);
+  for (const std::uint32_t c : order)
+    for (std::uint32_t sample = 1; sample <= further[c]; ++sample) shots.aim(c, sample);
   shoot();
   for (std::size_t c = 0; c < further.size(); ++c)
     if (further[c] > 0) sky.radiance[c] *= 1 / float(1 + further[c]);
@@ -271,7 +297,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     const std::uint32_t c = shots.cells[i];
     sky.radiance[c] += shots.radiance[i] * (1 / float(1 + further[c]));
   }
-  sky.irradiance_and_rotational_gradient(frame, record);
+  sky.irradiance_and_rotational_gradient(shots.frame, record);
   return record;
 }
 

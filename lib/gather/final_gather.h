@@ -38,12 +38,18 @@ class FinalGather {
   FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options);
 
   /// Irradiance at `from` over the hemisphere about `normal` (unit, on the lit side), with its gradients, by about
-  /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). Under a coat light counts
+  /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). Where light is expected in a
+  /// small share of them, 2, 4 or 8 times as many, so that kWantedLit carry it if possible: what a handful of rays finds is
+  /// noise, and its radius depends on what was found. No bias comes of it as long as `expected_share` does not follow from
+  /// this place's own rays: it is for the neighbours to tell, or for lit_share(). Under a coat light counts
   /// by Bsdf::arrival_weight, as photons do: what the coat reflects more of at grazing angles does not reach the Lambert
   /// lobe. radius_unclamped receives the harmonic mean distance, radius the distance across the tangent plane to the
   /// nearest of what the outermost ring met (limit_radius makes the validity of both). Random numbers come from the
-  /// position: the record of a place does not depend on which records were made before.
-  IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
+  /// position: the record of a place does not depend on which records were made before, but for expected_share.
+  IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share = 1) const;
+  /// Share of the hemisphere from which light comes (Hemisphere::lit_cells), by 64 rays that gather() does not use.
+  float lit_share(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
+  static constexpr float kWantedLit = 32;
 
   /// Radiance arriving along rays that counts as indirect at their starts, and the distance to what each meets
   /// first (infinity: nothing). keys: random numbers, one for each ray. Fastest if rays that follow one another
@@ -52,10 +58,16 @@ class FinalGather {
                 std::span<float> distance, GatherCounts& counts) const;
   /// The order in which gather() follows the cells (numbers j N_phi + k): neighbours in it are neighbours on the
   /// hemisphere.
-  std::span<const std::uint32_t> cell_order() const { return cell_order_; }
+  std::span<const std::uint32_t> cell_order() const { return strata_.front().order; }
 
  private:
   struct Met;
+  struct Strata {
+    int rings = 0, sectors = 0;
+    std::vector<std::uint32_t> order;   ///< of the cells
+  };
+  struct Shots;
+  static Strata strata(int rays);
   Met meet(SurfacePoint& hit, Vec3 wo, float distance, std::optional<Bsdf>& textured) const;
   Rgb reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts) const;
   Rgb reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key, int depth,
@@ -67,8 +79,8 @@ class FinalGather {
   const Lights& lights_;
   const PointLookup& points_;
   GatherOptions options_;
-  int rings_ = 0, sectors_ = 0;
-  std::vector<std::uint32_t> cell_order_;
+  std::array<Strata, 4> strata_;            ///< of 1, 2, 4 and 8 times `rays`
+  Strata few_;                              ///< of lit_share()
   std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: seen from behind, from in front
 };
 

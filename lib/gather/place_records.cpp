@@ -22,12 +22,12 @@ std::vector<std::size_t> shuffled(std::vector<std::size_t> pixels) {
   return pixels;
 }
 
-/// Pixels of the lattice of `stride` that are on no coarser one, in a fixed shuffled order.
+/// Pixels of the lattice of `stride` that are on no coarser one (of 1: all), in a fixed shuffled order.
 std::vector<std::size_t> lattice(int width, int height, int stride) {
   std::vector<std::size_t> pixels;
   for (int y = 0; y < height; y += stride)
     for (int x = 0; x < width; x += stride) {
-      if (stride < kCoarsest && x % (2 * stride) == 0 && y % (2 * stride) == 0) continue;
+      if (stride > 1 && stride < kCoarsest && x % (2 * stride) == 0 && y % (2 * stride) == 0) continue;
       pixels.push_back(std::size_t(y) * std::size_t(width) + std::size_t(x));
     }
   return shuffled(std::move(pixels));
@@ -73,7 +73,11 @@ class Placement {
         options_(options),
         max_radius_(options.max_radius > 0 ? options.max_radius : 0.1f * bounds.diagonal()),
         store_(store),
+        first_(store.records().size()),
         counts_(counts) {}
+
+  /// From now on a new record leaves its neighbours as they are: what is covered stays so.
+  void fix_radii() { first_ = kFixed; }
 
   /// Points 0 .. count-1 in this order; view(i) may say that there is nothing to cover.
   template <class View>
@@ -89,10 +93,14 @@ class Placement {
       add_batch(std::span(open).subspan(start, std::min(kBatch, open.size() - start)));
   }
 
- private:
-  bool is_covered(const SeenPoint& seen) const {
-    return store_.interpolate(seen.surface.position, seen.normal).weight >= options_.min_weight;
+  bool is_covered(Vec3 position, Vec3 normal) const {
+    return store_.interpolate(position, normal).weight >= options_.min_weight;
   }
+
+ private:
+  static constexpr std::size_t kFixed = ~std::size_t(0);
+
+  bool is_covered(const SeenPoint& seen) const { return is_covered(seen.surface.position, seen.normal); }
 
   void add_batch(std::span<const std::optional<SeenPoint>> points) {
     std::vector<std::optional<IrradianceRecord>> records(points.size());
@@ -101,7 +109,10 @@ class Placement {
       GatherCounts local;
       for (std::size_t i = first; i < last; ++i) {
         if (is_covered(*points[i])) continue;
-        records[i] = gather_.gather(points[i]->surface, points[i]->normal, local);
+        const SurfacePoint& at = points[i]->surface;
+        float share = store_.lit_share(at.position, points[i]->normal);
+        if (share < 0) share = gather_.lit_share(at, points[i]->normal, local);
+        records[i] = gather_.gather(at, points[i]->normal, local, share);
         limit_radius(*records[i], points[i]->footprint, max_radius_, options_);
       }
       const std::lock_guard lock(mutex);
@@ -109,7 +120,7 @@ class Placement {
     });
     for (auto& record : records) {
       if (!record) continue;
-      if (options_.clamp_neighbours) store_.clamp_with_neighbours(*record);
+      if (options_.clamp_neighbours) store_.clamp_with_neighbours(*record, options_.error_bound, first_);
       store_.add(*record);
     }
   }
@@ -118,6 +129,7 @@ class Placement {
   const PlacementOptions& options_;
   float max_radius_;
   RecordStore& store_;
+  std::size_t first_;        ///< records before were there already, or are fixed
   GatherCounts& counts_;
 };
 
@@ -161,12 +173,15 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
     if (progress) progress(double(done) / (1.25 * double(width) * height));
   };
   for (int stride = kCoarsest; stride >= 1; stride /= 2) {
+    if (stride == 1) placement.fix_radii();   // and look again at what was covered before
     const std::vector<std::size_t> pixels = lattice(width, height, stride);
     placement.cover(pixels.size(), [&](std::size_t i) {
       const std::size_t x = pixels[i] % std::size_t(width), y = pixels[i] / std::size_t(width);
+      Glimpse& glimpse = glimpses[pixels[i]];
+      if (glimpse.any && placement.is_covered(glimpse.position, glimpse.normal)) return std::optional<SeenPoint>();
       const std::optional<SeenPoint> seen = view(float(x) + 0.5f, float(y) + 0.5f, nullptr);
       if (seen)
-        glimpses[pixels[i]] = {seen->surface.position, seen->normal, seen->footprint, seen->surface.object, true, seen->by_choice};
+        glimpse = {seen->surface.position, seen->normal, seen->footprint, seen->surface.object, true, seen->by_choice};
       return seen;
     });
     advance(pixels.size());

@@ -15,7 +15,7 @@ struct PlacementOptions {
   float error_bound = 0.2f;           ///< validity radius / harmonic mean distance to what is seen
   float min_radius_px = 4;            ///< a record is valid this many pixels around it at least
   float max_radius = 0;               ///< m; 0: a tenth of the scene's diagonal
-  bool clamp_neighbours = false;      ///< RecordStore::clamp_with_neighbours
+  bool clamp_neighbours = true;       ///< RecordStore::clamp_with_neighbours
   bool by_curvature = false;          ///< R of limit_radius from second derivatives instead of distances
   float min_weight = 0.9f;           ///< sum of weights that counts as covered; a record has 1 at its own place
 };
@@ -34,7 +34,8 @@ using PixelView = std::function<std::optional<SeenPoint>(float x, float y, const
 
 /// Adds records until every pixel's point is covered: the points through the centres of lattices of 16, 8, 4, 2 and
 /// 1 pixels one after the other, each in a fixed shuffled order and in batches of fixed size: a batch is tested and
-/// gathered in parallel, its records are added in order. Then four more points in each pixel at an edge or behind
+/// gathered in parallel, its records are added in order. Up to the lattice of 2 new records may narrow those added before
+/// (clamp_with_neighbours), but not those that were in the store; at the last all pixels are looked at again. Then four more points in each pixel at an edge or behind
 /// glass, so that a frame's samples find records there too. The same records for any number of threads.
 /// Returns how many were added.
 std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,

@@ -113,7 +113,7 @@ void RecordStore::shrink(std::uint32_t record, float radius) {
   records_[record].radius = radius;
 }
 
-void RecordStore::clamp_with_neighbours(IrradianceRecord& record) {
+void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first) {
   std::vector<std::pair<std::uint32_t, float>> near;
   const auto look = [&](const std::vector<Entry>& entries) {
     for (const Entry& entry : entries)
@@ -124,9 +124,11 @@ void RecordStore::clamp_with_neighbours(IrradianceRecord& record) {
   const Vec3d local = Vec3d(record.position) - lower_;
   for (const Level& level : levels_) look(level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())]);
   look(everywhere_);
-  for (const auto& [i, d] : near) record.radius = std::min(record.radius, records_[i].radius + d);
+  const auto reach = [](const IrradianceRecord& r) { return std::max(r.radius, r.radius_unclamped); };
+  const float own = reach(record);
+  for (const auto& [i, d] : near) record.radius = std::min(record.radius, reach(records_[i]) + slope * d);
   for (const auto& [i, d] : near)
-    if (record.radius + d < records_[i].radius) shrink(i, record.radius + d);
+    if (i >= first && own + slope * d < records_[i].radius) shrink(i, own + slope * d);
 }
 
 void RecordStore::accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum,
@@ -161,6 +163,23 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) c
   for (const Entry& entry : everywhere_) accumulate(entry, 1, position, normal, sum, result);
   if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
   return result;
+}
+
+float RecordStore::lit_share(Vec3 position, Vec3 normal) const {
+  float weights = 0, sum = 0;
+  const auto look = [&](const std::vector<Entry>& entries) {
+    for (const Entry& entry : entries) {
+      Interpolated one;
+      Rgb unused{0.0f};
+      accumulate(entry, 1, position, normal, unused, one);
+      weights += one.weight;
+      sum += one.weight * records_[entry.record].lit_share;
+    }
+  };
+  const Vec3d local = Vec3d(position) - lower_;
+  for (const Level& level : levels_) look(level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())]);
+  look(everywhere_);
+  return weights > 0 ? sum / weights : -1;
 }
 
 RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {

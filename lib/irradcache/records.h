@@ -21,6 +21,7 @@ struct IrradianceRecord {
   float radius = 0;                     ///< m: validity, after clamping
   float radius_unclamped = 0;           ///< m: before it was limited by pixels, scene and neighbours
   float lit_cells = INFINITY;           ///< how many gather rays carry the irradiance (hemisphere.h); not in files
+  float lit_share = 1;                  ///< lit_cells / all cells; not in files
   float curvature = 0;                  ///< W/m^4: size of the second derivatives (hemisphere.h); not in files
   std::uint32_t object = 0;             ///< the object it rides on
 };
@@ -40,11 +41,13 @@ class RecordStore {
 
   /// False, and the record is left out and counted, if one of its numbers is not finite or its radius not above 0.
   bool add(const IrradianceRecord& record);
-  /// Neighbour clamping [Krivanek et al. 2006]: what is near one record cannot be much farther from its neighbours.
-  /// For the records i that are valid where `record` is, d apart:
-  ///     r <- min(r, r_i + d),   then   r_i <- min(r_i, r + d).
-  /// To be called before add(record).
-  void clamp_with_neighbours(IrradianceRecord& record);
+  /// Neighbour clamping [after Krivanek et al. 2006]: what is near one record cannot be much farther from its neighbours,
+  /// though all of their rays may have missed it. For the records i that are valid where `record` is, d apart:
+  ///     r <- min(r, R_i + slope d),   then   r_i <- min(r_i, R + slope d),
+  /// R: radius_unclamped, or r if that is larger. What follows from gradients, which are noise, stays with its record.
+  /// slope: radius / distance to what is seen, the error bound. Records below `first` stay as they are. To be called before
+  /// add(record).
+  void clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first = 0);
   std::span<const IrradianceRecord> records() const { return records_; }
   std::uint64_t refused() const { return refused_; }
 
@@ -62,6 +65,8 @@ class RecordStore {
   /// that no record is seen to begin. Every extrapolation is clamped at 0. A record whose half space does not hold
   /// the point is left out [Ward 1988]: (x - x_i) . (n + n_i)/2 < -0.05 r_i.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
+  /// Mean lit_share of the records that are valid there, so weighted; below 0 if none is.
+  float lit_share(Vec3 position, Vec3 normal) const;
   /// The same with every record's radius kRelaxed times as large: for the few points, fractions of a pixel beyond
   /// an edge, that no record quite reaches. Looks at all records: slow.
   Interpolated interpolate_relaxed(Vec3 position, Vec3 normal) const;

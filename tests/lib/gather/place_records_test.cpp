@@ -96,6 +96,49 @@ TEST(PlaceRecords, EveryPixelIsCoveredAndASecondTimeNothingIsAdded) {
   EXPECT_EQ(room.place(96, 64, store, counts), 0u);
 }
 
+/// Below a small bright patch of radiance 1 one of 300 gather rays meets it, aside one of 3000. Were radii what each
+/// record's own 500 rays tell, records that missed it would reach farthest: the floor came out two thirds dark; with
+/// neighbours' radii alone 19 %, with more rays alone 8 %. Its mean irradiance, against 4 a^2 h^2 / (h^2 + d^2)^2 (exact to
+/// a^2 = 0.3 %): interpolation leaves -2.5 %, and the mean of 12 runs scatters by 0.5 %.
+TEST(PlaceRecords, SmallBrightThingsAreNotOutweighedByRecordsThatMissThem) {
+  constexpr float a = 0.05f, kHalf = 1.5f;
+  constexpr int kSize = 48, kRuns = 12;
+  HandMadeScene scene;
+  scene.add_quad({-a, 1, -a}, {a, 1, -a}, {a, 1, a}, {-a, 1, a}, matte(Rgb(1.0f)));
+  IrradiancePoint bright;
+  bright.position = {0, 1, 0};
+  bright.normal = {0, -1, 0};
+  bright.indirect = Rgb(kPi);
+  const std::vector<IrradiancePoint> points{bright};
+  const Tracer tracer(scene.frame());
+  const Lights lights(scene.frame(), EmissionTable{});
+  const PointLookup lookup(points, scene.frame().bounds, 1);
+  const PixelView floor = [](float x, float y, const PathRandom*) {
+    SeenPoint seen;
+    seen.surface.position = {kHalf * (2 * x / kSize - 1), 0, kHalf * (2 * y / kSize - 1)};
+    seen.normal = seen.surface.normal = seen.surface.normal_geometric = {0, 1, 0};
+    seen.surface.offset = 1e-6f;
+    seen.footprint = 2 * kHalf / kSize / 4;
+    return std::optional(seen);
+  };
+  double found = 0, exact = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    const GatherOptions options{.seed = std::uint64_t(run), .rays = 500};
+    const FinalGather gather(tracer, lights, lookup, options);
+    RecordStore store({{-2, 0, -2}, {2, 1, 2}});
+    GatherCounts counts;
+    place_records(gather, floor, kSize, kSize, {{-2, 0, -2}, {2, 1, 2}}, {}, store, counts);
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        const Vec3 at = floor(float(x) + 0.5f, float(y) + 0.5f, nullptr)->surface.position;
+        found += double(store.interpolate(at, {0, 1, 0}).irradiance.g);
+        const double d2 = double(length2(at));
+        exact += 4 * double(a * a) / ((1 + d2) * (1 + d2));
+      }
+  }
+  EXPECT_NEAR(found / exact, 1, 0.045);
+}
+
 TEST(PlaceRecords, TheSameRecordsForAnyNumberOfThreads) {
   const Room room;
   std::vector<IrradianceRecord> first;
