@@ -109,7 +109,7 @@ void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {
   std::vector<double> light(M * N), three(M * N), three2(M * N);   // by cell: its own, it and the sectors beside it
   double total = 0;
   for (std::size_t c = 0; c < light.size(); ++c) {
-    light[c] = double(radiance[c].r) + double(radiance[c].g) + double(radiance[c].b);
+    light[c] = channel_sum(Rgbd(radiance[c]));
     total += light[c];
   }
   const auto square = [](double x) { return x * x; };
@@ -144,7 +144,7 @@ void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {
 float Hemisphere::lit_cells() const {
   double sum = 0, square = 0;
   for (const Rgb& l : radiance) {
-    const double value = double(l.r) + double(l.g) + double(l.b);
+    const double value = channel_sum(Rgbd(l));
     sum += value;
     square += value * value;
   }

@@ -67,7 +67,7 @@ void place_on(const Surface& surface, std::uint32_t rank, double area_per_point,
 /// Are there Lambert lobes under a coat that reflects? Then light counts by the angle it arrives at.
 bool any_coated(const SceneFrame& frame) {
   return std::any_of(frame.materials.begin(), frame.materials.end(),
-                     [](const Material& m) { return may_have_lambert(m) && Bsdf(m).has_specular(); });
+                     [](const Material& m) { return lobes_of(m).lambert && lobes_of(m).specular; });
 }
 
 /// Scattering of the surface a point is on; nothing if it is not found or has no Lambert lobe there.

@@ -137,7 +137,7 @@ class Placement {
 
 void limit_radius(IrradianceRecord& record, float footprint, float max_radius, const PlacementOptions& options) {
   // double: squares of gradients, whatever the strength of the light, stay finite, and its power of two changes no radius.
-  const double e = double(record.irradiance.r) + double(record.irradiance.g) + double(record.irradiance.b);
+  const double e = channel_sum(Rgbd(record.irradiance));
   if (options.by_curvature)
     record.radius_unclamped = record.curvature > 0 ? float(std::sqrt(2 * e / double(record.curvature))) : INFINITY;
   // Of light that a handful of rays found gradients say nothing. Were they to shrink the radius, records whose rays missed

@@ -179,11 +179,11 @@ double PointDensity::inverse_area(const IrradiancePoint& point, float radius, in
                                   const PathRandom& random) const {
   const Frame frame(point.normal);
   const std::uint64_t key = random.bits(1, Purpose::points);
+  const bool round = kernel == Kernel::round;
   int arrived = 0, drawn = 0;
   double surface = 0;  // m^2 per m^2 of the disc, summed
   while (arrived < probes && drawn < kMostProbes * probes) {
     const auto i = std::uint32_t(drawn++);
-    const bool round = kernel == Kernel::round;
     Vec2 d = sample_disc_concentric(round ? random.get2(i, Purpose::place) : sobol_owen_2d(i, key));
     if (round) {
       const float uniform = std::min(1.0f, d.x * d.x + d.y * d.y), inward = 1 / std::sqrt(1 + std::sqrt(1 - uniform));

@@ -62,17 +62,19 @@ class PointDensity {
   /// Irradiance [W/m^2], >= 0; `radius` receives the half-axis of the ellipsoid, m, 0 if no photon is near.
   Rgb estimate(const IrradiancePoint& point, const PathRandom& random, float& radius) const;
 
-  /// By the kernel 2 (1 - (d/r)^2) [Epanechnikov 1969]: (k-1) / (pi r_k^2) has the mean of the density where photons fall
-  /// independently. Caustic photons do not: the mirror or lens keeps the even spread of Halton's sequence, where the k-th
-  /// photon comes when k - 1/2 are to be expected, and the flat disc is dark by 1 / (2 k), 1.7 % at k = 30. A kernel that
-  /// ends at 0 has the right mean in the one case and a third of that bias in the other; it is sharper (mean of d^2: r^2 / 3, not r^2 / 2) and in independent
-  /// photons noisier, as if k were 3/4 k.
+  /// The same mean as estimate() at a fraction of the rays, for look-ups whose values are averaged over a pixel, and by
+  /// the round kernel 2 (1 - (d/r)^2) [Epanechnikov 1969] in place of the flat one.
   ///
-  /// Else the same mean as estimate() at a fraction of the rays, for look-ups whose values are averaged over a pixel: a few of the photons
-  /// are tested, and all only if one of these cannot be reached; the area is that of few probes. No noise is added where
-  /// the disc is whole. Exact in the mean: let u of the n photons be out of reach, m of them be tested first, and
-  /// P = C(n-u, m) / C(n, m) be the chance to find none; where one is found, the flux is (reached - P all) / (1 - P),
-  /// so that P all + (1 - P) that = reached.
+  /// Why round: (k-1) / (pi r_k^2) has the mean of the density where photons fall independently. Caustic photons do
+  /// not: the mirror or lens keeps the even spread of Halton's sequence, where the k-th photon comes when k - 1/2 are
+  /// to be expected, and the flat disc is dark by 1 / (2 k), 2 % at k = 25. A kernel that ends at 0 has the right mean
+  /// in the one case and a third of that bias in the other; it is sharper (mean of d^2: r^2 / 3, not r^2 / 2) and in
+  /// independent photons noisier, as if k were 3/4 k.
+  ///
+  /// Why cheaper: a few of the photons are tested, and all only if one of these cannot be reached; the area is that of
+  /// few probes. No noise is added where the disc is whole. Exact in the mean: let u of the n photons be out of reach,
+  /// m of them be tested first, and P = C(n-u, m) / C(n, m) be the chance to find none; where one is found, the flux is
+  /// (reached - P all) / (1 - P), so that P all + (1 - P) that = reached.
   Rgb estimate_sampled(Vec3 position, Vec3 normal, const PathRandom& random) const;
 
   std::size_t photon_count() const { return index_.size(); }
@@ -86,7 +88,8 @@ class PointDensity {
   Disc find(Vec3 position, Vec3 normal, NeighbourList& found) const;
   Rgb plain(Vec3 position, Vec3 normal, float& radius, NeighbourList& found) const;
   bool open_and_flat(const IrradiancePoint& point, float radius, float turn) const;
-  double inverse_area(const IrradiancePoint& point, float radius, int probes, Kernel kernel, const PathRandom& random) const;
+  double inverse_area(const IrradiancePoint& point, float radius, int probes, Kernel kernel,
+                      const PathRandom& random) const;
   float column(const IrradiancePoint& point, Vec3 across, float height, float u) const;
 
   const Tracer& tracer_;

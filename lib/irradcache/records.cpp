@@ -41,7 +41,7 @@ std::size_t bucket_of(Cell c, std::size_t count) {
 }
 
 bool is_usable(const IrradianceRecord& r) {
-  bool finite = is_finite(r.position) && is_finite(r.normal) && std::isfinite(r.irradiance.r + r.irradiance.g + r.irradiance.b);
+  bool finite = is_finite(r.position) && is_finite(r.normal) && std::isfinite(channel_sum(r.irradiance));
   for (std::size_t c = 0; c < 3; ++c) finite = finite && is_finite(r.rotational[c]) && is_finite(r.translational[c]);
   return finite && std::isfinite(r.radius) && r.radius > 0;
 }

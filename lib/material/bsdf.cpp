@@ -19,7 +19,7 @@ float smooth_step(float x) {
 /// cosine samples of it would weigh more than ten times their mean. Full at three times this.
 constexpr float kLeastLost = 0.01f;
 
-float mean(Rgb c) { return (c.r + c.g + c.b) / 3; }
+float mean(Rgb c) { return channel_sum(c) / 3; }
 /// Schlick's Fresnel term.
 Rgb fresnel(Rgb f0, float f90, float cos_h) {
   const float k = power5(std::clamp(1 - cos_h, 0.0f, 1.0f));

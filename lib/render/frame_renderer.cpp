@@ -34,10 +34,7 @@ Rgb total(const Layers& layers) {
 
 double mean_radiance(const LayerImage& image) {
   double sum = 0;
-  for (const Layers& pixel : image.pixels) {
-    const Rgb t = total(pixel);
-    sum += double(t.r) + double(t.g) + double(t.b);
-  }
+  for (const Layers& pixel : image.pixels) sum += channel_sum(Rgbd(total(pixel)));
   return sum / double(std::max<std::size_t>(1, 3 * image.pixels.size()));
 }
 
