@@ -110,29 +110,38 @@ FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const Point
 /// A surface at a ray's end.
 struct FinalGather::Met {
   SurfacePoint hit;
-  Vec3 wo, geometric;           ///< geometric: the normal on the side of wo
-  float distance = INFINITY;    ///< m, along the path since the gather ray's start
-  const Bsdf* bsdf = nullptr;   ///< null: nothing was met
+  Vec3 wo, geometric;             ///< geometric: the normal on the side of wo
+  float distance = INFINITY;      ///< m, along the path since the gather ray's start
+  const Bsdf* bsdf = nullptr;     ///< null: nothing was met
+  std::optional<Bsdf> textured;   ///< what bsdf points to where the material has textures
 };
 
-/// A material with textures is made for this hit, in `textured`, which must last as long as the result; a normal map
-/// bends the hit's normal.
-FinalGather::Met FinalGather::meet(SurfacePoint& hit, Vec3 wo, float distance, std::optional<Bsdf>& textured) const {
-  const bool front = dot(hit.normal_geometric, wo) > 0;
-  const Bsdf* bsdf = &bsdfs_[hit.material][front];
-  if (tracer_.frame().materials[hit.material].textures) [[unlikely]] {
-    const SurfaceMaterial material(tracer_.frame(), hit, kBounceSpread * distance);
-    bsdf = &textured.emplace(material, front);
+/// A ray that goes on from a near hit, and what is to become of the radiance along it. All of a call follow together.
+struct FinalGather::Further {
+  Ray ray;
+  std::uint64_t key = 0;
+  Rgb weight{0.0f};
+  std::size_t of = 0;   ///< the gather ray
+};
+
+/// Fills in the rest where met.hit is known. A material with textures is made for this hit; a normal map bends its normal.
+inline void FinalGather::meet(Vec3 wo, float distance, Met& met) const {
+  const float cosine = dot(met.hit.normal_geometric, wo);
+  met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
+  if (tracer_.frame().materials[met.hit.material].textures) [[unlikely]] {
+    const SurfaceMaterial material(tracer_.frame(), met.hit, kBounceSpread * distance);
+    met.bsdf = &met.textured.emplace(material, cosine > 0);
   }
-  return {hit, wo, dot(hit.normal_geometric, wo) < 0 ? -hit.normal_geometric : hit.normal_geometric, distance,
-          bsdf};
+  met.wo = wo;
+  met.geometric = cosine < 0 ? -met.hit.normal_geometric : met.hit.normal_geometric;
+  met.distance = distance;
 }
 
-void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint64_t> keys,
-                           std::span<Rgb> radiance, std::span<float> distance, GatherCounts& counts) const {
+/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything.
+template <class Take>
+void FinalGather::follow(std::span<const Ray> rays, GatherCounts& counts, const Take& take) const {
   std::array<Hit, kAtOnce> hits;
   std::array<Met, kAtOnce> met;
-  std::array<std::optional<Bsdf>, kAtOnce> textured;
   std::array<PointLookup::Question, kAtOnce> questions;
   std::array<PointLookup::Answer, kAtOnce> answers;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
@@ -142,26 +151,44 @@ void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint6
       met[i].bsdf = nullptr;
       if (hits[i].surface == kNone) continue;
       const Ray& ray = rays[first + i];
-      SurfacePoint hit = tracer_.surface_point(hits[i]);
-      met[i] = meet(hit, -ray.direction, length(hit.position - ray.origin), textured[i]);
-      if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(hit.position, met[i].geometric, hit.object);
+      tracer_.surface_points(std::span(hits).subspan(i, 1), &met[i].hit);
+      meet(-ray.direction, length(met[i].hit.position - ray.origin), met[i]);
+      if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(met[i].hit.position, met[i].geometric, met[i].hit.object);
     }
     const auto reads_point = [&](std::size_t i) { return met[i].bsdf && met[i].bsdf->has_diffuse(); };
     for (std::size_t i = 0; i < count; ++i)
       if (reads_point(i)) answers[i] = points_.answer(questions[i]);
-    for (std::size_t i = 0; i < count; ++i) {
-      const PointLight* point = reads_point(i) ? points_.read(questions[i], answers[i]) : nullptr;
-      distance[first + i] = met[i].bsdf ? met[i].distance : INFINITY;
-      radiance[first + i] = met[i].bsdf ? reflected(met[i], point, keys[first + i], 0, counts) : Rgb(0.0f);
-    }
+    for (std::size_t i = 0; i < count; ++i)
+      if (met[i].bsdf) take(first + i, met[i], reads_point(i) ? points_.read(questions[i], answers[i]) : nullptr);
   }
   counts.rays += rays.size();
 }
 
+void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint64_t> keys,
+                           std::span<Rgb> radiance, std::span<float> distance, GatherCounts& counts) const {
+  thread_local std::vector<Further> further;
+  thread_local std::vector<Ray> further_rays;
+  further.clear();
+  further_rays.clear();
+  std::fill(radiance.begin(), radiance.end(), Rgb(0.0f));
+  std::fill(distance.begin(), distance.end(), INFINITY);
+  follow(rays, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
+    distance[i] = met.distance;
+    const std::size_t before = further.size();
+    radiance[i] = reflected(met, point, keys[i], 0, counts, &further);
+    if (further.size() > before) further.back().of = i;
+  });
+  for (const Further& f : further) further_rays.push_back(f.ray);
+  follow(further_rays, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
+    radiance[further[i].of] += further[i].weight * reflected(met, point, further[i].key, 1, counts, nullptr);
+  });
+}
+
 /// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to
-/// read there (or one more bounce if the hit is near), its other lobes by following one of them.
-Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth,
-                           GatherCounts& counts) const {
+/// read there (or one more bounce if the hit is near: `further` receives its ray), its other lobes by following one of
+/// them.
+Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts,
+                           std::vector<Further>* further) const {
   const Bsdf& bsdf = *met.bsdf;
   const bool specular = bsdf.has_specular();
   std::optional<SeenSide> side;
@@ -173,12 +200,10 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
       ++counts.unanswered;
     } else {
       ++counts.points_read;
-      const Rgb rho = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1);
-      // A random threshold between half and one and a half times the near distance: no seam where it begins.
-      const float near = options_.near_factor * point->radius, threshold = 0.5f + random.get1(0, Purpose::gather);
-      const bool is_near = depth == 0 && met.distance < near * threshold;
-      const bool nearer = met.distance < points_.spacing() * threshold || std::isinf(near);
-      result = rho * kInvPi * (is_near ? near_irradiance(met, *point, nearer, random, key, depth, counts) : point->total());
+      const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
+      result = scale * (further && is_near(met, *point, random)
+                            ? near_irradiance(met, *point, random, key, scale, counts, *further)
+                            : point->total());
     }
   }
   if (!specular || depth >= kDeepestSpecular) return result;
@@ -202,22 +227,32 @@ Rgb FinalGather::reflected_beyond(const SurfacePoint& from, Vec3 travel, float d
   Hit hit;
   ++counts.rays;
   if (!tracer_.intersect(spawn_ray(from, travel), hit)) return Rgb(0.0f);
-  SurfacePoint there = tracer_.surface_point(hit);
-  std::optional<Bsdf> textured;
-  const Met met = meet(there, -travel, distance + length(there.position - from.position), textured);
+  Met met;
+  met.hit = tracer_.surface_point(hit);
+  const float further = length(met.hit.position - from.position);
+  meet(-travel, distance + further, met);
   const PointLight* point =
-      met.bsdf->has_diffuse() ? points_.find(there.position, met.geometric, there.object) : nullptr;
-  const Rgb radiance = reflected(met, point, key, depth, counts);
-  return inside ? radiance * transmittance(*inside, length(there.position - from.position)) : radiance;
+      met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric, met.hit.object) : nullptr;
+  const Rgb radiance = reflected(met, point, key, depth, counts, nullptr);
+  return inside ? radiance * transmittance(*inside, further) : radiance;
 }
 
-/// Irradiance at a hit too near for its point to be read: caustic light is the point's all the same; direct light too,
-/// which is known to the spacing of the points instead of an estimate's radius, or if the hit is `nearer` than that by
-/// light sampling; the rest by one ray more.
-Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, bool nearer, const PathRandom& random,
-                                 std::uint64_t key, int depth, GatherCounts& counts) const {
+/// From 1/2 to 1 1/2, for all that depends on how near a hit is: no seam where that begins.
+float FinalGather::threshold(const PathRandom& random) { return 0.5f + random.get1(0, Purpose::gather); }
+
+/// Is the hit too near for its point to be read: within about near_factor radii of the estimate behind it?
+bool FinalGather::is_near(const Met& met, const PointLight& point, const PathRandom& random) const {
+  return met.distance < options_.near_factor * point.radius * threshold(random);
+}
+
+/// Irradiance at such a hit: caustic light is the point's all the same; direct light too, which is known to the spacing
+/// of the points instead of an estimate's radius, or if the hit is nearer than about that, or at the edge of a hot spot,
+/// by light sampling; the rest by one ray more, which `further` receives: `weight` (1/sr) is for its irradiance.
+Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key,
+                                 Rgb weight, GatherCounts& counts, std::vector<Further>& further) const {
   ++counts.near_hits;
   const SeenSide side(met.hit, met.wo);
+  const bool nearer = met.distance < points_.spacing() * threshold(random) || std::isinf(point.radius);
   Rgb irradiance = nearer ? points_.point(point).caustic : point.first;
   LightSample light;
   if (nearer && !lights_.empty() && lights_.sample(met.hit.position, side.normal, random.get1(1, Purpose::light_choice),
@@ -231,8 +266,7 @@ Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, bool n
   }
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
   if (dot(travel, met.geometric) > 0)
-    irradiance += kPi * met.bsdf->arrival_weight(drawn.z) *
-                  reflected_beyond(met.hit, travel, 0, mix64(key + 1), depth + 1, counts);
+    further.push_back({spawn_ray(met.hit, travel), mix64(key + 1), weight * (kPi * met.bsdf->arrival_weight(drawn.z)), 0});
   return irradiance;
 }
 
@@ -255,9 +289,10 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   Shots shots(from, normal, strata_[times], options_.seed);
   sky.reset(shots.strata.rings, shots.strata.sectors);
   const float closest = std::max(4 * from.offset, 1e-30f);
-  SurfacePoint here = from;
-  std::optional<Bsdf> textured;
-  const Bsdf& bsdf = *meet(here, normal, 0, textured).bsdf;
+  Met here;
+  here.hit = from;
+  meet(normal, 0, here);
+  const Bsdf& bsdf = *here.bsdf;
   const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
   const auto shoot = [&] {
     shots.shoot(*this, counts);
@@ -266,13 +301,11 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
         shots.radiance[i] *= bsdf.arrival_weight(dot(shots.rays[i].direction, normal));
   };
 
-  const auto inverse = [closest](float distance) { return 1 / std::max(distance, closest); };   // 0 for a miss
-
   for (const std::uint32_t c : order) shots.aim(c, 0);
   shoot();
   for (std::size_t i = 0; i < shots.rays.size(); ++i) {
     sky.radiance[shots.cells[i]] = shots.radiance[i];
-    sky.inverse_distance[shots.cells[i]] = inverse(shots.distance[i]);
+    sky.inverse_distance[shots.cells[i]] = 1 / std::max(shots.distance[i], closest);   // 0 for a miss
   }
   IrradianceRecord record;
   record.position = from.position;

@@ -68,12 +68,17 @@ class FinalGather {
   };
   struct Shots;
   static Strata strata(int rays);
-  Met meet(SurfacePoint& hit, Vec3 wo, float distance, std::optional<Bsdf>& textured) const;
-  Rgb reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts) const;
+  struct Further;
+  void meet(Vec3 wo, float distance, Met& met) const;
+  template <class Take> void follow(std::span<const Ray> rays, GatherCounts& counts, const Take& take) const;
+  Rgb reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts,
+                std::vector<Further>* further) const;
   Rgb reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key, int depth,
                        GatherCounts& counts, const MaterialValues* inside = nullptr) const;
-  Rgb near_irradiance(const Met& met, const PointLight& point, bool nearer, const PathRandom& random, std::uint64_t key,
-                      int depth, GatherCounts& counts) const;
+  static float threshold(const PathRandom& random);
+  bool is_near(const Met& met, const PointLight& point, const PathRandom& random) const;
+  Rgb near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key, Rgb weight,
+                      GatherCounts& counts, std::vector<Further>& further) const;
 
   const Tracer& tracer_;
   const Lights& lights_;

@@ -15,33 +15,16 @@ constexpr float kSameSide = 0.5f;    ///< cosine between a cell's direction and 
 constexpr int kCandidates = 8;       ///< nearest points among which one of the same object is looked for
 constexpr int kMoreCandidates = 64;  ///< where none of the nearest can be reached
 constexpr int kMaxProbes = 16;
-constexpr std::uint32_t kNormalBins = 8;  ///< per octahedral coordinate
 constexpr float kCellsPerSpacing = 1.4f;
-constexpr float kMostCells = 1 << 20;     ///< per axis: more than coordinates can tell apart
 constexpr float kNeighbourhood = 2.5f;    ///< spacings: how far the neighbours are that a point must reach
 constexpr float kCellDiagonal = 1.4142f;  ///< of a cell's section along a surface
 constexpr float kHot = 20;        ///< times the mean: light of which little must not be read beside where it falls
 constexpr float kContrast = 8;    ///< to a neighbour, from which on neither stands for what lies between them
 constexpr std::uint32_t kSeparated = 1;   ///< of an answer: its hits are answered one by one
 
-/// 3 bits of each octahedral coordinate; n need not be encoded to the last bit for that.
-std::uint32_t normal_bin(Vec3 n) {
-  const float scale = 1 / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
-  float u = n.x * scale, v = n.y * scale;
-  if (n.z < 0) {
-    const float folded = (1 - std::abs(v)) * std::copysign(1.0f, u);
-    v = (1 - std::abs(u)) * std::copysign(1.0f, v);
-    u = folded;
-  }
-  const auto bin = [](float x) {
-    return std::min(kNormalBins - 1, std::uint32_t((x + 1) * (0.5f * kNormalBins)));
-  };
-  return bin(u) * kNormalBins + bin(v);
-}
-
 Vec3 bin_direction(std::uint32_t bin) {
-  const auto middle = [](std::uint32_t i) { return (2 * float(i) + 1) / kNormalBins - 1; };
-  Vec3 n{middle(bin / kNormalBins), middle(bin % kNormalBins), 0};
+  const auto middle = [](std::uint32_t i) { return (2 * float(i) + 1) / PointLookup::kNormalBins - 1; };
+  Vec3 n{middle(bin / PointLookup::kNormalBins), middle(bin % PointLookup::kNormalBins), 0};
   n.z = 1 - std::abs(n.x) - std::abs(n.y);
   if (n.z < 0) {
     const float folded = (1 - std::abs(n.y)) * std::copysign(1.0f, n.x);
@@ -94,9 +77,9 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
   mark_hot_edges();
   value_bits_ = int(std::bit_width(2 * (points.size() + 1)));  // a point + 1 or a crowd + 1, and kSeparated
   const Vec3 extent = bounds.empty() ? Vec3{1, 1, 1} : bounds.upper - bounds.lower;
-  cell_ = std::max(spacing / kCellsPerSpacing, max_component(extent) / kMostCells);
+  cell_ = std::max(spacing / kCellsPerSpacing, max_component(extent) / PointLookup::kMostCells);
   for (double keys = INFINITY; !(keys < std::ldexp(1.0, 63 - value_bits_)); cell_ *= 1.1f) {
-    keys = double(objects_) * kNormalBins * kNormalBins;
+    keys = double(objects_) * PointLookup::kNormalBins * PointLookup::kNormalBins;
     inverse_cell_ = 1 / cell_;
     for (int a = 0; a < 3; ++a) {
       size_[std::size_t(a)] = std::uint32_t(std::max(0.0f, extent[a] * inverse_cell_)) + 1;
@@ -116,19 +99,18 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
 /// radius: hits near them continue, whatever their distance. Read instead, a spacing's width of the spot would be seen
 /// beside it: a gap of a tenth of the spacing brought 28 % more indirect light to a room.
 void PointLookup::mark_hot_edges() {
-  const auto light = [](const Rgb& e) { return e.r + e.g + e.b; };
   double sum = 0;
-  for (const PointLight& point : lights_) sum += double(light(point.all));
+  for (const PointLight& point : lights_) sum += double(channel_sum(point.all));
   const double mean = sum / double(std::max<std::size_t>(1, lights_.size()));
   NeighbourList found;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const float here = light(lights_[i].all);
+    const float here = channel_sum(lights_[i].all);
     if (!(double(here) > kHot * mean)) continue;
     PhotonQuery query = facing(points_[i].position, points_[i].normal);
     query.max_radius = kNeighbourhood * spacing_;
     index_.find_within(query, found);
     for (const std::uint32_t other : found.photons())
-      if (PointLight& there = lights_[index_.source(other)]; light(there.all) * kContrast < here)
+      if (PointLight& there = lights_[index_.source(other)]; channel_sum(there.all) * kContrast < here)
         there.radius = lights_[i].radius = INFINITY;
   }
 }
@@ -258,18 +240,6 @@ std::uint32_t PointLookup::search_reachable(const Question& q, const PointCrowd*
     done = found.count();
   }
   return search(q.position, q.normal, q.object);
-}
-
-PointLookup::Question PointLookup::ask(Vec3 position, Vec3 normal, std::uint32_t object) const {
-  const Vec3 local = (position - lower_) * inverse_cell_;
-  const auto coordinate = [this](float x, std::size_t axis) {
-    return x > 0 ? std::min(size_[axis] - 1, std::uint32_t(std::min(x, 2 * kMostCells))) : 0u;  // NaN: 0
-  };
-  Question q{position, normal, object, normal_bin(normal), {coordinate(local.x, 0), coordinate(local.y, 1), coordinate(local.z, 2)}, 0};
-  const std::uint64_t cell = (std::uint64_t(q.cell[2]) * size_[1] + q.cell[1]) * size_[0] + q.cell[0];
-  q.key = (cell * objects_ + std::min(object, objects_ - 1)) * (kNormalBins * kNormalBins) + q.bin + 1;
-  __builtin_prefetch(&entries_[mix64(q.key) & mask_]);
-  return q;
 }
 
 const PointLight* PointLookup::read(const Question& q, Answer answer) const {

@@ -1,14 +1,17 @@
 // lib/irradcache/points.h -- irradiance points: what a gather ray reads at its hit.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "lib/core/random.h"
 #include "lib/core/vec.h"
 #include "lib/density/photon_index.h"
 
@@ -80,7 +83,11 @@ class PointLookup {
   float spacing() const { return spacing_; }
   const IrradiancePoint& point(const PointLight& read) const { return points_[read.point]; }
 
+  static constexpr std::uint32_t kNormalBins = 8;   ///< per octahedral coordinate
+  static constexpr float kMostCells = 1 << 20;      ///< per axis: more than coordinates can tell apart
+
  private:
+  static std::uint32_t normal_bin(Vec3 n);
   void mark_hot_edges();
   std::uint32_t search(Vec3 position, Vec3 normal, std::uint32_t object) const;
   std::uint32_t search_cell(Vec3 middle, std::uint32_t bin, std::uint32_t object) const;
@@ -107,5 +114,32 @@ class PointLookup {
   std::vector<PointLight> lights_;                                  ///< by point
   mutable std::unique_ptr<std::atomic<std::uint8_t>[]> separated_;  ///< by point: 0 not known, 1 no, 2 yes
 };
+
+/// 3 bits of each octahedral coordinate; n need not be encoded to the last bit for that.
+inline std::uint32_t PointLookup::normal_bin(Vec3 n) {
+  const float scale = 1 / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+  float u = n.x * scale, v = n.y * scale;
+  if (n.z < 0) {
+    const float folded = (1 - std::abs(v)) * std::copysign(1.0f, u);
+    v = (1 - std::abs(u)) * std::copysign(1.0f, v);
+    u = folded;
+  }
+  const auto bin = [](float x) {
+    return std::min(kNormalBins - 1, std::uint32_t((x + 1) * (0.5f * kNormalBins)));
+  };
+  return bin(u) * kNormalBins + bin(v);
+}
+
+inline PointLookup::Question PointLookup::ask(Vec3 position, Vec3 normal, std::uint32_t object) const {
+  const Vec3 local = (position - lower_) * inverse_cell_;
+  const auto coordinate = [this](float x, std::size_t axis) {
+    return x > 0 ? std::min(size_[axis] - 1, std::uint32_t(std::min(x, 2 * kMostCells))) : 0u;  // NaN: 0
+  };
+  Question q{position, normal, object, normal_bin(normal), {coordinate(local.x, 0), coordinate(local.y, 1), coordinate(local.z, 2)}, 0};
+  const std::uint64_t cell = (std::uint64_t(q.cell[2]) * size_[1] + q.cell[1]) * size_[0] + q.cell[0];
+  q.key = (cell * objects_ + std::min(object, objects_ - 1)) * (kNormalBins * kNormalBins) + q.bin + 1;
+  __builtin_prefetch(&entries_[mix64(q.key) & mask_]);
+  return q;
+}
 
 }  // namespace tempolux
