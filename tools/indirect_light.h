@@ -13,7 +13,7 @@ struct IndirectLightOptions {
   std::string photons, irradcache, points;   ///< files, or patterns; "": none
   PhotonLightOptions photon_light;
   PointOptions points_made;                  ///< if records are missing and --points does not say what to read
-  GatherOptions gather;
+  GatherOptions gather{.rays = 64};          ///< of a missing record: a pixel takes the mean of several
 };
 
 /// Opens what the options name, checked against the frame's identity, and owns it while the frame is rendered.

@@ -170,7 +170,8 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
       ->capture_default_str()->check(tools::number_between(1, 4096));
   app.add_option("--rays", options.gather.rays,
-                 "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many")
+                 "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many, all of it up "
+                 "to 8 times where light comes from a small share of it")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
   app.add_option("--error-bound", options.placement.error_bound,
                  "radius of a record / harmonic mean distance to what it sees: smaller is finer")

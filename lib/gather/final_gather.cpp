@@ -101,7 +101,7 @@ struct FinalGather::Shots {
 };
 
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options)
-    : tracer_(tracer), lights_(lights), points_(points), options_(options), few_(strata(kFewRays)) {
+    : tracer_(tracer), lights_(lights), points_(points), options_(options), few_(strata(std::min(kFewRays, options.rays))) {
   for (std::size_t i = 0; i < strata_.size(); ++i) strata_[i] = strata(options.rays << i);
   for (const Material& material : tracer.frame().materials)
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
@@ -284,7 +284,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   thread_local Hemisphere sky;
   thread_local std::vector<std::uint8_t> further;
   std::size_t times = 0;   // twofold
-  while (times + 1 < strata_.size() && expected_share * float(strata_[times].order.size()) < kWantedLit) ++times;
+  while (times + 1 < strata_.size() && expected_share * float(1 << times) < kEnoughLit) ++times;
   const std::vector<std::uint32_t>& order = strata_[times].order;
   Shots shots(from, normal, strata_[times], options_.seed);
   sky.reset(shots.strata.rings, shots.strata.sectors);

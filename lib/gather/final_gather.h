@@ -38,18 +38,18 @@ class FinalGather {
   FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options);
 
   /// Irradiance at `from` over the hemisphere about `normal` (unit, on the lit side), with its gradients, by about
-  /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). Where light is expected in a
-  /// small share of them, 2, 4 or 8 times as many, so that kWantedLit carry it if possible: what a handful of rays finds is
-  /// noise, and its radius depends on what was found. No bias comes of it as long as `expected_share` does not follow from
+  /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). Where less than kEnoughLit of
+  /// them is expected to carry the light, 2, 4 or 8 times as many, as it takes to make up for that: what a handful of rays
+  /// finds is noise, and its radius depends on what was found. No bias comes of it as long as `expected_share` does not follow from
   /// this place's own rays: it is for the neighbours to tell, or for lit_share(). Under a coat light counts
   /// by Bsdf::arrival_weight, as photons do: what the coat reflects more of at grazing angles does not reach the Lambert
   /// lobe. radius_unclamped receives the harmonic mean distance, radius the distance across the tangent plane to the
   /// nearest of what the outermost ring met (limit_radius makes the validity of both). Random numbers come from the
   /// position: the record of a place does not depend on which records were made before, but for expected_share.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share = 1) const;
-  /// Share of the hemisphere from which light comes (Hemisphere::lit_cells), by 64 rays that gather() does not use.
+  /// Share of the hemisphere from which light comes (Hemisphere::lit_cells), by at most 64 rays that gather() does not use.
   float lit_share(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
-  static constexpr float kWantedLit = 32;
+  static constexpr float kEnoughLit = 1.0f / 16;
 
   /// Radiance arriving along rays that counts as indirect at their starts, and the distance to what each meets
   /// first (infinity: nothing). keys: random numbers, one for each ray. Fastest if rays that follow one another
