@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFinest = 40;               ///< smallest cells: largest / 2^kFinest, below float spacing
 constexpr std::size_t kFirstBuckets = 256;
-constexpr float kBehind = 0.05f;          ///< of the radius: how far behind a record's plane a point may be
+constexpr float kOffPlane = 0.05f;        ///< of the radius: how far off the plane between the normals a point may be
 constexpr double kRounding = 1e-6;        ///< distances are of float: a sphere may reach this much farther
 
 struct Cell {
@@ -139,7 +139,7 @@ void RecordStore::accumulate(const Entry& entry, float scale, Vec3 position, Vec
   if (d2 >= radius * radius) return;
   const float cosine = dot(normal, entry.normal);
   if (cosine <= options_.max_angle_cos) return;
-  if (dot(d, normal + entry.normal) < -2 * kBehind * entry.radius) return;
+  if (std::abs(dot(d, normal + entry.normal)) > 2 * kOffPlane * entry.radius) return;
   const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - options_.max_angle_cos));
   const float w = (1 - std::sqrt(d2) / radius) * (1 - angle);
   if (!(w > 0)) return;

@@ -62,8 +62,9 @@ class RecordStore {
   ///     w_i = (1 - |x - x_i| / r_i) (1 - sqrt((1 - n n_i) / (1 - cos_max)))      where both are positive
   ///
   /// the hat weights of Tabellion & Lamorlette 2004 and Krivanek, which go to zero at the border of validity, so
-  /// that no record is seen to begin. Every extrapolation is clamped at 0. A record whose half space does not hold
-  /// the point is left out [Ward 1988]: (x - x_i) . (n + n_i)/2 < -0.05 r_i.
+  /// that no record is seen to begin. Every extrapolation is clamped at 0. A record is left out if the point is not on one
+  /// surface with it: |(x - x_i) . (n + n_i)/2| > 0.05 r_i, which is 0 along circles. Behind it as Ward 1988; in front as
+  /// well, or the bright ground below the rim of a plate shines on top of the plate.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// Mean lit_share of the records that are valid there, so weighted; below 0 if none is.
   float lit_share(Vec3 position, Vec3 normal) const;

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """Scenes made by others, path-traced and by the photon chain: does each render, and do the layers agree?
 
-    python3 tests/bench/found.py                        all of ../shared/scenes/found/gltf: about ten minutes on two cores
+    python3 tests/bench/found.py                        all of ../shared/scenes/found/gltf: about ten minutes on two idle cores
     python3 tests/bench/found.py --only 'Fox|17_ior'    some of them
 
 A file without a camera is copied to a temporary folder and gets one that sees all of it, and a ground below; a file without
 a light gets a lamp and a dim sky; in one with lights without extent no surface is smoother than a roughness of 0.1: the path
 tracer could not find those in a mirror. Where things stand (skins, morphs, instances) is learnt from a few photons of a sun. Prints a table;
 writes found.json and sheet.png (path tracer left, photon chain right, each pair at its own exposure) to --out.
-A layer agrees if its means differ by less than 1.5 %, or 1.5 standard errors more, or by less than 0.1 % of the picture's.
+The path tracer takes as many samples as it needs for standard errors of 0.4 %, up to --spp; the photon chain runs with three
+seeds. A layer agrees if its means differ by less than 1.5 % and two standard errors; layers below 0.1 % of the picture are
+listed, but not judged.
 """
 import argparse
 import json
@@ -26,7 +28,10 @@ from measure import Bench, Missing, figure
 
 LAYERS = ("emission", "specular", "direct", "caustic", "indirect")
 FRAME = 10
-SEEDS = (1, 2)
+SEEDS = (1, 2, 3)
+JUDGED = 0.001          # of the picture: layers below are listed only
+WANTED_ERROR = 0.004    # of a judged layer's mean, path traced
+PILOT = 32              # samples per pixel that tell how many are needed
 
 
 class Refused(Exception):
@@ -76,6 +81,11 @@ class Found:
                                     "--halves", "--channels", "RGBA,layers", "--compression", "none", "-o", image, *self.sky, *options)
         return image, stats["cpu_s"], warnings
 
+    def reference(self, scene, spp):
+        """Path-traced picture, its halves, CPU seconds, warnings."""
+        image, cpu, warnings = self.by_paths(scene, self.size, spp)
+        return exr.read(image), [exr.read(image.with_name(f"path_{h}.exr")) for h in "ab"], cpu, warnings
+
     def by_photons(self, scene, size, photons, seed, *options):
         photon_map, points, cache, image = (self.folder / f"chain.{end}" for end in ("photons", "irradpoints", "irradcache", "exr"))
         common = [scene, "--frame", FRAME, "-q", "--seed", seed, *self.sky, *options]
@@ -90,9 +100,10 @@ class Found:
         row = {"file": file.name, "layers": {}}
         try:
             scene, row["given"] = self.usable(file)
-            image, row["path_cpu_s"], row["warnings"] = self.by_paths(scene, self.size, self.spp)
-            path = exr.read(image)
-            halves = [exr.read(image.with_name(f"path_{h}.exr")) for h in "ab"]
+            path, halves, row["path_cpu_s"], row["warnings"] = self.reference(scene, min(self.spp, PILOT))
+            row["spp"] = enough_samples(path, halves, min(self.spp, PILOT), self.spp)
+            if row["spp"] > PILOT:
+                path, halves, row["path_cpu_s"], _ = self.reference(scene, row["spp"])
             chain, row["chain_cpu_s"] = [], 0
             for seed in SEEDS:
                 image, cpu = self.by_photons(scene, self.size, self.photons, seed)
@@ -127,21 +138,37 @@ class Found:
         return len(found) == 1
 
 
-def layer_row(layer, path, halves, chain):
-    """Means of all three colours together, standard errors, and whether they agree."""
-    def mean(image, name=layer):
-        values = image.rgb(name)
-        return math.fsum(values) / len(values)
+def mean(image, layer=""):
+    """Of all three colours together."""
+    values = image.rgb(layer)
+    return math.fsum(values) / len(values)
+
+
+def error_of_mean(halves, layer):
+    """Standard error of a path-traced layer's mean. Pixels are independent, the colours of one are not: three times the
+    variance of independent values."""
     a, b = (half.rgb(layer) for half in halves)
-    pixels = len(a) / 3
-    # Pixels are independent, the colours of one are not: three times the variance of independent values.
-    path_error = math.sqrt(3 * math.fsum((x - y) ** 2 for x, y in zip(a, b)) / 4) / (3 * pixels)
-    seeds = [mean(image) for image in chain]
-    chain_error = abs(seeds[0] - seeds[1]) / 2
-    ours, theirs, error = mean(path), sum(seeds) / len(seeds), math.hypot(path_error, chain_error)
-    whole = mean(path, "")
-    agrees = abs(theirs - ours) <= max(0.015 * abs(ours) + 1.5 * error, 0.001 * whole)
-    return {"path": ours, "path_error": path_error, "chain": theirs, "chain_error": chain_error, "agrees": agrees}
+    return math.sqrt(3 * math.fsum((x - y) ** 2 for x, y in zip(a, b)) / 4) / len(a)
+
+
+def enough_samples(path, halves, spp, most):
+    """Samples per pixel at which every layer that is judged has an error below WANTED_ERROR, by those of `spp`."""
+    worst = max((error_of_mean(halves, layer) / mean(path, layer) for layer in LAYERS
+                 if mean(path, layer) > JUDGED * mean(path)), default=0)
+    return min(most, 16 * math.ceil(spp * (worst / WANTED_ERROR) ** 2 / 16))
+
+
+def layer_row(layer, path, halves, chain):
+    """Means, standard errors, and whether they agree: None if the layer is too dark to be judged."""
+    path_error = error_of_mean(halves, layer)
+    seeds = [mean(image, layer) for image in chain]
+    ours, theirs = mean(path, layer), sum(seeds) / len(seeds)
+    chain_error = math.sqrt(math.fsum((s - theirs) ** 2 for s in seeds) / (len(seeds) - 1) / len(seeds))
+    agrees = abs(theirs - ours) <= 0.015 * abs(ours) + 2 * math.hypot(path_error, chain_error)
+    if max(ours, theirs) < JUDGED * mean(path):
+        agrees = None
+    return {"path": ours, "path_error": path_error, "chain": theirs, "chain_error": chain_error,
+            "of_picture": ours / max(mean(path), 1e-30), "agrees": agrees}
 
 
 def brightness(image):
@@ -165,12 +192,24 @@ def table_rows(name, row):
     for layer, r in row["layers"].items():
         if r["path"] or r["chain"]:
             relative = f"{100 * (r['chain'] / r['path'] - 1):+.2f} %" if r["path"] else "-"
+            verdict = {True: "", False: " (!)", None: " (below 0.1 % of the picture)"}[r["agrees"]]
             lines.append(["", layer, f"{r['path']:.4g} ± {r['path_error']:.1g}", f"{r['chain']:.4g} ± {r['chain_error']:.1g}",
-                          relative + ("" if r["agrees"] else " (!)"), ""])
+                          relative + verdict, ""])
     return lines
 
 
-def found(bench, _=None, only="", size="320x180", spp=64, photons="2M"):
+def summary(rows):
+    """Sentences: how many layers agree, how large those are that are not judged or do not agree."""
+    layers = [(f"{Path(name).stem} {layer}", r) for name, row in rows.items() for layer, r in row["layers"].items()
+              if r["path"] or r["chain"]]
+    judged = [r for _, r in layers if r["agrees"] is not None]
+    apart = [name for name, r in layers if r["agrees"] is False]
+    return [f"{sum(r['agrees'] for r in judged)} of {len(judged)} layers agree within 1.5 % and two standard errors; "
+            f"{len(layers) - len(judged)} below 0.1 % of their picture are listed without a verdict."] + (
+        [f"Beyond it: {', '.join(apart)}."] if apart else [])
+
+
+def found(bench, _=None, only="", size="320x180", spp=256, photons="4M"):
     """The figure: every found scene, by both ways."""
     folder = bench.project / ".." / "shared" / "scenes" / "found" / "gltf"
     if not folder.is_dir():
@@ -191,13 +230,14 @@ def found(bench, _=None, only="", size="320x180", spp=64, photons="2M"):
             if row["exit"] != 0:
                 good = good and expected_refusal(file, row)
                 continue
-            good = good and not row["not_finite"] and all(r["agrees"] for r in row["layers"].values())
+            good = good and not row["not_finite"] and all(r["agrees"] is not False for r in row["layers"].values())
             pictures += row.pop("pictures")
             rendered.append(file)
         for file in rendered[::max(1, len(rendered) // 5)][:0 if bench.quick else 5]:
             same = work.same_for_threads(file)
             good = good and same
             notes.append(f"{file.name}: {'the same' if same else 'OTHER'} bytes with 1, 2, 3 and 7 threads.")
+    notes += summary(rows)
     (bench.out / "found-layers.json").write_text(json.dumps(rows, indent=1))
     if pictures:
         bench.run([bench.bin / "tempolux-info", "--sheet", bench.out / "found.png", "--columns", 6, "--exposure", 0, *pictures])
@@ -214,8 +254,8 @@ def main():
     parser.add_argument("--out", type=Path, default=project / "out" / "found", help="sheet, table as JSON [out/found]")
     parser.add_argument("--only", default="", help="regular expression: files whose path it is found in")
     parser.add_argument("--size", default="320x180", help="[320x180]")
-    parser.add_argument("--spp", type=int, default=64, help="samples per pixel of the path tracer [64]")
-    parser.add_argument("--photons", default="2M", help="[2M]")
+    parser.add_argument("--spp", type=int, default=256, help="samples per pixel of the path tracer, at most [256]")
+    parser.add_argument("--photons", default="4M", help="[4M]")
     args = parser.parse_args()
     bench = Bench(args.build.resolve(), args.out.resolve(), project, False, 0)
     try:

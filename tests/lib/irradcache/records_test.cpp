@@ -36,7 +36,7 @@ RecordStore::Interpolated by_brute_force(const RecordStore& store, Vec3 position
   for (const IrradianceRecord& r : store.records()) {
     const Vec3d d = Vec3d(position) - Vec3d(r.position), n(normal), n_i(r.normal);
     const double cosine = dot(n, n_i);
-    if (length(d) >= double(r.radius) || cosine <= 0.94 || dot(d, n + n_i) < -0.1 * double(r.radius)) continue;
+    if (length(d) >= double(r.radius) || cosine <= 0.94 || std::abs(dot(d, n + n_i)) > 0.1 * double(r.radius)) continue;
     const double w = (1 - length(d) / double(r.radius)) * (1 - std::sqrt(std::max(0.0, 1 - cosine) / 0.06));
     if (w <= 0) continue;
     for (int c = 0; c < 3; ++c)
@@ -215,6 +215,22 @@ TEST(RecordStore, RadiiAtBothEnds) {
   RecordStore flat(box({2, 2, 2}, {2, 2, 2}));
   flat.add(record_at({2, 2, 2}, {0, 1, 0}, 0.1f, Rgb(1.0f)));
   EXPECT_EQ(flat.interpolate({2, 2, 2}, {0, 1, 0}).count, 1);
+}
+
+/// The ground below the rim of a plate and the top of the plate, 2 cm above: neither's records of 10 cm count on the other.
+/// Along a bowl's and a ball's great circle of 1 m records of 20 cm count 10 cm away, where the normal is 5.7 degrees off.
+TEST(RecordStore, ParallelPlanesKeepTheirLight) {
+  RecordStore store(box({-2, -2, -2}, {2, 2, 2}));
+  store.add(record_at({0, 0, 0}, {0, 1, 0}, 0.1f, Rgb(9.0f)));
+  EXPECT_EQ(store.interpolate({0.01f, 0.02f, 0}, {0, 1, 0}).count, 0);
+  EXPECT_EQ(store.interpolate({0.01f, -0.02f, 0}, {0, 1, 0}).count, 0);
+  EXPECT_EQ(store.interpolate({0.01f, 0.004f, 0}, {0, 1, 0}).count, 1);
+  const float s = std::sin(0.1f), c = std::cos(0.1f);
+  for (const float side : {1.0f, -1.0f}) {   // ball: normals outwards; bowl: inwards
+    RecordStore round(box({-2, -2, -2}, {2, 2, 2}));
+    round.add(record_at({0, 1, 0}, {0, side, 0}, 0.2f, Rgb(1.0f)));
+    EXPECT_EQ(round.interpolate({s, c, 0}, {side * s, side * c, 0}).count, 1);
+  }
 }
 
 /// Slope 0.5: a record of 0.1 m at 0.3 m from one of 1 m leaves that one 0.25 m; one of 2 m at 0.2 m from it gets 1.1 m
