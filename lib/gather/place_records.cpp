@@ -14,15 +14,7 @@ constexpr std::size_t kBatch = 256;
 constexpr int kCoarsest = 16;
 constexpr float kFewCells = 8, kEnoughCells = 32;   ///< lit cells: gradients are left out; count in full
 
-std::vector<std::size_t> shuffled(std::vector<std::size_t> pixels) {
-  std::sort(pixels.begin(), pixels.end(), [](std::size_t a, std::size_t b) {
-    const std::uint64_t ka = mix64(a), kb = mix64(b);
-    return ka != kb ? ka < kb : a < b;
-  });
-  return pixels;
-}
-
-/// Pixels of the lattice of `stride` that are on no coarser one (of 1: all), in a fixed shuffled order.
+/// Pixels of the lattice of `stride` that are on no coarser one (of 1: all), row by row.
 std::vector<std::size_t> lattice(int width, int height, int stride) {
   std::vector<std::size_t> pixels;
   for (int y = 0; y < height; y += stride)
@@ -30,7 +22,7 @@ std::vector<std::size_t> lattice(int width, int height, int stride) {
       if (stride > 1 && stride < kCoarsest && x % (2 * stride) == 0 && y % (2 * stride) == 0) continue;
       pixels.push_back(std::size_t(y) * std::size_t(width) + std::size_t(x));
     }
-  return shuffled(std::move(pixels));
+  return pixels;
 }
 
 /// What a pixel saw, in short.
@@ -79,41 +71,48 @@ class Placement {
   /// From now on a new record leaves its neighbours as they are: what is covered stays so.
   void fix_radii() { first_ = kFixed; }
 
-  /// Points 0 .. count-1 in this order; view(i) may say that there is nothing to cover.
+  /// Points of pixels, in a fixed shuffled order; view(pixel) may say that there is nothing to cover.
   template <class View>
-  void cover(std::size_t count, const View& view) {
-    // What is covered now stays covered: only the rest is looked at again, batch by batch.
-    std::vector<std::optional<SeenPoint>> open(count);
-    parallel_chunks(count, 1024, [&](std::size_t first, std::size_t last) {
+  void cover(const std::vector<std::size_t>& pixels, const View& view) {
+    // What is covered now stays covered: only the rest is put into order and looked at again, batch by batch.
+    constexpr std::size_t kChunk = 1024;
+    std::vector<std::vector<Open>> found((pixels.size() + kChunk - 1) / kChunk);
+    parallel_chunks(pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
-        if (const std::optional<SeenPoint> seen = view(i); seen && !is_covered(*seen)) open[i] = seen;
+        if (const std::optional<SeenPoint> seen = view(pixels[i]); seen && !is_covered(*seen))
+          found[first / kChunk].push_back({mix64(pixels[i]), pixels[i], *seen});
     });
-    std::erase_if(open, [](const auto& seen) { return !seen; });
+    std::vector<Open> open;
+    for (const auto& some : found) open.insert(open.end(), some.begin(), some.end());
+    std::sort(open.begin(), open.end(), [](const Open& a, const Open& b) { return a.key != b.key ? a.key < b.key : a.pixel < b.pixel; });
     for (std::size_t start = 0; start < open.size(); start += kBatch)
       add_batch(std::span(open).subspan(start, std::min(kBatch, open.size() - start)));
   }
 
-  bool is_covered(Vec3 position, Vec3 normal) const {
-    return store_.interpolate(position, normal).weight >= options_.min_weight;
-  }
+  bool is_covered(Vec3 position, Vec3 normal) const { return store_.covers(position, normal, options_.min_weight); }
 
  private:
   static constexpr std::size_t kFixed = ~std::size_t(0);
+  struct Open {
+    std::uint64_t key;   ///< what it is sorted by
+    std::size_t pixel;
+    SeenPoint seen;
+  };
 
   bool is_covered(const SeenPoint& seen) const { return is_covered(seen.surface.position, seen.normal); }
 
-  void add_batch(std::span<const std::optional<SeenPoint>> points) {
+  void add_batch(std::span<const Open> points) {
     std::vector<std::optional<IrradianceRecord>> records(points.size());
     std::mutex mutex;
     parallel_chunks(points.size(), 8, [&](std::size_t first, std::size_t last) {
       GatherCounts local;
       for (std::size_t i = first; i < last; ++i) {
-        if (is_covered(*points[i])) continue;
-        const SurfacePoint& at = points[i]->surface;
-        float share = store_.lit_share(at.position, points[i]->normal);
-        if (share < 0) share = gather_.lit_share(at, points[i]->normal, local);
-        records[i] = gather_.gather(at, points[i]->normal, local, share);
-        limit_radius(*records[i], points[i]->footprint, max_radius_, options_);
+        const SeenPoint& seen = points[i].seen;
+        if (is_covered(seen)) continue;
+        float share = store_.lit_share(seen.surface.position, seen.normal);
+        if (share < 0) share = gather_.lit_share(seen.surface, seen.normal, local);
+        records[i] = gather_.gather(seen.surface, seen.normal, local, share);
+        limit_radius(*records[i], seen.footprint, max_radius_, options_);
       }
       const std::lock_guard lock(mutex);
       counts_ += local;
@@ -175,9 +174,9 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
   for (int stride = kCoarsest; stride >= 1; stride /= 2) {
     if (stride == 1) placement.fix_radii();   // and look again at what was covered before
     const std::vector<std::size_t> pixels = lattice(width, height, stride);
-    placement.cover(pixels.size(), [&](std::size_t i) {
-      const std::size_t x = pixels[i] % std::size_t(width), y = pixels[i] / std::size_t(width);
-      Glimpse& glimpse = glimpses[pixels[i]];
+    placement.cover(pixels, [&](std::size_t pixel) {
+      const std::size_t x = pixel % std::size_t(width), y = pixel / std::size_t(width);
+      Glimpse& glimpse = glimpses[pixel];
       if (glimpse.any && placement.is_covered(glimpse.position, glimpse.normal)) return std::optional<SeenPoint>();
       const std::optional<SeenPoint> seen = view(float(x) + 0.5f, float(y) + 0.5f, nullptr);
       if (seen)
@@ -186,12 +185,12 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
     });
     advance(pixels.size());
   }
-  const std::vector<std::size_t> edges = shuffled(edge_pixels(glimpses, width, height));
+  const std::vector<std::size_t> edges = edge_pixels(glimpses, width, height);
   constexpr Vec2 kWithin[4] = {{0.125f, 0.625f}, {0.375f, 0.125f}, {0.625f, 0.875f}, {0.875f, 0.375f}};
   for (std::uint32_t k = 0; k < 4; ++k) {
-    placement.cover(edges.size(), [&](std::size_t i) {
-      const std::size_t x = edges[i] % std::size_t(width), y = edges[i] / std::size_t(width);
-      const PathRandom random(mix64(edges[i]), k);
+    placement.cover(edges, [&](std::size_t pixel) {
+      const std::size_t x = pixel % std::size_t(width), y = pixel / std::size_t(width);
+      const PathRandom random(mix64(pixel), k);
       return view(float(x) + kWithin[k].x, float(y) + kWithin[k].y, &random);
     });
     advance(std::size_t(width) * std::size_t(height) / 16);

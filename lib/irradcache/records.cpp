@@ -131,19 +131,24 @@ void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, s
     if (i >= first && own + slope * d < records_[i].radius) shrink(i, own + slope * d);
 }
 
-void RecordStore::accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum,
-                             Interpolated& result) const {
+inline float RecordStore::weight_of(const Entry& entry, float scale, Vec3 position, Vec3 normal) const {
   const float radius = entry.radius * scale;
   const Vec3 d = position - entry.position;
   const float d2 = length2(d);
-  if (d2 >= radius * radius) return;
+  if (d2 >= radius * radius) return 0;
   const float cosine = dot(normal, entry.normal);
-  if (cosine <= options_.max_angle_cos) return;
-  if (std::abs(dot(d, normal + entry.normal)) > 2 * kOffPlane * entry.radius) return;
+  if (cosine <= options_.max_angle_cos) return 0;
+  if (std::abs(dot(d, normal + entry.normal)) > 2 * kOffPlane * entry.radius) return 0;
   const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - options_.max_angle_cos));
-  const float w = (1 - std::sqrt(d2) / radius) * (1 - angle);
+  return std::max(0.0f, (1 - std::sqrt(d2) / radius) * (1 - angle));
+}
+
+inline void RecordStore::accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum,
+                                    Interpolated& result) const {
+  const float w = weight_of(entry, scale, position, normal);
   if (!(w > 0)) return;
   const IrradianceRecord& r = records_[entry.record];
+  const Vec3 d = position - entry.position;
   const Vec3 turn = cross(entry.normal, normal);
   for (int c = 0; c < 3; ++c) {
     const float there = r.irradiance[c] + dot(turn, r.rotational[std::size_t(c)]) + dot(d, r.translational[std::size_t(c)]);
@@ -169,17 +174,28 @@ float RecordStore::lit_share(Vec3 position, Vec3 normal) const {
   float weights = 0, sum = 0;
   const auto look = [&](const std::vector<Entry>& entries) {
     for (const Entry& entry : entries) {
-      Interpolated one;
-      Rgb unused{0.0f};
-      accumulate(entry, 1, position, normal, unused, one);
-      weights += one.weight;
-      sum += one.weight * records_[entry.record].lit_share;
+      const float weight = weight_of(entry, 1, position, normal);
+      weights += weight;
+      sum += weight * records_[entry.record].lit_share;
     }
   };
   const Vec3d local = Vec3d(position) - lower_;
   for (const Level& level : levels_) look(level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())]);
   look(everywhere_);
   return weights > 0 ? sum / weights : -1;
+}
+
+bool RecordStore::covers(Vec3 position, Vec3 normal, float weight) const {
+  float sum = 0;
+  const auto reached = [&](const std::vector<Entry>& entries) {
+    for (const Entry& entry : entries)
+      if ((sum += weight_of(entry, 1, position, normal)) >= weight) return true;
+    return false;
+  };
+  const Vec3d local = Vec3d(position) - lower_;
+  for (const Level& level : levels_)
+    if (reached(level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())])) return true;
+  return reached(everywhere_);
 }
 
 RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {

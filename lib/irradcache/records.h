@@ -68,6 +68,8 @@ class RecordStore {
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// Mean lit_share of the records that are valid there, so weighted; below 0 if none is.
   float lit_share(Vec3 position, Vec3 normal) const;
+  /// Is the sum of the weights there at least `weight`? Looks no farther once it is.
+  bool covers(Vec3 position, Vec3 normal, float weight) const;
   /// The same with every record's radius kRelaxed times as large: for the few points, fractions of a pixel beyond
   /// an edge, that no record quite reaches. Looks at all records: slow.
   Interpolated interpolate_relaxed(Vec3 position, Vec3 normal) const;
@@ -92,6 +94,8 @@ class RecordStore {
   Level& level_of(float radius);
   void list(Level& level, std::uint32_t record) const;
   void shrink(std::uint32_t record, float radius);
+  /// Of a record at a point, its radius scaled; 0 where it is not valid.
+  float weight_of(const Entry& entry, float scale, Vec3 position, Vec3 normal) const;
   void accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
 
   Vec3d lower_;

@@ -78,6 +78,8 @@ void expect_brute_force(Vec3 centre, float far) {
     const Vec3 normal = normalize(r.normal + sample_sphere({uniform(), uniform()}) * (0.4f * uniform()));
     const auto found = store.interpolate(position, normal), wanted = by_brute_force(store, position, normal);
     covered += wanted.weight > 0;
+    // The same sum in the same order, stopped early.
+    for (const float weight : {0.3f, 0.9f}) ASSERT_EQ(store.covers(position, normal, weight), found.weight >= weight) << i;
     const float tolerance = lost / std::max(1e-4f, r.radius);
     if (tolerance > 0.1f || std::min(found.weight, wanted.weight) < 10 * tolerance) continue;
     // 1 - cosine is exact to 6e-8 only: sqrt(6e-8 / 0.06) = 1e-3 of each weight where normals nearly agree.
