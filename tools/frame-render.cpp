@@ -175,7 +175,7 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--spp", options.frame.samples, "samples per pixel: all, or with --pixel-error or --target-error the first")
       ->capture_default_str()->check(tools::number_between(1, 1 << 24));
   app.add_option("--pixel-error", options.pixel_error,
-                 "more samples where pixels are uncertain: n = sigma / (this x radiance); 0: none; -1: 0.01 with photons or a cache, else none")
+                 "more samples where pixels are uncertain: n = 12 (sigma / (12 x this x radiance))^0.75; 0: none; -1: 0.01 with photons or a cache, else none")
       ->capture_default_str()->check(tools::number_between(-1.0, 1.0));
   app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));

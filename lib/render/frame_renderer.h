@@ -17,9 +17,9 @@ struct FrameOptions {
   bool halves = false;                  ///< keep two independent halves apart
   double target_error = 0;              ///< > 0: double the samples until the estimated relative RMSE is below
   int max_samples = 1 << 20;            ///< never more than this for target_error
-  /// > 0: after `samples` everywhere, more where pixels are uncertain: n = sigma / (pixel_error (L + 0.1 mean)),
+  /// > 0: after `samples` everywhere, more where pixels are uncertain: n = 12 (sigma / (12 pixel_error (L + 0.1 mean)))^(3/4),
   /// sigma the standard deviation of a sample as far as stratification leaves it, L the radiance, both around the pixel, L at
-  /// most the picture's mean. n in proportion to sigma gives the least error for the number of samples. sigma and L are those
+  /// most the picture's mean. So spread they give the least error for their number. sigma and L are those
   /// of the neighbouring pixels, whose samples are independent: no bias. See adaptive_frame.h.
   double pixel_error = 0;
   int adaptive_limit = 1024;

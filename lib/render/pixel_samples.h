@@ -13,11 +13,11 @@ namespace tempolux {
 /// Sums over one pixel's samples.
 struct PixelSum {
   LayersT<double> layers;
-  double sharp = 0, sharp_square = 0;   ///< what has edges, lights and what mirrors show: mean channel of layers emission and specular
+  double sharp = 0, sharp_square = 0;   ///< what has edges, all layers but direct: mean channel
   void add(const Layers& sample) {
     for (std::size_t l = 0; l < kLayerCount; ++l) layers.value[l] += Rgbd(sample.value[l]);
     layers.coverage += double(sample.coverage);
-    const Rgb s = sample[Layer::emission] + sample[Layer::specular];
+    const Rgb s = sample[Layer::emission] + sample[Layer::specular] + sample[Layer::caustic] + sample[Layer::indirect];
     const double v = (double(s.r) + double(s.g) + double(s.b)) / 3;
     sharp += v;
     sharp_square += v * v;

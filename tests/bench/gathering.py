@@ -125,7 +125,7 @@ def judged(bench, name, size, halves, targets):
 
 
 HEADER = ["scene", "asked: RMSE in CPU s", "RMSE", "CPU s", "bias", "reached", "settings"]
-FAST = {"S2": [(0.0025, 1.5, Settings(100000, (), ("--rays", 350), ("--pixel-error", 0.0055))),
+FAST = {"S2": [(0.0025, 1.5, Settings(100000, (), ("--rays", 350), ("--pixel-error", 0.004))),
                (0.0076, 0.6, Settings(30000, ("--point-count", "6k", "--light-samples", 2), ("--rays", 150, "--error-bound", 0.3),
                                       ("--spp", 4, "--pixel-error", 0.03)))],
         "S3": [(0.0030, 3.0, Settings(100000, (), ("--rays", 250), ("--pixel-error", 0.005))),
