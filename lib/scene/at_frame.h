@@ -87,6 +87,7 @@ struct Surface {
   const Primitive* primitive = nullptr;     ///< triangles and uvs; owned by the Scene
   SharedArray<Vec3> positions;              ///< scene space, m; double transform, rounded once; empty: instanced
   SharedArray<Vec3> normals;                ///< unit, or empty: flat shading, or instanced
+  SharedArray<Vec3> tangents;               ///< only of a shape that deforms and has them; not unit
   Affine scene_from_node;                   ///< of an instance: its own transform included
 
   bool instanced() const { return positions.empty(); }
@@ -99,6 +100,10 @@ struct Surface {
   /// Unit, scene space; only of a smooth surface.
   Vec3 normal(std::uint32_t vertex) const {
     return instanced() ? Vec3(normalize(scene_from_node.normal(Vec3d(primitive->normals[vertex])))) : normals[vertex];
+  }
+  /// Scene space, not unit; only of a primitive with tangents.
+  Vec3 tangent(std::uint32_t vertex) const {
+    return tangents.empty() ? Vec3(scene_from_node.direction(Vec3d(primitive->tangents[vertex]))) : tangents[vertex];
   }
 };
 

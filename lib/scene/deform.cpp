@@ -66,8 +66,11 @@ Shape deformed(const Primitive& primitive, const Pose& pose, const Affine& world
         normalize(m.normal(sum(primitive.normals, primitive.targets, &MorphTarget::normals, pose.weights, v)));
     smooth = length2(n) > 0.5 && length2(n) < 2 && m.determinant() != 0;
     shape.normals.push_back(Vec3(n));
+    if (primitive.tangents.empty()) continue;
+    const Vec3d t = sum(primitive.tangents, primitive.targets, &MorphTarget::tangents, pose.weights, v);
+    shape.tangents.push_back(Vec3(m.direction(t)));
   }
-  if (!smooth) shape.normals.clear();
+  if (!smooth) shape.normals.clear(), shape.tangents.clear();
   shape.flipped = handedness < 0;
   return shape;
 }

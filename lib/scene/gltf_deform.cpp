@@ -164,7 +164,10 @@ void read_targets(Import& import, const tinygltf::Primitive& source, const std::
     const std::string target = place + ".targets[" + std::to_string(t) + "]";
     const std::size_t vertices = primitive.positions.size();
     primitive.targets.push_back({read_displacements(import, source.targets[t], "POSITION", vertices, target),
-                                 read_displacements(import, source.targets[t], "NORMAL", vertices, target)});
+                                 read_displacements(import, source.targets[t], "NORMAL", vertices, target),
+                                 primitive.tangents.empty()
+                                     ? std::vector<Vec3>()
+                                     : read_displacements(import, source.targets[t], "TANGENT", vertices, target)});
   }
 }
 

@@ -63,9 +63,12 @@ void drop_unused_vertices(Primitive& primitive) {
   primitive.normals = pick(primitive.normals, used);
   primitive.uvs = pick(primitive.uvs, used);
   primitive.uvs1 = pick(primitive.uvs1, used);
+  primitive.tangents = pick(primitive.tangents, used);
+  primitive.tangent_sides = pick(primitive.tangent_sides, used);
   for (MorphTarget& target : primitive.targets) {
     target.positions = pick(target.positions, used);
     target.normals = pick(target.normals, used);
+    target.tangents = pick(target.tangents, used);
   }
   const std::size_t n = primitive.influences_per_vertex;
   for (std::size_t v = 0; v < used.size() && n > 0; ++v)  // `used` rises: nothing is overwritten before it is read
@@ -104,6 +107,36 @@ void read_normals(Import& import, int accessor, const std::string& place, Primit
       return;
     }
     normal = Vec3(unit);
+  }
+}
+
+/// Tangents follow the coordinates as the file has them. A texture transform that turns or mirrors the map leaves them
+/// wrong: then the coordinates say where it lies.
+bool keeps_axes(const Texture& texture) {
+  const auto& m = texture.transform;
+  return m[0] > 0 && m[4] > 0 && m[1] == 0 && m[3] == 0;
+}
+
+/// glTF 2.0, 3.7.2.1: a unit vector and the side of the third axis. Only where a normal map reads them; without normals
+/// they do not count.
+void read_tangents(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+  const auto found = source.attributes.find("TANGENT");
+  const Material& material = import.scene.materials[primitive.material];
+  if (found == source.attributes.end() || primitive.normals.empty()) return;
+  if (!material.textures || !material.textures->normal || !keeps_axes(material.textures->normal)) return;
+  const std::vector<double> numbers = read_numbers(import, found->second, 4, place);
+  const std::size_t count = primitive.positions.size();
+  if (numbers.size() != 4 * count) import.fail(place, "there are not as many tangents as positions");
+  import.take_memory(count * (sizeof(Vec3) + sizeof(float)), place);
+  for (std::size_t v = 0; v < count; ++v) {
+    const Vec3d unit = normalize(Vec3d{numbers[4 * v], numbers[4 * v + 1], numbers[4 * v + 2]});
+    if (length2(unit) == 0) {
+      import.ignore("tangents of zero length (normal maps follow the texture coordinates there)");
+      primitive.tangents.clear(), primitive.tangent_sides.clear();
+      return;
+    }
+    primitive.tangents.push_back(Vec3(unit));
+    primitive.tangent_sides.push_back(numbers[4 * v + 3] < 0 ? -1.0f : 1.0f);
   }
 }
 
@@ -154,12 +187,13 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
     read_normals(import, normal->second, place + ".NORMAL", primitive);
   primitive.uvs = read_uvs(import, source, "TEXCOORD_0", primitive.positions.size(), place);
   primitive.uvs1 = read_uvs(import, source, "TEXCOORD_1", primitive.positions.size(), place);
-  read_targets(import, source, place, primitive);
-  read_influences(import, source, place, primitive);
   if (source.material < -1 || source.material >= int(import.model.materials.size()))
     import.fail(place + ".material", "material " + std::to_string(source.material) + " does not exist");
   primitive.material = source.material == -1 ? std::uint32_t(import.scene.materials.size() - 1)
                                              : std::uint32_t(source.material);
+  read_tangents(import, source, place + ".TANGENT", primitive);
+  read_targets(import, source, place, primitive);
+  read_influences(import, source, place, primitive);
   note_ignored(import, source);
   drop_unused_vertices(primitive);
   return primitive;

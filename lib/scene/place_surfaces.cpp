@@ -141,6 +141,7 @@ std::vector<Surface> place_surfaces(const Scene& scene, const Animator& animator
           surface.flipped = shape.flipped;
           surface.positions = std::move(shape.positions);
           surface.normals = std::move(shape.normals);
+          surface.tangents = std::move(shape.tangents);
         } else if (!sharing.instanced(primitive, place)) {
           surface.positions = place_points(primitive.positions, scene_from_node);
           surface.normals = place_normals(primitive.normals, scene_from_node);

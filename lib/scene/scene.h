@@ -83,7 +83,7 @@ struct Material : MaterialValues {
 
 /// What a morph target adds to every vertex, times its weight.
 struct MorphTarget {
-  std::vector<Vec3> positions, normals;                     ///< either may be empty: adds nothing
+  std::vector<Vec3> positions, normals, tangents;           ///< each may be empty: adds nothing
 };
 
 /// One joint's share in a vertex.
@@ -97,6 +97,10 @@ struct Primitive {
   std::vector<Vec3> positions;                              ///< m, node space, at rest
   std::vector<Vec3> normals;                                ///< unit; empty: flat shading
   std::vector<Vec2> uvs, uvs1;                              ///< TEXCOORD_0, TEXCOORD_1; empty: none
+  /// Where the normal map's x points, and on which side of it y: +1 along normal x tangent, -1 against. Empty: as the
+  /// texture coordinates say. Only of primitives with normals and a normal map.
+  std::vector<Vec3> tangents;
+  std::vector<float> tangent_sides;
   std::vector<std::array<std::uint32_t, 3>> triangles;      ///< counter-clockwise seen from the front
   std::uint32_t material = 0;                               ///< index into Scene::materials
   std::vector<MorphTarget> targets;

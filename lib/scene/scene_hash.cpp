@@ -34,6 +34,13 @@ void add_shape(Hasher& hasher, const Surface& surface) {
   add_values(hasher, surface.primitive->triangles);
 }
 
+/// Nothing for most primitives, whose hash stays what it was before tangents were read.
+void add_tangents(Hasher& hasher, const Primitive& primitive) {
+  if (primitive.tangents.empty()) return;
+  add_values(hasher, primitive.tangents);
+  add_values(hasher, primitive.tangent_sides);
+}
+
 /// Digest of what instances of a primitive share.
 std::string shared_digest(const Primitive& primitive) {
   Hasher hasher;
@@ -42,6 +49,7 @@ std::string shared_digest(const Primitive& primitive) {
   add_values(hasher, primitive.normals);
   add_values(hasher, primitive.uvs);
   if (!primitive.uvs1.empty()) add_values(hasher, primitive.uvs1);
+  add_tangents(hasher, primitive);
   return hasher.hex();
 }
 
@@ -100,6 +108,8 @@ std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surf
     add_values(hasher, surface.normals);
     add_values(hasher, surface.primitive->uvs);
     if (!surface.primitive->uvs1.empty()) add_values(hasher, surface.primitive->uvs1);
+    add_tangents(hasher, *surface.primitive);
+    if (!surface.tangents.empty()) add_values(hasher, surface.tangents);
   }
   return hasher.hex();
 }

@@ -55,18 +55,39 @@ Rgba TextureSpot::read(const Texture& texture, TextureTransfer transfer) const {
   return pyramid.read(uv, texture.wrap_u, texture.wrap_v, texture.nearest, level(corners, pyramid));
 }
 
-Vec3 TextureSpot::bend(const Texture& normal_map, float scale, Vec3 normal, Vec3 geometric) const {
+bool TextureSpot::axes_of_tangents(Vec3 normal, Vec3& right, Vec3& up) const {
+  const Primitive& primitive = *surface_.primitive;
+  if (primitive.tangents.empty() || !surface_.smooth()) return false;
+  const std::array<float, 3> share{1 - u_ - v_, u_, v_};
+  Vec3 tangent{0, 0, 0};
+  float side = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    tangent = tangent + surface_.tangent(corners_[c]) * share[c];
+    side += primitive.tangent_sides[corners_[c]] * share[c];
+  }
+  right = normalize(tangent - normal * dot(normal, tangent));
+  // A mirrored surface shows the mirror image: its normal and its tangent turn with it, their cross product does not.
+  up = cross(normal, right) * ((side < 0) != surface_.flipped ? -1.0f : 1.0f);
+  return length2(right) > 0.5f;
+}
+
+bool TextureSpot::axes_of_coordinates(const Texture& normal_map, Vec3 normal, Vec3& right, Vec3& up) const {
   const Corners corners = coordinates(normal_map);
   const Vec2 a = minus(corners.uv[1], corners.uv[0]), b = minus(corners.uv[2], corners.uv[0]);
   const float determinant = cross2(a, b);
-  if (!(std::abs(determinant) > 0)) return normal;
+  if (!(std::abs(determinant) > 0)) return false;
   // dP/du and dP/dv times |determinant|
   const float side = determinant < 0 ? -1.0f : 1.0f;
   const Vec3 along_u = (edge(1) * b.y - edge(2) * a.y) * side, along_v = (edge(2) * a.x - edge(1) * b.x) * side;
-  const Vec3 right = normalize(along_u - normal * dot(normal, along_u));
-  if (!(length2(right) > 0.5f)) return normal;
-  Vec3 up = cross(normal, right);
+  right = normalize(along_u - normal * dot(normal, along_u));
+  up = cross(normal, right);
   if (dot(up, along_v) > 0) up = -up;   // v grows downwards in the image
+  return length2(right) > 0.5f;
+}
+
+Vec3 TextureSpot::bend(const Texture& normal_map, float scale, Vec3 normal, Vec3 geometric) const {
+  Vec3 right, up;
+  if (!axes_of_tangents(normal, right, up) && !axes_of_coordinates(normal_map, normal, right, up)) return normal;
   const Rgba code = read(normal_map, TextureTransfer::linear);
   Vec3 bent = normalize(right * (scale * (2 * code[0] - 1)) + up * (scale * (2 * code[1] - 1)) +
                         normal * (2 * code[2] - 1));

@@ -26,8 +26,9 @@ class TextureSpot {
   Rgba read(const Texture& texture, TextureTransfer transfer) const;
 
   /// `normal` (unit) bent by a normal map of glTF 2.0: x along the image's rightwards axis, y along its upwards axis,
-  /// both across `normal`, times scale; at least 3 degrees above the triangle's plane. `normal` itself where the
-  /// coordinates have no direction. `geometric`: the triangle's, on the same side.
+  /// both across `normal`, times scale; at least 3 degrees above the triangle's plane. The axes are the primitive's
+  /// tangents, else the directions of the texture coordinates in the triangle; `normal` itself where those have none.
+  /// `geometric`: the triangle's, on the same side.
   Vec3 bend(const Texture& normal_map, float scale, Vec3 normal, Vec3 geometric) const;
 
  private:
@@ -38,6 +39,9 @@ class TextureSpot {
   Corners coordinates(const Texture& texture) const;
   float level(const Corners& corners, const TexturePyramid& pyramid) const;
   Vec3 edge(int corner) const;
+  /// Unit axes of a normal map across `normal`; false where there are none.
+  bool axes_of_tangents(Vec3 normal, Vec3& right, Vec3& up) const;
+  bool axes_of_coordinates(const Texture& normal_map, Vec3 normal, Vec3& right, Vec3& up) const;
 
   const SceneFrame& frame_;
   const Surface& surface_;

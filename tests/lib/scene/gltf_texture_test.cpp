@@ -106,6 +106,79 @@ TEST(GltfTexture, SamplersAndTransforms) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(texture.transform[std::size_t(i)], expected[i], 1e-6) << i;
 }
 
+/// A square whose normal map is the same everywhere: red (tilts along its right) or green (along its top). Its coordinates
+/// put the right at x = 1 and the top at y = 1; the file's tangents say: right at y = 1.
+GltfMaker with_tangents(bool green, float side, const Json& transform = nullptr) {
+  const std::string png = test::png_bytes(1, 1, 3, green ? std::vector<std::uint8_t>{128, 218, 218} : std::vector<std::uint8_t>{218, 128, 218});
+  GltfMaker maker = textured({{"uri", data_uri(png)}});
+  Json info = {{"index", 0}};
+  if (!transform.is_null()) info["extensions"]["KHR_texture_transform"] = transform;
+  maker.json["materials"][0] = {{"normalTexture", info}};
+  Json& attributes = maker.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["TANGENT"] = maker.add_vec4({0, 1, 0, side, 0, 1, 0, side, 0, 1, 0, side, 0, 1, 0, side});
+  return maker;
+}
+
+Vec3 bent_normal(const GltfMaker& maker, int frame = 0) {
+  const Scene scene = maker.load();
+  const SceneFrame at = scene_at_frame(scene, segment_of(scene, frame, {}), frame, {});
+  const Texture& map = scene.materials[0].textures->normal;
+  return TextureSpot(at, 0, 0, 0.3f, 0.3f, 0).bend(map, 1, {0, 0, 1}, {0, 0, 1});
+}
+
+TEST(GltfTexture, NormalMapsFollowTheTangentsOfTheFile) {
+  // Codes 218 and 128: 0.7098 and 0.0039. The third axis is normal x tangent times the side: z x y = -x.
+  const float s = std::sqrt(0.5f);
+  constexpr double kCode = 6e-3;
+  EXPECT_NEAR_VEC(bent_normal(with_tangents(false, 1)), (Vec3{0, s, s}), kCode);
+  EXPECT_NEAR_VEC(bent_normal(with_tangents(true, 1)), (Vec3{-s, 0, s}), kCode);
+  EXPECT_NEAR_VEC(bent_normal(with_tangents(true, -1)), (Vec3{s, 0, s}), kCode);
+  // Nodes turn, stretch and mirror them with the surface; normals that are left out take the tangents with them.
+  GltfMaker turned = with_tangents(false, 1), mirrored = with_tangents(true, 1), flat = with_tangents(false, 1);
+  turned.json["nodes"][0]["rotation"] = {0, 0, std::sqrt(0.5), std::sqrt(0.5)};   // y to -x
+  EXPECT_NEAR_VEC(bent_normal(turned), (Vec3{-s, 0, s}), kCode);
+  mirrored.json["nodes"][0]["scale"] = {-3, 1, 1};
+  EXPECT_NEAR_VEC(bent_normal(mirrored), (Vec3{s, 0, s}), kCode);
+  flat.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
+  EXPECT_NEAR_VEC(bent_normal(flat), (Vec3{s, 0, s}), kCode);
+  // A map that is turned on the surface lies where its coordinates say; one that is only shifted keeps the tangents.
+  EXPECT_NEAR_VEC(bent_normal(with_tangents(false, 1, {{"rotation", M_PI / 2}})), (Vec3{0, -s, s}), kCode);
+  EXPECT_NEAR_VEC(bent_normal(with_tangents(false, 1, {{"offset", {0.2, 0}}, {"scale", {2, 5}}})), (Vec3{0, s, s}), kCode);
+}
+
+TEST(GltfTexture, TangentsFollowMorphTargets) {
+  // The target turns the tangent from +y to -x: right is then -x.
+  GltfMaker maker = with_tangents(false, 1);
+  Json& primitive = maker.json["meshes"][0]["primitives"][0];
+  primitive["targets"] = {{{"POSITION", maker.add_vec3(std::vector<float>(12, 0))},
+                           {"TANGENT", maker.add_vec3({-1, -1, 0, -1, -1, 0, -1, -1, 0, -1, -1, 0})}}};
+  maker.json["meshes"][0]["weights"] = {1};
+  const float s = std::sqrt(0.5f);
+  EXPECT_NEAR_VEC(bent_normal(maker), (Vec3{-s, 0, s}), 6e-3);
+}
+
+TEST(GltfTexture, TangentsAreReadWithANormalMapOnlyAndChecked) {
+  EXPECT_EQ(with_tangents(false, 1).load().meshes[0].primitives[0].tangents.size(), 4u);
+  GltfMaker plain = with_tangents(false, 1);
+  plain.json["materials"][0] = Json::object();
+  EXPECT_TRUE(plain.load().meshes[0].primitives[0].tangents.empty());
+  GltfMaker few = with_tangents(false, 1), zero = few;
+  Json& attributes = few.json["meshes"][0]["primitives"][0]["attributes"];
+  attributes["TANGENT"] = few.add_vec4({0, 1, 0, 1});
+  EXPECT_CONTAINS(load_error(write_file("bad.gltf", few.text())), "not as many tangents as positions");
+  attributes["TANGENT"] = few.add_vec3({0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0});
+  EXPECT_CONTAINS(load_error(write_file("bad.gltf", few.text())), "TANGENT");
+  zero.json["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = zero.add_vec4(std::vector<float>(16, 0));
+  EXPECT_TRUE(has_warning(zero.load(), "tangents of zero length"));
+  // Other tangents are another geometry.
+  const auto geometry = [](const GltfMaker& maker) {
+    const Scene scene = maker.load();
+    const SceneFrame at = scene_at_frame(scene, segment_of(scene, 0, {}), 0, {});
+    return geometry_hash(scene, {}, at.surfaces);
+  };
+  EXPECT_NE(geometry(with_tangents(false, 1)), geometry(with_tangents(false, -1)));
+}
+
 TEST(GltfTexture, AlphaModesAndUnlit) {
   GltfMaker maker = textured({{"uri", data_uri(small_png())}});
   maker.json["materials"][0]["alphaMode"] = "MASK";
