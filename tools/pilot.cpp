@@ -2,8 +2,9 @@
 #include "tools/pilot.h"
 
 #include <spawn.h>
-#include <stdlib.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -11,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -18,6 +20,8 @@
 #include "formats/error.h"
 #include "lib/plan/plan_files.h"
 #include "tools/arguments.h"
+#include "tools/output.h"
+#include "tools/temporaries.h"
 
 extern char** environ;
 
@@ -27,19 +31,31 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// Removed with all that the pilots wrote.
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "scene-plan-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw ResourceError(name + ": cannot make a folder for short runs; set TMPDIR");
-    path = name;
+/// Removed with all that the pilots wrote, by a signal too. Named as left-overs are, for --tidy, and readable by nobody else.
+class Folder {
+ public:
+  Folder() : path_(short_run_stem() + std::to_string(::getpid())), mark_(path_.string()) {
+    struct stat there {};   // of a dead process that had our number
+    std::error_code ignored;
+    if (::lstat(path_.c_str(), &there) == 0 && there.st_uid == ::geteuid()) fs::remove_all(path_, ignored);
+    if (::mkdir(path_.c_str(), 0700) == 0) return;
+    mark_.release();
+    throw ResourceError(path_.string() + ": cannot make a folder for short runs: " + std::strerror(errno) + "; set TMPDIR");
   }
   ~Folder() {
     std::error_code ignored;
-    fs::remove_all(path, ignored);
+    fs::remove_all(path_, ignored);
   }
-  std::string file(const std::string& name) const { return (path / name).string(); }
+  std::string file(const std::string& name) const {
+    std::string path = (path_ / name).string();
+    marks_.try_emplace(name, path);
+    return path;
+  }
+
+ private:
+  fs::path path_;
+  Temporary mark_;
+  mutable std::map<std::string, Temporary> marks_;
 };
 
 Words words_of(const std::string& text) {
@@ -82,9 +98,11 @@ Cost run(const Folder& folder, const std::string& tool, Words words, const std::
   pid_t child = 0;
   if (const int error = posix_spawn(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ))
     throw ResourceError(program + ": cannot be started for a short run: " + std::strerror(error));
+  end_together_with(child);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  end_together_with(0);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
     throw ResourceError(tool + ": its short run for --estimate failed; are its options right?");
   Cost cost;
@@ -255,6 +273,10 @@ class Pilots {
 };
 
 }  // namespace
+
+std::string short_run_stem() {
+  return (fs::temp_directory_path() / (".scene-plan.tmp." + temporary_host() + ".")).string();
+}
 
 Estimate estimate_run(const std::string& scene, const Plan& plan, const RunOptions& options) {
   return Pilots(scene, plan, options).all();

@@ -54,7 +54,11 @@ struct Options {
 };
 
 void remove_left_overs(tools::Tool& tool, const Options& options) {
-  const tools::Tidied tidied = tools::tidy(options.tidy_folder, options.tidy_hours * 3600);
+  tools::Tidied tidied = tools::tidy(options.tidy_folder, options.tidy_hours * 3600);
+  const tools::Tidied short_runs = tools::tidy_folders(tools::short_run_stem());
+  tidied.removed += short_runs.removed;
+  tidied.kept += short_runs.kept;
+  tidied.bytes += short_runs.bytes;
   std::cout << "removed " << tidied.removed << " unfinished files of " << tidied.bytes << " bytes, kept " << tidied.kept
             << " that may still be written\n";
   tool.stats().count("removed", double(tidied.removed));
@@ -133,7 +137,8 @@ int main(int argc, char** argv) {
   add(app.add_option("--jobs", options.jobs, "processes at a time to estimate for, as make -j"))
       ->type_name("N")->capture_default_str()->check(tools::number_between(1, 100000));
   add(app.add_option("--tidy", options.tidy_folder,
-                     "instead: remove unfinished files of killed runs from this folder and those in it"))->type_name("FOLDER");
+                     "instead: remove unfinished files of killed runs from this folder and those in it, and from the folder "
+                     "for temporary files what killed --estimate left"))->type_name("FOLDER");
   add(app.add_option("--tidy-hours", options.tidy_hours, "unfinished files of other hosts count as left over after so many hours"))
       ->type_name("HOURS")->capture_default_str()->check(tools::number_between(0));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
