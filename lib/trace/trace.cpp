@@ -199,7 +199,8 @@ struct Packet {
     query.ray.tfar[i] = use ? ray.t_max : 0;
     query.ray.time[i] = 0;
     query.ray.mask[i] = 0xffffffffu;
-    query.ray.id[i] = query.ray.flags[i] = 0;
+    query.ray.id[i] = ray.all_blend ? kAllBlend : 0;
+    query.ray.flags[i] = 0;
     valid[i] = use ? -1 : 0;
   }
 

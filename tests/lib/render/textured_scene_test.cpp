@@ -156,6 +156,23 @@ TEST(Alpha, ARayHasOneFateHoweverItIsAsked) {
   }
 }
 
+TEST(Alpha, RaysThatMeasureAVeilMeetItAlwaysOneByOneAndInLists) {
+  HandMadeScene scene = veil(Material::Alpha::blend, 0.01f, false);
+  const Tracer tracer(scene.frame());
+  std::vector<Ray> rays;
+  for (int i = 0; i < 40; ++i) rays.push_back({{0.02f * float(i) - 0.4f, 0.2f, 1}, {0, 0, -1}, 0, INFINITY, i % 2 == 0});
+  std::vector<Hit> hits(rays.size());
+  tracer.intersect(rays, hits);
+  int met_by_chance = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    Hit hit;
+    EXPECT_EQ(tracer.intersect(rays[i], hit), hits[i].surface != kNone) << i;
+    if (rays[i].all_blend) EXPECT_EQ(hits[i].surface, 0u) << i;
+    else met_by_chance += hits[i].surface != kNone;
+  }
+  EXPECT_LE(met_by_chance, 3);   // 20 draws of 0.01: more than 3 once in 25 000 scenes
+}
+
 TEST(Alpha, MaskIsThereOrNot) {
   for (const bool occlusion : {false, true}) {
     HandMadeScene scene = veil(Material::Alpha::mask, 1, true);   // cut-off 0.5
