@@ -71,11 +71,12 @@ Facts image_facts(const std::string& path, bool allow_nan) {
   Facts facts = {{"file", path}, {"type", "image"}, {"width", image.width}, {"height", image.height}};
   facts.update(attribute_facts(image));
   facts["layers"] = Facts::array();
-  for (const std::string& layer : image.layers()) facts["layers"].push_back(layer.empty() ? "RGB" : layer);
+  const std::vector<std::string> layers = image.layers();
+  for (const std::string& layer : layers) facts["layers"].push_back(layer.empty() ? "RGB" : layer);
   facts["channels"] = Facts::array();
   for (const ChannelStatistics& channel : channel_statistics(image))
     facts["channels"].push_back(channel_facts(channel));
-  if (image.find("R")) facts["auto_exposure_stops"] = auto_exposure_stops(image, "");
+  if (std::ranges::find(layers, "") != layers.end()) facts["auto_exposure_stops"] = auto_exposure_stops(image, "");
   facts["digest"] = digest_of(image);
   return facts;
 }

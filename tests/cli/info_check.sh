@@ -80,4 +80,7 @@ tempolux-info --sheet sheet.png black.png dot.png --columns 1 && tempolux-info -
 py '(d["width"], d["height"]) == (8, 10)' 'sheet: two tiles of 8 x 4 and a gap of 2'
 tempolux-info --png layer.png --layer indirect dot.png 2>errors.txt
 [ $? = 2 ] && [ ! -e layer.png ] && grep -q '^tempolux-info: dot.png: ' errors.txt || bad "missing layer: $(cat errors.txt)"
+# Channels that are no colour layer, R among them.
+tempolux-info --json "$HERE/../fuzz/corpus/pictures/zip.exr" >out.json || bad 'R without G and B'
+py '[c["channel"] for c in d["channels"]] == ["A", "R", "id"] and d["layers"] == [] and d["channels"][1]["max"] == 39' 'R without G and B'
 exit $failed

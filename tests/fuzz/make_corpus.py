@@ -141,17 +141,39 @@ def attribute(name, kind, value):
 save("pictures", "rgb.png", png(2, 2, 2, b"\0abcdef\0ghijkl"))
 save("pictures", "palette.png", png(2, 1, 3, b"\0\0\1", (b"PLTE", b"abcdef"), (b"tRNS", b"\x80")))
 save("pictures", "huge.png", png(30000, 30000, 6, b""))
-box = struct.pack("<4i", 0, 0, 1, 1)
-channels = b"".join(c + b"\0" + struct.pack("<iB3xii", 2, 0, 1, 1) for c in (b"B", b"G", b"R")) + b"\0"
-header = (struct.pack("<II", 20000630, 2) + attribute(b"channels", b"chlist", channels) +
-          attribute(b"compression", b"compression", b"\0") + attribute(b"dataWindow", b"box2i", box) +
-          attribute(b"displayWindow", b"box2i", box) + attribute(b"lineOrder", b"lineOrder", b"\0") +
-          attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) +
-          attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0)) +
-          attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0")
-lines = [struct.pack("<ii", y, 24) + bytes(24) for y in (0, 1)]
-offsets = struct.pack("<QQ", len(header) + 16, len(header) + 16 + 32)
-save("pictures", "rgb.exr", header + offsets + b"".join(lines))
+
+
+def exr_header(side, kinds, compression):
+    box = struct.pack("<4i", 0, 0, side - 1, side - 1)
+    channels = b"".join(name + b"\0" + struct.pack("<iB3xii", kind, 0, 1, 1) for name, kind in kinds) + b"\0"
+    return (struct.pack("<II", 20000630, 2) + attribute(b"channels", b"chlist", channels) +
+            attribute(b"compression", b"compression", bytes([compression])) + attribute(b"dataWindow", b"box2i", box) +
+            attribute(b"displayWindow", b"box2i", box) + attribute(b"lineOrder", b"lineOrder", b"\0") +
+            attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)) +
+            attribute(b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0)) +
+            attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + b"\0")
+
+
+def exr(header, chunks):
+    """Of chunks (first line, data)."""
+    offset, offsets, whole = len(header) + 8 * len(chunks), b"", b""
+    for line, data in chunks:
+        offsets += struct.pack("<Q", offset + len(whole))
+        whole += struct.pack("<ii", line, len(data)) + data
+    return header + offsets + whole
+
+
+def zipped(data):
+    """As OpenEXR compresses a chunk: even bytes before odd ones, differences, zlib."""
+    turned = data[::2] + data[1::2]
+    return zlib.compress(turned[:1] + bytes((b - a + 128) & 255 for a, b in zip(turned, turned[1:])))
+
+
+save("pictures", "rgb.exr", exr(exr_header(2, [(b"B", 2), (b"G", 2), (b"R", 2)], 0), [(y, bytes(24)) for y in (0, 1)]))
+# Three chunks of 16 lines; float, half and whole numbers.
+line = struct.pack("<40f", *range(40)) + struct.pack("<40e", *range(40)) + struct.pack("<40I", *range(40))
+save("pictures", "zip.exr", exr(exr_header(40, [(b"A", 2), (b"R", 1), (b"id", 0)], 3),
+                                [(y, zipped(line * min(16, 40 - y))) for y in (0, 16, 32)]))
 
 
 def hdr(width, height, pixels, extra=b""):
