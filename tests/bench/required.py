@@ -6,6 +6,7 @@ Ratios are of CPU seconds within one run, the sides alternating, medians of the 
 import math
 import os
 
+import demo
 import gathering
 import instructions
 import million
@@ -198,5 +199,5 @@ def object_table(objects):
 
 
 FIGURES = {"path-tracer": path_tracer, "photon-rate": photon_rate, "photon-growth": photon_growth, "nearest": nearest,
-           "threads": threads, "start": start, "estimate": estimate, "reading": reading, "references": references,
+           "threads": threads, "start": start} | demo.FIGURES | {"estimate": estimate, "reading": reading, "references": references,
            "found": found} | gathering.FIGURES | million.FIGURES | {"million-threads": million_threads} | instructions.FIGURES

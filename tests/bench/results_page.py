@@ -58,8 +58,25 @@ growing as their cube root (100 at 10^5) both noise and blur fall.
 MARKS = "<!-- written by tests/bench/bench.py from RESULTS.md and peers.json -->\n", "<!-- end -->\n"
 
 
+DEMO_MARKS = "<!-- written by tests/bench/bench.py, --only demo -->\n", "<!-- end of demo -->\n"
+
+
+def demo_cost(text, page):
+    """The README's text with the cost of its demo as the page has it; as it is if either lacks it."""
+    begin, end = (text.find(mark) for mark in DEMO_MARKS)
+    found = {quality: re.search(rf"^### The demo\n(?:[^#|].*\n|\n|\| quality.*\n|\|---.*\n|\| final .*\n)*?\| {quality} \| (\S+) \| (\S+) \| (\S+) \|",
+                                page, re.M) for quality in ("final", "draft")}
+    if begin < 0 or end < 0 or not all(found.values()):
+        return text
+    frame, whole, disk = found["final"].groups()
+    return (text[:begin] + DEMO_MARKS[0] + f"A frame costs {frame} CPU seconds (draft: {found['draft'].group(1)}), all 48 together "
+            f"{whole} CPU seconds and {disk} GB of disk.\n" + text[end:])
+
+
 def readme(text, page, peers):
-    """The README's text with its rows of the Cornell box, which are those of the page `page`; as it is if either lacks them."""
+    """The README's text with the cost of its demo and its rows of the Cornell box, which are those of the page `page`; as it is
+    where either lacks them."""
+    text = demo_cost(text, page)
     begin, end = (text.find(mark) for mark in MARKS)
     ours = re.search(r"^### Classic Cornell box.*\n(?:[^|#].*\n|\n)*\| scene.*\n\|---.*\n((?:\|.*\n)+)", page, re.M)
     if begin < 0 or end < 0 or not ours:

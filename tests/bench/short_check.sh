@@ -22,5 +22,5 @@ top = pathlib.Path("../..")
 said = (top / "README.md").read_text()
 rows = json.loads(pathlib.Path("peers.json").read_text())["cornell"]
 if said != results_page.readme(said, (top / "RESULTS.md").read_text(), rows):
-    sys.exit("README.md: the Cornell box differs from RESULTS.md; bench.py --page writes it")
+    sys.exit("README.md: the demo's cost or the Cornell box differs from RESULTS.md; bench.py --page writes it")
 END
