@@ -275,7 +275,10 @@ class Pilots {
 }  // namespace
 
 std::string short_run_stem() {
-  return (fs::temp_directory_path() / (".scene-plan.tmp." + temporary_host() + ".")).string();
+  std::error_code error;
+  const fs::path folder = fs::temp_directory_path(error);
+  if (error) throw InputError("TMPDIR names no folder that can be used: " + error.message() + "; set it to one");
+  return (folder / (".scene-plan.tmp." + temporary_host() + ".")).string();
 }
 
 Estimate estimate_run(const std::string& scene, const Plan& plan, const RunOptions& options) {

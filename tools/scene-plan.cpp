@@ -54,8 +54,8 @@ struct Options {
 };
 
 void remove_left_overs(tools::Tool& tool, const Options& options) {
-  tools::Tidied tidied = tools::tidy(options.tidy_folder, options.tidy_hours * 3600);
   const tools::Tidied short_runs = tools::tidy_folders(tools::short_run_stem());
+  tools::Tidied tidied = tools::tidy(options.tidy_folder, options.tidy_hours * 3600);
   tidied.removed += short_runs.removed;
   tidied.kept += short_runs.kept;
   tidied.bytes += short_runs.bytes;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <string_view>
+#include <utility>
 
 #include "formats/error.h"
 
@@ -102,6 +104,26 @@ std::vector<ExrClaims::ClaimedChannel> read_channels(HeaderReader& in) {
   return channels;
 }
 
+/// Bytes of a value; 0: as many as the attribute says. OpenEXR takes so many whatever the attribute says, and would go on
+/// to read the rest of the header at another place than we.
+std::int32_t size_of_type(std::string_view type) {
+  constexpr std::pair<std::string_view, std::int32_t> kSizes[] = {
+      {"box2f", 16}, {"box2i", 16}, {"chromaticities", 32}, {"compression", 1}, {"deepImageState", 1}, {"double", 8},
+      {"envmap", 1}, {"float", 4},  {"int", 4},             {"keycode", 28},    {"lineOrder", 1},      {"m33d", 72},
+      {"m33f", 36},  {"m44d", 128}, {"m44f", 64},           {"rational", 8},    {"tiledesc", 9},       {"timecode", 8},
+      {"v2d", 16},   {"v2f", 8},    {"v2i", 8},             {"v3d", 24},        {"v3f", 12},           {"v3i", 12}};
+  const auto found = std::ranges::find(kSizes, type, &std::pair<std::string_view, std::int32_t>::first);
+  return found == std::end(kSizes) ? 0 : found->second;
+}
+
+/// A preview has as many pixels of 4 bytes as it says.
+void check_preview(HeaderReader& in, std::int32_t size) {
+  const std::uint64_t width = in.number<std::uint32_t>(), height = in.number<std::uint32_t>();
+  if (width > 65536 || height > 65536 || 8 + 4 * width * height != std::uint64_t(size))
+    in.fail("a preview of " + std::to_string(width) + " x " + std::to_string(height) + " pixels in " + std::to_string(size) +
+            " bytes; the header is damaged");
+}
+
 /// One part's attributes up to the empty name that ends them. False: an empty header, which ends the parts.
 bool read_part(HeaderReader& in, ExrClaims& part, std::uint64_t& chunk_count) {
   bool any = false;
@@ -114,9 +136,17 @@ bool read_part(HeaderReader& in, ExrClaims& part, std::uint64_t& chunk_count) {
       in.fail("attribute " + one_line(name) + " claims " + std::to_string(size) + " bytes, the file has " +
               std::to_string(in.left()) + "; it is truncated or damaged");
     const std::uint64_t end = start + std::uint64_t(size);
+    if (const std::int32_t right = size_of_type(type); right != 0 && size != right)
+      in.fail("attribute " + one_line(name) + " claims " + std::to_string(size) + " bytes, its type has " +
+              std::to_string(right) + "; the header is damaged");
+    if (type == "preview") check_preview(in, size);
     if (name == "dataWindow" && type == "box2i") part.data = read_window(in);
     if (name == "displayWindow" && type == "box2i") part.display = read_window(in);
-    if (name == "channels" && type == "chlist") part.channels = read_channels(in);
+    if (type == "chlist") {
+      std::vector<ExrClaims::ClaimedChannel> channels = read_channels(in);
+      if (in.position() < end) in.fail_at(start, "attribute " + one_line(name) + " is shorter than it says; the header is damaged");
+      if (name == "channels") part.channels = std::move(channels);
+    }
     if (name == "compression" && type == "compression") part.compression = in.number<std::uint8_t>();
     if (name == "chunkCount" && type == "int") chunk_count = std::uint64_t(in.number<std::uint32_t>());
     if (name == "tiles" && type == "tiledesc") {

@@ -40,5 +40,6 @@ done
 [ "$(ls -A "$TMPDIR" | sort | tr '\n' ' ')" = "$(printf '%s\n' ".0001.exr.tmp.$host.$dead" ".other.tmp.$host.$dead" \
   ".scene-plan.tmp.$host.$living" | sort | tr '\n' ' ')" ] || bad "of temporary files there are $(ls -A "$TMPDIR")"
 kill $living
+TMPDIR=nowhere scene-plan --tidy out 2> errors; [ $? = 2 ] && grep -q '^scene-plan: TMPDIR names no folder' errors || bad "$(cat errors)"
 scene-plan --tidy nowhere 2> errors; [ $? = 2 ] && [ "$(wc -l < errors)" = 1 ] || bad "a folder that is not there: $(cat errors)"
 exit $failed

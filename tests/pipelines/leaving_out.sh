@@ -69,6 +69,17 @@ tool photon-trace "$work/mirror.glb" --photons 5k --kinds caustic,indirect -o "$
 [ "$(count specular_rays "$work/mirror.json")" -gt 0 ] || bad 'a mirror: no specular ray is counted'
 [ "$(kinds "$work/mirror.photons")" = 'caustic indirect ' ] || bad "a mirror: photons of kinds $(kinds "$work/mirror.photons")"
 
+# A texture that no ray touches is not decoded, and what decodes is not opened; one that is touched shows that the list says it.
+top=$(pwd)
+(cd "$work" && python3 -B "$top/tests/cli/make_floor.py") || bad 'make_floor.py'
+for camera in Aside Above; do
+  LD_DEBUG=files LD_DEBUG_OUTPUT="$work/textures-$camera" "$bin/frame-render" "$work/scene/outside.gltf" --allow-outside --camera $camera \
+    --integrator path --size 16x9 --spp 1 -o "$work/$camera.exr" --stats "$work/$camera.json" -q || bad "textures: exit $?"
+done
+[ "$(count textures "$work/Aside.json") $(count textures "$work/Above.json")" = '0 1' ] || bad 'a texture that no ray touches was decoded'
+grep -hoE 'file=[^ ]*(tempolux-images|libpng|libjpeg)[^ ]*' "$work"/textures-Aside.* | sort -u | grep . && bad 'these were mapped for no texture'
+grep -qhE 'file=[^ ]*tempolux-images' "$work"/textures-Above.* || bad 'the list of libraries lacks the module of images'
+
 # Libraries, those opened while running among them: the loader's own list.
 ls "$work"/libraries.* > /dev/null 2>&1 || bad 'the loader lists no libraries'
 grep -hoE 'file=[^ ]*(OpenImageIO|openvdb|opencv)[^ ]*' "$work"/libraries.* | sort -u | grep . && bad 'these were mapped'

@@ -131,6 +131,13 @@ TEST(ExrClaims, LyingHeadersAreRefusedBeforeMemoryIsTaken) {
        "chunks");
   says(exr::magic() + exr::attribute("comments", "string", "x").substr(0, 16) + raw(0x7fffffff),
        "claims 2147483647 bytes");
+  // What OpenEXR would not skip as far as the attribute says: it would find other attributes behind it than we.
+  says(exr::magic() + exr::header(rgb, one, one) + exr::attribute("gamma", "float", std::string(36, '\0')) + '\0',
+       "claims 36 bytes, its type has 4");
+  says(exr::magic() + exr::header(rgb, one, one) + exr::attribute("more", "chlist", rgb + std::string(9, '\0')) + '\0',
+       "shorter than it says");
+  says(exr::magic() + exr::header(rgb, one, one) + exr::attribute("small", "preview", raw(20000) + raw(20000)) + '\0',
+       "a preview of 20000 x 20000 pixels in 8 bytes");
   says(exr::magic(0x1000) + exr::header(rgb, one, one) +
            exr::attribute("chunkCount", "int", raw(0x7fffffff)) + '\0' + '\0',
        "chunks");
