@@ -151,8 +151,8 @@ def cornell(bench, _):
     size = "48x48" if bench.quick else "256x256"
     halves = bench.reference_halves("PC", size, bench.reference_samples // 2)
     rows, met = judged(bench, "PC", size, halves, [
-        (0.0013, 2, Settings(150000, (), ("--rays", 350), ("--pixel-error", 0.006))),
-        (0.0008, 4, Settings(400000, ("--point-count", "30k"), ("--rays", 800, "--error-bound", 0.15), ("--pixel-error", 0.0025)))])
+        (0.0013, 2, Settings(150000, (), ("--rays", 350), ("--pixel-error", 0.0045))),
+        (0.0008, 4, Settings(400000, ("--point-count", "30k"), ("--rays", 800, "--error-bound", 0.15), ("--pixel-error", 0.002)))])
     met = met and all(abs(float(row[4].split(" ")[0])) < 0.3 for row in rows)
     return figure("Classic Cornell box, 256x256", "RMSE .0013 in 2 CPU s and .0008 in 4, bias below 0.3 %", HEADER, rows,
                   None if bench.quick else met, ["Against our own path tracer, "
