@@ -9,6 +9,7 @@
 
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
+#include "lib/material/bsdf.h"
 #include "tests/support/closed_box.h"
 #include "tests/support/photons.h"
 
@@ -392,6 +393,32 @@ TEST(IrradiancePoints, ThinClosedShapesStayDarkInside) {
   }
   EXPECT_EQ(inside, 0);
   EXPECT_NEAR(outside.value(), 1, 0.02);
+}
+
+/// Direct light of 1 W/sr at a coated floor, d away at the angle of cosine c: c / d^2 arrival_weight(c), as its photons
+/// are stored; without a coat c / d^2.
+TEST(IrradiancePoints, DirectLightCountsByWhatTheCoatLetsIn) {
+  Material coated = matte(Rgb(0.5f));
+  coated.specular = 1;
+  coated.roughness = 0.3f;
+  for (const Material& material : {matte(Rgb(0.5f)), coated}) {
+    HandMadeScene scene;
+    scene.add_quad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}, material);
+    scene.add_point_light({0, 0.1f, 0}, Rgb(1.0f));
+    const SceneFrame& frame = scene.frame();
+    const EmissionTable table = build_emission_table({&frame, 1});
+    const Tracer tracer(frame);
+    const Lights lights(frame, table);
+    const PointOptions options{.count = 200};
+    std::vector<IrradiancePoint> points = place_points(frame, options);
+    estimate_points(tracer, lights, {}, {}, options, points);
+    for (const IrradiancePoint& point : points) {
+      if (point.normal.y < 0) continue;
+      const float d2 = length2(Vec3{0, 0.1f, 0} - point.position), c = 0.1f / std::sqrt(d2);
+      const float expected = c / d2 * Bsdf(material).arrival_weight(c);
+      EXPECT_NEAR(point.direct.g, expected, 1e-4f * expected);
+    }
+  }
 }
 
 TEST(IrradiancePoints, AnyNumberOfThreadsGivesTheSameBytes) {
