@@ -10,6 +10,7 @@
 #include "lib/render/photon_light.h"
 #include "lib/scene/gltf_load.h"
 #include "tests/support/photons.h"
+#include "tests/support/scenes.h"
 
 namespace tempolux {
 namespace {
@@ -133,6 +134,40 @@ TEST(FrameRenderer, SamplesWhereTheyAreNeededBringNoBias) {
   EXPECT_LT(4 * std::sqrt(variance) / total_light, 0.006);
 }
 
+/// A thin sheet that lets half of the light through, a second of the same mesh behind it, which faces the same way; the first
+/// gets no indirect light, the second does: what is seen through the first is asked for in every sample, not taken from
+/// what the pixel's first samples met on the mesh. The specular layer's mean with extra samples against 256 everywhere:
+/// within 5 %, four times the scatter of a run. (Reused, nothing of that light is left.)
+TEST(FrameRenderer, ExtraSamplesReuseOnlyWhatTheCameraRayMeets) {
+  Material sheet = test::matte(Rgb(0.5f));
+  sheet.transmission = 0.5f;
+  sheet.roughness = 0;
+  test::HandMadeScene made;
+  made.add({{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}, {-4, -4, -1}, {4, -4, -1}, {4, 4, -1}, {-4, 4, -1}},
+           {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, sheet);
+  made.add_point_light({0, 0, 3}, Rgb(1.0f));
+  const SceneFrame& frame = made.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  struct SecondAlone : DiffuseLight {
+    Irradiance at(const SurfacePoint& surface, Vec3, Vec3, bool) const override {
+      return {Rgb(0.0f), Rgb(surface.position.z < -0.5f ? 1.0f : 0.0f)};
+    }
+  } light;
+  PlacedCamera camera;
+  camera.scene_from_camera.translation = {0, 0, 4};
+  const CameraView view(camera, {}, 32, 18);
+  const auto specular_of = [&](int samples, double pixel_error) {
+    FrameOptions options;
+    options.diffuse_light = &light;
+    options.samples = samples;
+    options.pixel_error = pixel_error;
+    double sum = 0;
+    for (const Layers& pixel : render_frame({tracer, lights}, view, options).mean.pixels) sum += double(pixel[Layer::specular].g);
+    return sum;
+  };
+  EXPECT_NEAR(specular_of(2, 0.005) / specular_of(256, 0), 1, 0.05);
+}
 /// Where all of a large light is seen its noise is taken out. Four samples of the lamp by solid angle leave a pixel of the box
 /// a scatter of 1 % and more, by the cosines that differ over it: three pixels of four are off by half a per cent. Without,
 /// only those are off by as much that hold edges or lie where shadows begin: a third of them.
