@@ -68,7 +68,7 @@ struct PixelState {
   float mean = 0;                       ///< of the first samples, mean of the channels
   Rgb direct_noise{0.0f}, specular_noise{0.0f};   ///< LightControl, of all samples
   float sampled = 0, seen = 0;          ///< of the first
-  float sharp_variance = 0;             ///< of one of the first: PixelSum::sharp
+  double sharp_variance = 0;            ///< of one of the first: PixelSum::sharp; a square of light may be beyond float
   float difference = 0, noise_difference = 0;     ///< of all else: mean over half of the first samples less that over the others
 
   void add_noise(const LightControl& more) {
@@ -107,7 +107,7 @@ class AdaptiveFrame {
         state.seen += c.seen;
       }
       const double sharp = first.sharp + second.sharp;
-      state.sharp_variance = float(std::max(0.0, first.sharp_square + second.sharp_square - sharp * sharp / n) / std::max(1, n - 1));
+      state.sharp_variance = std::max(0.0, first.sharp_square + second.sharp_square - sharp * sharp / n) / std::max(1, n - 1);
       if (b == 0) return;
       const auto noise = [](const LightControl& c) { return double(mean_channel(c.direct)); };
       state.difference = float((first.value() - first.sharp) / a - (second.value() - second.sharp) / b);
@@ -179,7 +179,7 @@ class AdaptiveFrame {
     const double a = first_half_, b = options_.samples - first_half_;
     double difference = double(state.difference);
     if (controlled_) difference -= double(seen_around(x, y) * state.noise_difference);
-    return double(state.sharp_variance) + difference * difference * a * b / (a + b);
+    return state.sharp_variance + difference * difference * a * b / (a + b);
   }
 
   /// Samples each pixel still needs, by what its neighbours saw. Its own samples are left out: a pixel whose
