@@ -89,6 +89,7 @@ using Rgbd = RgbT<double>;
 template <class T> constexpr T max_component(RgbT<T> a) { return std::max({a.r, a.g, a.b}); }
 template <class T> constexpr T min_component(RgbT<T> a) { return std::min({a.r, a.g, a.b}); }
 template <class T> constexpr T channel_sum(RgbT<T> a) { return a.r + a.g + a.b; }
+template <class T> constexpr T channel_mean(RgbT<T> a) { return channel_sum(a) / 3; }
 template <class T> constexpr bool is_black(RgbT<T> a) { return a.r == 0 && a.g == 0 && a.b == 0; }
 /// Luminance weights of Rec. 709.
 template <class T> constexpr T luminance(RgbT<T> a) { return T(0.2126) * a.r + T(0.7152) * a.g + T(0.0722) * a.b; }

@@ -19,7 +19,6 @@ float smooth_step(float x) {
 /// cosine samples of it would weigh more than ten times their mean. Full at three times this.
 constexpr float kLeastLost = 0.01f;
 
-float mean(Rgb c) { return channel_sum(c) / 3; }
 /// Schlick's Fresnel term.
 Rgb fresnel(Rgb f0, float f90, float cos_h) {
   const float k = power5(std::clamp(1 - cos_h, 0.0f, 1.0f));
@@ -125,7 +124,7 @@ float Bsdf::diffuse_probability(const Reflection& r) const {
   if (!diffuse_) return 0;
   if (!specular_) return 1;
   const Rgb s = r.single + r.multiple;
-  const float d = mean(rho_) * std::max(0.0f, 1 - max_component(s)), total = d + mean(s);
+  const float d = channel_mean(rho_) * std::max(0.0f, 1 - max_component(s)), total = d + channel_mean(s);
   return total > 0 ? d / total : 0;
 }
 
@@ -164,7 +163,7 @@ float Bsdf::pdf_diffuse(Vec3 wi, Vec3 wo) const {
 
 /// What is reflected more than once, as a share of event S.
 float Bsdf::multiple_share(const Reflection& r) {
-  const float multiple = mean(r.multiple), total = multiple + mean(r.single);
+  const float multiple = channel_mean(r.multiple), total = multiple + channel_mean(r.single);
   return total > 0 ? multiple / total : 0;
 }
 

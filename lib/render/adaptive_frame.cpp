@@ -60,8 +60,6 @@ class PixelLight : public DiffuseLight {
   mutable std::size_t next_ = 0;
 };
 
-float mean_channel(Rgb c) { return (c.r + c.g + c.b) / 3; }
-
 /// What is kept of a pixel between its first and its further samples.
 struct PixelState {
   PixelLight::Memory memory;
@@ -109,7 +107,7 @@ class AdaptiveFrame {
       const double sharp = first.sharp + second.sharp;
       state.sharp_variance = std::max(0.0, first.sharp_square + second.sharp_square - sharp * sharp / n) / std::max(1, n - 1);
       if (b == 0) return;
-      const auto noise = [](const LightControl& c) { return double(mean_channel(c.direct)); };
+      const auto noise = [](const LightControl& c) { return double(channel_mean(c.direct)); };
       state.difference = float((first.value() - first.sharp) / a - (second.value() - second.sharp) / b);
       state.noise_difference = float(noise(control[0]) / a - noise(control[1]) / b);
     });

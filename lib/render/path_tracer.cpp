@@ -10,8 +10,6 @@ namespace {
 constexpr std::uint32_t kRouletteFrom = 3;     ///< bounces that always survive
 constexpr float kLargestSurvival = 0.998f;     ///< so that paths in a lossless box end, after 500 bounces in the mean
 
-float mean_channel(Rgb c) { return (c.r + c.g + c.b) / 3; }
-
 /// The last scattering: what a hit on a light must know to weigh itself against light sampling.
 struct LastScatter {
   bool weighed = false;                        ///< false: camera ray or delta lobe, light sampling could not find it
@@ -72,9 +70,9 @@ void add_controlled_light(const RenderScene& scene, const ShadingPoint& x, const
   if (scene.lights.sample_large(position, x.normal, random.get2(bounce, Purpose::light_point), light, exact)) {
     const Rgb arriving = reflected * light.radiance * std::max(0.0f, dot(light.wi, x.normal));
     noise += arriving;
-    control.sampled += mean_channel(arriving);
+    control.sampled += channel_mean(arriving);
     if (!is_black(arriving) && reaches(scene, x, light, counts)) {
-      control.seen += mean_channel(arriving);
+      control.seen += channel_mean(arriving);
       result[layer] += arriving;
     }
   }

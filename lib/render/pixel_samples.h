@@ -18,14 +18,14 @@ struct PixelSum {
     for (std::size_t l = 0; l < kLayerCount; ++l) layers.value[l] += Rgbd(sample.value[l]);
     layers.coverage += double(sample.coverage);
     const Rgb s = sample[Layer::emission] + sample[Layer::specular] + sample[Layer::caustic] + sample[Layer::indirect];
-    const double v = (double(s.r) + double(s.g) + double(s.b)) / 3;
+    const double v = channel_mean(Rgbd(s));
     sharp += v;
     sharp_square += v * v;
   }
   /// Mean channel of all layers.
   double value() const {
     double sum = 0;
-    for (const Rgbd& radiance : layers.value) sum += (radiance.r + radiance.g + radiance.b) / 3;
+    for (const Rgbd& radiance : layers.value) sum += channel_mean(radiance);
     return sum;
   }
 };
