@@ -137,16 +137,17 @@ inline void FinalGather::meet(Vec3 wo, float distance, Met& met) const {
   met.distance = distance;
 }
 
-/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything.
+/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything. alike: as
+/// Tracer::intersect.
 template <class Take>
-void FinalGather::follow(std::span<const Ray> rays, GatherCounts& counts, const Take& take) const {
+void FinalGather::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take) const {
   std::array<Hit, kAtOnce> hits;
   std::array<Met, kAtOnce> met;
   std::array<PointLookup::Question, kAtOnce> questions;
   std::array<PointLookup::Answer, kAtOnce> answers;
   for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, rays.size() - first);
-    tracer_.intersect(rays.subspan(first, count), std::span(hits).first(count));
+    tracer_.intersect(rays.subspan(first, count), std::span(hits).first(count), alike);
     for (std::size_t i = 0; i < count; ++i) {
       met[i].bsdf = nullptr;
       if (hits[i].surface == kNone) continue;
@@ -172,14 +173,14 @@ void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint6
   further_rays.clear();
   std::fill(radiance.begin(), radiance.end(), Rgb(0.0f));
   std::fill(distance.begin(), distance.end(), INFINITY);
-  follow(rays, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
+  follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
     distance[i] = met.distance;
     const std::size_t before = further.size();
     radiance[i] = reflected(met, point, keys[i], 0, counts, &further);
     if (further.size() > before) further.back().of = i;
   });
   for (const Further& f : further) further_rays.push_back(f.ray);
-  follow(further_rays, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
+  follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
     radiance[further[i].of] += further[i].weight * reflected(met, point, further[i].key, 1, counts, nullptr);
   });
 }

@@ -70,7 +70,7 @@ class FinalGather {
   static Strata strata(int rays);
   struct Further;
   void meet(Vec3 wo, float distance, Met& met) const;
-  template <class Take> void follow(std::span<const Ray> rays, GatherCounts& counts, const Take& take) const;
+  template <class Take> void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take) const;
   Rgb reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts,
                 std::vector<Further>* further) const;
   Rgb reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key, int depth,

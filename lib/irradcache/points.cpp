@@ -20,7 +20,6 @@ constexpr float kNeighbourhood = 2.5f;    ///< spacings: how far the neighbours 
 constexpr float kCellDiagonal = 1.4142f;  ///< of a cell's section along a surface
 constexpr float kHot = 20;        ///< times the mean: light of which little must not be read beside where it falls
 constexpr float kContrast = 8;    ///< to a neighbour, from which on neither stands for what lies between them
-constexpr std::uint32_t kSeparated = 1;   ///< of an answer: its hits are answered one by one
 
 Vec3 bin_direction(std::uint32_t bin) {
   const auto middle = [](std::uint32_t i) { return (2 * float(i) + 1) / PointLookup::kNormalBins - 1; };
@@ -242,27 +241,14 @@ std::uint32_t PointLookup::search_reachable(const Question& q, const PointCrowd*
   return search(q.position, q.normal, q.object);
 }
 
-const PointLight* PointLookup::read(const Question& q, Answer answer) const {
-  std::uint32_t found = answer.value / 2;
-  if (answer.value & kSeparated) {
-    const PointCrowd* crowd = found ? &crowds_[found - 1] : nullptr;
-    found = crowd ? reachable_in(*crowd, q) : 0;
-    if (!found) found = search_reachable(q, crowd);
-  }
+const PointLight* PointLookup::read_one_by_one(const Question& q, Answer answer) const {
+  const PointCrowd* crowd = answer.value / 2 ? &crowds_[answer.value / 2 - 1] : nullptr;
+  std::uint32_t found = crowd ? reachable_in(*crowd, q) : 0;
+  if (!found) found = search_reachable(q, crowd);
   return found ? &lights_[found - 1] : nullptr;
 }
 
-PointLookup::Answer PointLookup::answer(const Question& q) const {
-  const auto fetched = [&](std::uint32_t value) {
-    if (value & kSeparated && value / 2) {
-      const char* crowd = reinterpret_cast<const char*>(&crowds_[value / 2 - 1]);
-      for (std::size_t line = 0; line < sizeof(PointCrowd); line += 64) __builtin_prefetch(crowd + line);
-    } else if (value / 2) {
-      __builtin_prefetch(&lights_[value / 2 - 1]);
-    }
-    return Answer{value};
-  };
-
+PointLookup::Answer PointLookup::answer_anew(const Question& q) const {
   const std::uint64_t value_mask = (std::uint64_t(1) << value_bits_) - 1;
   std::size_t slot = mix64(q.key) & mask_;
   std::atomic<std::uint64_t>* empty = nullptr;
@@ -277,6 +263,16 @@ PointLookup::Answer PointLookup::answer(const Question& q) const {
   std::uint64_t none = 0;
   if (empty) empty->compare_exchange_strong(none, q.key << value_bits_ | value, std::memory_order_release);
   return fetched(value);
+}
+
+PointLookup::Answer PointLookup::fetched(std::uint32_t value) const {
+  if (value & kSeparated && value / 2) {
+    const char* crowd = reinterpret_cast<const char*>(&crowds_[value / 2 - 1]);
+    for (std::size_t line = 0; line < sizeof(PointCrowd); line += 64) __builtin_prefetch(crowd + line);
+  } else if (value / 2) {
+    __builtin_prefetch(&lights_[value / 2 - 1]);
+  }
+  return {value};
 }
 
 }  // namespace tempolux

@@ -87,7 +87,11 @@ class PointLookup {
   static constexpr float kMostCells = 1 << 20;      ///< per axis: more than coordinates can tell apart
 
  private:
+  static constexpr std::uint32_t kSeparated = 1;    ///< of an answer: its hits are answered one by one
   static std::uint32_t normal_bin(Vec3 n);
+  Answer answer_anew(const Question& question) const;
+  Answer fetched(std::uint32_t value) const;
+  const PointLight* read_one_by_one(const Question& question, Answer answer) const;
   void mark_hot_edges();
   std::uint32_t search(Vec3 position, Vec3 normal, std::uint32_t object) const;
   std::uint32_t search_cell(Vec3 middle, std::uint32_t bin, std::uint32_t object) const;
@@ -140,6 +144,19 @@ inline PointLookup::Question PointLookup::ask(Vec3 position, Vec3 normal, std::u
   q.key = (cell * objects_ + std::min(object, objects_ - 1)) * (kNormalBins * kNormalBins) + q.bin + 1;
   __builtin_prefetch(&entries_[mix64(q.key) & mask_]);
   return q;
+}
+
+inline PointLookup::Answer PointLookup::answer(const Question& q) const {
+  const std::uint64_t there = entries_[mix64(q.key) & mask_].load(std::memory_order_acquire);
+  if (there >> value_bits_ != q.key || there & kSeparated) return answer_anew(q);
+  const Answer answer{std::uint32_t(there & ((std::uint64_t(1) << value_bits_) - 1))};
+  if (answer.value) __builtin_prefetch(&lights_[answer.value / 2 - 1]);
+  return answer;
+}
+
+inline const PointLight* PointLookup::read(const Question& q, Answer answer) const {
+  if (answer.value & kSeparated) return read_one_by_one(q, answer);
+  return answer.value ? &lights_[answer.value / 2 - 1] : nullptr;
 }
 
 }  // namespace tempolux

@@ -206,7 +206,7 @@ struct Packet {
 
   /// Hits with this tree that are nearer than those found before; the rays are shortened to them. everywhere:
   /// the tree fills the scene, so that asking whether a ray may hit it would be a waste.
-  void intersect(const Tree& tree, bool everywhere, Hit* hits) {
+  void intersect(const Tree& tree, bool everywhere, bool alike, Hit* hits) {
     bool any = false;
     alignas(32) int active[kPacket];
     float limit[kPacket];
@@ -220,7 +220,7 @@ struct Packet {
     if (!any) return;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = alike ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect8(active, tree.scene, &context, &query);
     for (std::size_t i = 0; i < kPacket; ++i) {
       if (!active[i] || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
@@ -452,7 +452,7 @@ bool Tracer::intersect(const Ray& ray, Hit& hit) const {
   return found;
 }
 
-void Tracer::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
+void Tracer::intersect(std::span<const Ray> rays, std::span<Hit> hits, bool alike) const {
   TEMPOLUX_CHECK(rays.size() == hits.size());
   for (std::size_t first = 0; first < rays.size(); first += kPacket) {
     const std::size_t count = std::min(kPacket, rays.size() - first);
@@ -463,8 +463,8 @@ void Tracer::intersect(std::span<const Ray> rays, std::span<Hit> hits) const {
       if (i < count && !use) impl_->refused.fetch_add(1, std::memory_order_relaxed);
     }
     Hit found[kPacket];
-    if (impl_->fixed.exists()) packet.intersect(impl_->fixed, true, found);
-    if (impl_->moving.exists()) packet.intersect(impl_->moving, false, found);
+    if (impl_->fixed.exists()) packet.intersect(impl_->fixed, true, alike, found);
+    if (impl_->moving.exists()) packet.intersect(impl_->moving, false, alike, found);
     std::copy(found, found + count, hits.begin() + std::ptrdiff_t(first));
   }
 }
