@@ -16,7 +16,7 @@ from measure import Missing, figure, median, percent, quantity, running_processe
 
 LAYERS = (None, "emission", "direct", "specular", "caustic", "indirect")
 FAST = Settings(300000, ("--point-count", "4k", "--light-samples", 2), ("--rays", 50, "--error-bound", 0.6),
-                ("--spp", 4, "--pixel-error", 0.01, "--caustic-radius", 0.15), steps=True, caustics=True)
+                ("--spp", 4, "--pixel-error", 0.0115, "--caustic-radius", 0.15), steps=True, caustics=True)
 
 
 def mean(values):
