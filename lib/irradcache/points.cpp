@@ -241,6 +241,7 @@ std::uint32_t PointLookup::search_reachable(const Question& q, const PointCrowd*
   return search(q.position, q.normal, q.object);
 }
 
+/// Of a cell that something separates: what this hit can reach.
 const PointLight* PointLookup::read_one_by_one(const Question& q, Answer answer) const {
   const PointCrowd* crowd = answer.value / 2 ? &crowds_[answer.value / 2 - 1] : nullptr;
   std::uint32_t found = crowd ? reachable_in(*crowd, q) : 0;
@@ -248,6 +249,7 @@ const PointLight* PointLookup::read_one_by_one(const Question& q, Answer answer)
   return found ? &lights_[found - 1] : nullptr;
 }
 
+/// Where the first place of the table does not tell: a further one does, or the cell is searched and remembered.
 PointLookup::Answer PointLookup::answer_anew(const Question& q) const {
   const std::uint64_t value_mask = (std::uint64_t(1) << value_bits_) - 1;
   std::size_t slot = mix64(q.key) & mask_;

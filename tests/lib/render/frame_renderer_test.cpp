@@ -91,15 +91,18 @@ TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
   EXPECT_NEAR(one.own_rmse / rmse, 1, 0.3);
 }
 
+/// Direct light alone.
+struct NoLight : DiffuseLight {
+  Irradiance at(const SurfacePoint&, Vec3, Vec3, bool) const override { return {}; }
+};
+
 /// Extra samples go where neighbours are uncertain; a pixel's own luck must not decide. Direct light of the pixels
 /// that scatter most between 48 seeds, penumbrae and edges, two base samples each, against 1024 samples
 /// everywhere: 4 sigma of the mean of their errors. (Deciding by a pixel's own samples comes out 0.8 % too
 /// dark, six sigma.)
 TEST(FrameRenderer, SamplesWhereTheyAreNeededBringNoBias) {
   const Cornell c;
-  struct NoLight : DiffuseLight {
-    Irradiance at(const SurfacePoint&, Vec3, Vec3, bool) const override { return {}; }
-  } none;
+  const NoLight none;
   FrameOptions options;
   options.diffuse_light = &none;
   options.samples = 1024;
@@ -168,14 +171,13 @@ TEST(FrameRenderer, ExtraSamplesReuseOnlyWhatTheCameraRayMeets) {
   };
   EXPECT_NEAR(specular_of(2, 0.005) / specular_of(256, 0), 1, 0.05);
 }
+
 /// Where all of a large light is seen its noise is taken out. Four samples of the lamp by solid angle leave a pixel of the box
 /// a scatter of 1 % and more, by the cosines that differ over it: three pixels of four are off by half a per cent. Without,
 /// only those are off by as much that hold edges or lie where shadows begin: a third of them.
 TEST(FrameRenderer, LightThatNothingIsInTheWayOfHasNoNoise) {
   const Cornell c;
-  struct NoLight : DiffuseLight {
-    Irradiance at(const SurfacePoint&, Vec3, Vec3, bool) const override { return {}; }
-  } none;
+  const NoLight none;
   FrameOptions options;
   options.diffuse_light = &none;
   options.samples = 4;
