@@ -113,17 +113,25 @@ void RecordStore::shrink(std::uint32_t record, float radius) {
   records_[record].radius = radius;
 }
 
+template <class Found>
+inline bool RecordStore::any_near(Vec3 position, const Found& found) const {
+  const Vec3d local = Vec3d(position) - lower_;
+  for (const Level& level : levels_)
+    for (const Entry& entry : level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())])
+      if (found(entry)) return true;
+  for (const Entry& entry : everywhere_)
+    if (found(entry)) return true;
+  return false;
+}
+
 void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first) {
   std::vector<std::pair<std::uint32_t, float>> near;
-  const auto look = [&](const std::vector<Entry>& entries) {
-    for (const Entry& entry : entries)
-      if (const float d = length(entry.position - record.position);
-          d < entry.radius && dot(entry.normal, record.normal) > options_.max_angle_cos)
-        near.emplace_back(entry.record, d);
-  };
-  const Vec3d local = Vec3d(record.position) - lower_;
-  for (const Level& level : levels_) look(level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())]);
-  look(everywhere_);
+  any_near(record.position, [&](const Entry& entry) {
+    if (const float d = length(entry.position - record.position);
+        d < entry.radius && dot(entry.normal, record.normal) > options_.max_angle_cos)
+      near.emplace_back(entry.record, d);
+    return false;
+  });
   const auto reach = [](const IrradianceRecord& r) { return std::max(r.radius, r.radius_unclamped); };
   const float own = reach(record);
   for (const auto& [i, d] : near) record.radius = std::min(record.radius, reach(records_[i]) + slope * d);
@@ -161,41 +169,28 @@ inline void RecordStore::accumulate(const Entry& entry, float scale, Vec3 positi
 RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) const {
   Interpolated result;
   Rgb sum{0.0f};
-  const Vec3d local = Vec3d(position) - lower_;
-  for (const Level& level : levels_)
-    for (const Entry& entry : level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())])
-      accumulate(entry, 1, position, normal, sum, result);
-  for (const Entry& entry : everywhere_) accumulate(entry, 1, position, normal, sum, result);
+  any_near(position, [&](const Entry& entry) {
+    accumulate(entry, 1, position, normal, sum, result);
+    return false;
+  });
   if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
   return result;
 }
 
 float RecordStore::lit_share(Vec3 position, Vec3 normal) const {
   float weights = 0, sum = 0;
-  const auto look = [&](const std::vector<Entry>& entries) {
-    for (const Entry& entry : entries) {
-      const float weight = weight_of(entry, 1, position, normal);
-      weights += weight;
-      sum += weight * records_[entry.record].lit_share;
-    }
-  };
-  const Vec3d local = Vec3d(position) - lower_;
-  for (const Level& level : levels_) look(level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())]);
-  look(everywhere_);
+  any_near(position, [&](const Entry& entry) {
+    const float weight = weight_of(entry, 1, position, normal);
+    weights += weight;
+    sum += weight * records_[entry.record].lit_share;
+    return false;
+  });
   return weights > 0 ? sum / weights : -1;
 }
 
 bool RecordStore::covers(Vec3 position, Vec3 normal, float weight) const {
   float sum = 0;
-  const auto reached = [&](const std::vector<Entry>& entries) {
-    for (const Entry& entry : entries)
-      if ((sum += weight_of(entry, 1, position, normal)) >= weight) return true;
-    return false;
-  };
-  const Vec3d local = Vec3d(position) - lower_;
-  for (const Level& level : levels_)
-    if (reached(level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())])) return true;
-  return reached(everywhere_);
+  return any_near(position, [&](const Entry& entry) { return (sum += weight_of(entry, 1, position, normal)) >= weight; });
 }
 
 RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {

@@ -94,6 +94,8 @@ class RecordStore {
   Level& level_of(float radius);
   void list(Level& level, std::uint32_t record) const;
   void shrink(std::uint32_t record, float radius);
+  /// Is found(entry) true of a record that may be valid at the point? Each is asked once, until one is.
+  template <class Found> bool any_near(Vec3 position, const Found& found) const;
   /// Of a record at a point, its radius scaled; 0 where it is not valid.
   float weight_of(const Entry& entry, float scale, Vec3 position, Vec3 normal) const;
   void accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
