@@ -52,10 +52,9 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
   return map;
 }
 
-GatherPoints make_points(Tool& tool, const std::string& photons_file, const Tracer& tracer, const Lights& lights,
+GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
                          const PointOptions& options) {
   const SceneFrame& frame = tracer.frame();
-  const formats::PhotonMap map = read_photons(tool, photons_file, frame, LightNeeded::all);
   const bool caustic = holds(map.header.kinds, "caustic") || !lobes_of(frame).specular;
   GatherPoints result{place_points(frame, options), point_spacing(frame, options),
                       caustic ? "direct,caustic,indirect" : "direct,indirect", map.header.history, map.header.emitted_count};

@@ -30,8 +30,8 @@ struct GatherPoints {
 
 /// Reads a .irradpoints file made for this state of the scene, with the kinds of light it has: as read_photons.
 GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame);
-/// Makes points from the photons of a file (read_photons).
-GatherPoints make_points(Tool& tool, const std::string& photons_file, const Tracer& tracer, const Lights& lights,
+/// Makes points from the photons of a whole map with all kinds of light (read_photons).
+GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
                          const PointOptions& options);
 /// Writes them; counts go to the statistics.
 void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output);

@@ -36,7 +36,8 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
 const FinalGather* IndirectLight::make_gather(int number) {
   if (!options_.points.empty()) points_ = read_points(tool_, frame_name(options_.points, number), tracer_.frame());
   else if (!options_.photons.empty())
-    points_ = make_points(tool_, frame_name(options_.photons, number), tracer_, lights_, options_.points_made);
+    points_ = make_points(tool_, read_photons(tool_, frame_name(options_.photons, number), tracer_.frame(), LightNeeded::all), tracer_,
+                          lights_, options_.points_made);
   else
     throw InputError(frame_name(options_.irradcache, number) + ": has no record near some of what is seen, and there is nothing to "
                      "gather one from; give --points FILE or --photons FILE");

@@ -38,6 +38,15 @@ struct Options {
   const std::string& scene() const { return inputs.back(); }
 };
 
+/// Points from a file of photons, in two phases: only the second works with all threads.
+tools::GatherPoints points_of_photons(tools::Tool& tool, const std::string& file, const Tracer& tracer, const Lights& lights,
+                                      const PointOptions& options) {
+  tool.stats().phase("read photons");
+  const formats::PhotonMap map = tools::read_photons(tool, file, tracer.frame(), tools::LightNeeded::all);
+  tool.stats().phase("points", true);
+  return tools::make_points(tool, map, tracer, lights, options);
+}
+
 void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing) {
   tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
@@ -45,9 +54,8 @@ void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& op
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
-  tool.stats().phase("points", true);
   const tools::GatherPoints points =
-      tools::make_points(tool, tools::frame_name(options.photons, number), tracer, lights, options.point);
+      points_of_photons(tool, tools::frame_name(options.photons, number), tracer, lights, options.point);
   tool.stats().phase("write");
   tools::write_points(tool, points, frame, output);
 }
@@ -87,10 +95,11 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   tool.stats().phase("build");
   const Tracer tracer(first);
   const Lights lights(first, input.emission(first.frame));
-  tool.stats().phase("points", true);
-  const tools::GatherPoints points =
-      options.points.empty() ? tools::make_points(tool, options.photons, tracer, lights, options.point)
-                             : tools::read_points(tool, options.points, first);
+  if (!options.points.empty()) tool.stats().phase("read points");
+  const tools::GatherPoints points = options.points.empty()
+                                         ? points_of_photons(tool, options.photons, tracer, lights, options.point)
+                                         : tools::read_points(tool, options.points, first);
+  tool.stats().phase("prepare records");
   if (!options.keep_points.empty()) {
     tools::Output keep(options.keep_points, tool.common().no_clobber);
     tools::write_points(tool, points, first, keep);

@@ -209,7 +209,7 @@ class Pilots {
     words.insert(words.end(), {"--photons", folder_.file("p.photons"), "-o", output});
     const Cost cost = run(folder_, "irradcache-build", words, output);
     estimate_.stages.push_back(
-        scaled("irradcache-build points", double(counts_.lights.size()), pilot_of(cost, {"points", "write"}, 1), 1));
+        scaled("irradcache-build points", double(counts_.lights.size()), pilot_of(cost, {"read photons", "points", "write"}, 1), 1));
   }
   /// Records for pictures of `width` pixels, of one view or two.
   Cost place(int width, int height, bool both, const std::string& output) {

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "formats/hash.h"
+#include "formats/large_pages.h"
 #include "formats/photons/file_reader.h"
 
 namespace tempolux::formats {
@@ -186,6 +187,7 @@ PhotonMap load_photons(const std::string& path) {
   PhotonMap map;
   map.header = reader.header();
   map.photons.reserve(reader.photon_count_bound());
+  prefer_large_pages(map.photons.data(), map.photons.capacity() * sizeof(Photon));
   PhotonBlock block;
   while (reader.read_block(block))
     map.photons.insert(map.photons.end(), block.photons.begin(), block.photons.end());

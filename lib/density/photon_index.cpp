@@ -4,6 +4,7 @@
 #include <bit>
 #include <stdexcept>
 
+#include "formats/large_pages.h"
 #include "lib/core/parallel.h"
 
 namespace tempolux {
@@ -17,11 +18,19 @@ struct PhotonIndex::Item {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kChunk = 1 << 14;
+constexpr std::size_t kChunk = 1 << 14, kBoxChunk = 1 << 16;
 
 struct Range {
   std::size_t first, last;
 };
+
+/// Memory for `count` values, not touched yet.
+template <class T>
+std::unique_ptr<T[]> room_for(std::size_t count) {
+  auto room = std::make_unique_for_overwrite<T[]>(count);
+  formats::prefer_large_pages(room.get(), count * sizeof(T));
+  return room;
+}
 
 /// Orders [first, last) around `mid` by coordinate, equal ones by source: the two halves as sets do not
 /// depend on how the library selects.
@@ -31,6 +40,25 @@ void select(Item* first, Item* mid, Item* last) {
     return a.position[axis] < b.position[axis] ||
            (a.position[axis] == b.position[axis] && a.source < b.source);
   });
+}
+
+template <class Item>
+Box3 box_of(const Item* first, const Item* last) {
+  Box3 box;
+  for (; first != last; ++first) box.add(Vec3{first->position[0], first->position[1], first->position[2]});
+  return box;
+}
+
+/// The same by all threads: the first cuts have fewer ranges than there are threads.
+template <class Item>
+Box3 box_of_many(const Item* first, const Item* last) {
+  const auto count = std::size_t(last - first);
+  std::vector<Box3> boxes((count + kBoxChunk - 1) / kBoxChunk);
+  parallel_chunks(count, kBoxChunk,
+                  [&](std::size_t begin, std::size_t end) { boxes[begin / kBoxChunk] = box_of(first + begin, first + end); });
+  Box3 whole;
+  for (const Box3& box : boxes) whole.add(box);
+  return whole;
 }
 
 /// Cuts the range's box across its longest side. The left part takes a power of two of leaves, all full, so
@@ -44,9 +72,7 @@ bool split(std::span<Item> items, std::size_t leaf_size, Range range, Range& lef
     std::sort(first, last, [](const Item& a, const Item& b) { return a.source < b.source; });
     return false;
   }
-  Box3 box;
-  for (const Item* item = first; item != last; ++item)
-    box.add(Vec3{item->position[0], item->position[1], item->position[2]});
+  const Box3 box = std::size_t(last - first) > kBoxChunk ? box_of_many(first, last) : box_of(first, last);
   const Vec3 extent = box.upper - box.lower;
   const std::size_t mid = range.first + std::bit_ceil(leaves) / 2 * leaf_size;
   Item* const middle = items.data() + mid;
@@ -106,7 +132,7 @@ PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t 
   for (std::size_t chunk = 0; chunk < chunks; ++chunk) places[chunk + 1] += places[chunk];
   size_ = places.back();
   if (size_ == 0) return;
-  const auto items = std::make_unique_for_overwrite<Item[]>(size_);
+  const auto items = room_for<Item>(size_);
   std::vector<float> largest(chunks, 0.0f);
   parallel_chunks(photons.size(), kChunk, [&](std::size_t first, std::size_t last) {
     std::size_t place = places[first / kChunk];
@@ -129,9 +155,9 @@ PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t 
 
 void PhotonIndex::build_leaves(std::span<const formats::Photon> photons, std::span<const Item> items) {
   leaf_count_ = (size_ + kLeafSize - 1) / kLeafSize;
-  leaves_ = std::make_unique_for_overwrite<Leaf[]>(leaf_count_);
-  filters_ = std::make_unique_for_overwrite<LeafFilter[]>(leaf_count_);
-  flux_ = std::make_unique_for_overwrite<Rgb[]>(size_);
+  leaves_ = room_for<Leaf>(leaf_count_);
+  filters_ = room_for<LeafFilter>(leaf_count_);
+  flux_ = room_for<Rgb>(size_);
   source_ = std::make_unique_for_overwrite<std::uint32_t[]>(size_);
   object_ = std::make_unique_for_overwrite<std::uint16_t[]>(size_);
   parallel_chunks(leaf_count_ * kLeafSize, kChunk, [&](std::size_t first, std::size_t last) {
