@@ -25,10 +25,8 @@ void join_weights(const SceneFrame& frame, const EmissionTable& table, std::vect
     weights[slot] = std::max(weights[slot], emission_weight(flux));
     ++slot;
   };
-  for (const std::uint32_t s : table.surfaces) {
-    const Surface& surface = frame.surfaces[s];
-    for (std::uint32_t t = 0; t < surface.primitive->triangles.size(); ++t) join(TriangleLight(frame, s, t).flux());
-  }
+  for (std::size_t i = 0; i < table.surfaces.size(); ++i)
+    for (const TriangleLight& light : triangle_lights(table, i, frame)) join(light.flux());
   for (const PlacedLight& placed : frame.lights) join(punctual_flux(placed.light, table.sphere_radius));
 }
 
@@ -53,6 +51,18 @@ bool any_flux_changes(const SceneFrame& frame) {
 
 }  // namespace
 
+std::vector<TriangleLight> triangle_lights(const EmissionTable& table, std::size_t index, const SceneFrame& frame) {
+  const std::uint32_t s = table.surfaces[index];
+  const Surface& surface = frame.surfaces[s];
+  const bool same = table.shares[index].alpha == frame.materials[surface.material].alpha;
+  const EmissionShares own = same ? EmissionShares() : EmissionShares(frame, s);
+  std::vector<TriangleLight> lights;
+  lights.reserve(surface.primitive->triangles.size());
+  for (std::uint32_t t = 0; t < surface.primitive->triangles.size(); ++t)
+    lights.emplace_back(frame, s, t, same ? table.shares[index] : own);
+  return lights;
+}
+
 EmissionTable build_emission_table(std::span<const SceneFrame> frames) {
   TEMPOLUX_CHECK(!frames.empty());
   const SceneFrame& any = frames.front();
@@ -65,7 +75,9 @@ EmissionTable build_emission_table(std::span<const SceneFrame> frames) {
     const bool emits = std::any_of(frames.begin(), frames.end(), [&](const SceneFrame& f) {
       return f.materials[f.surfaces[s].material].emissive();
     });
-    if (emits) table.surfaces.push_back(s);
+    if (!emits) continue;
+    table.surfaces.push_back(s);
+    table.shares.emplace_back(any, s);
   }
   std::vector<double> weights;
   for (const SceneFrame& frame : frames) {

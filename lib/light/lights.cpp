@@ -62,13 +62,12 @@ Lights::Impl::Impl(const SceneFrame& frame_, const EmissionTable& table)
 
 void Lights::Impl::add_slots(const EmissionTable& table) {
   first_slot.assign(frame->surfaces.size(), kNone);
-  for (const std::uint32_t s : table.surfaces) {
-    const Surface& surface = frame->surfaces[s];
+  for (std::size_t i = 0; i < table.surfaces.size(); ++i) {
+    const std::uint32_t s = table.surfaces[i];
     first_slot[s] = std::uint32_t(slots.size());
-    for (std::uint32_t t = 0; t < surface.primitive->triangles.size(); ++t) {
-      slots.push_back({EmissionSlot::Kind::triangle, s, t, kNone, 0});
-      triangles.emplace_back(*frame, s, t);
-    }
+    const std::vector<TriangleLight> lights = triangle_lights(table, i, *frame);
+    for (std::uint32_t t = 0; t < lights.size(); ++t) slots.push_back({EmissionSlot::Kind::triangle, s, t, kNone, 0});
+    triangles.insert(triangles.end(), lights.begin(), lights.end());
   }
   for (std::uint32_t i = 0; i < frame->lights.size(); ++i)
     slots.push_back({slot_kind(frame->lights[i].light.kind), kNone, 0, i, 0});

@@ -11,6 +11,7 @@
 
 #include "lib/core/vec.h"
 #include "lib/light/environment_light.h"
+#include "lib/light/triangle_light.h"
 #include "lib/scene/at_frame.h"
 #include "lib/scene/surface_point.h"
 
@@ -37,11 +38,15 @@ struct EmissionSlot {
 /// texture makes vary counts with its mean.
 struct EmissionTable {
   std::vector<std::uint32_t> surfaces;  ///< that emit at some frame: indices into SceneFrame::surfaces
+  std::vector<EmissionShares> shares;   ///< of `surfaces`, at the first frame
   std::vector<double> probability;      ///< by slot, sums to 1; equal if nothing ever emits
   Vec3d sphere_centre{};                ///< scene sphere over the segment, scene space, m
   double sphere_radius = 0;
   std::shared_ptr<const EnvironmentLight> environment;  ///< nullptr: none; its Environment must outlive it
 };
+
+/// The triangles of table.surfaces[index] as lights of a frame, in their order.
+std::vector<TriangleLight> triangle_lights(const EmissionTable& table, std::size_t index, const SceneFrame& frame);
 
 /// Of all frames of the segment if something that emits moves, else of one.
 EmissionTable build_emission_table(const Scene& scene, const Segment& segment, const TimeOptions& options);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
 #include "lib/scene/texture_lookup.h"
 
@@ -90,10 +91,20 @@ TriangleLight::TriangleLight(const Surface& surface, std::uint32_t index, const 
   two_sided = material.double_sided;
 }
 
-TriangleLight::TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index)
+EmissionShares::EmissionShares(const SceneFrame& frame, std::uint32_t surface)
+    : alpha(frame.materials[frame.surfaces[surface].material].alpha) {
+  if (!emission_varies(frame.materials[frame.surfaces[surface].material])) return;
+  of.resize(frame.surfaces[surface].primitive->triangles.size());
+  parallel_chunks(of.size(), 1024, [&](std::size_t first, std::size_t last) {
+    for (std::size_t t = first; t < last; ++t) of[t] = mean_emission_share(frame, surface, std::uint32_t(t));
+  });
+}
+
+TriangleLight::TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index,
+                             const EmissionShares& shares)
     : TriangleLight(frame.surfaces[surface], index, frame.materials[frame.surfaces[surface].material]) {
-  varies = emission_varies(frame.materials[frame.surfaces[surface].material]);
-  if (varies) radiance = mean_emission(frame, surface, index);
+  varies = !shares.of.empty();
+  if (varies) radiance = radiance * shares.of[index];
 }
 
 Rgb TriangleLight::varying_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1,

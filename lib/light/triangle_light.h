@@ -1,10 +1,22 @@
 // lib/light/triangle_light.h -- one emissive triangle: points on it as seen from a point, and their density.
 #pragma once
 
+#include <vector>
+
 #include "lib/core/vec.h"
 #include "lib/scene/at_frame.h"
 
 namespace tempolux {
+
+/// What textures and alpha leave of the emission of a surface's material in the mean, by triangle: the same at all frames
+/// at which the material's alpha is.
+struct EmissionShares {
+  float alpha = 1;
+  std::vector<Rgb> of;  ///< mean_emission_share; empty where nothing varies: all are 1
+
+  EmissionShares() = default;
+  EmissionShares(const SceneFrame& frame, std::uint32_t surface);
+};
 
 /// An emissive triangle at a frame, scene space. The front is where the normal points.
 struct TriangleLight {
@@ -19,7 +31,7 @@ struct TriangleLight {
   /// Triangle `index` of a surface, with the material's emission at the frame.
   TriangleLight(const Surface& surface, std::uint32_t index, const Material& material);
   /// Of a surface of the frame, with the mean over the triangle where a texture or alpha makes it vary.
-  TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index);
+  TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, const EmissionShares& shares);
   /// Radiance of the point of barycentrics (b1, b2), times the share of rays that meet it there.
   Rgb emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const {
     return varies ? varying_at(frame, surface, index, b1, b2) : radiance;

@@ -21,16 +21,16 @@ const std::vector<Vec2>& texture_coordinates(const Primitive& primitive, std::ui
   return uv_set == 0 ? primitive.uvs : uv_set == 1 ? primitive.uvs1 : none;
 }
 
-TextureSpot::Corners TextureSpot::coordinates(const Texture& texture) const {
-  Corners corners;
-  const std::vector<Vec2>& uvs = texture_coordinates(*surface_.primitive, texture.uv_set);
-  corners.exist = !uvs.empty();
+std::array<Vec2, 3> corner_coordinates(const Primitive& primitive, const std::array<std::uint32_t, 3>& triangle,
+                                       const Texture& texture) {
+  const std::vector<Vec2>& uvs = texture_coordinates(primitive, texture.uv_set);
   const auto& m = texture.transform;
+  std::array<Vec2, 3> at;
   for (std::size_t c = 0; c < 3; ++c) {
-    const Vec2 uv = corners.exist ? uvs[corners_[c]] : Vec2{};
-    corners.uv[c] = {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
+    const Vec2 uv = uvs.empty() ? Vec2{} : uvs[triangle[c]];
+    at[c] = {m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
   }
-  return corners;
+  return at;
 }
 
 Vec3 TextureSpot::edge(int corner) const {
@@ -40,7 +40,7 @@ Vec3 TextureSpot::edge(int corner) const {
 float TextureSpot::level(const Corners& corners, const TexturePyramid& pyramid) const {
   if (!(width_ > 0)) return 0;
   const float area = length(cross(edge(1), edge(2)));
-  const float texels = std::abs(cross2(minus(corners.uv[1], corners.uv[0]), minus(corners.uv[2], corners.uv[0]))) *
+  const float texels = std::abs(cross2(minus(corners[1], corners[0]), minus(corners[2], corners[0]))) *
                        float(pyramid.width()) * float(pyramid.height());
   const float ratio = texels / area * width_ * width_;   // texels in the footprint
   return ratio > 1 ? 0.5f * std::log2(std::min(ratio, 1e30f)) : 0;
@@ -48,10 +48,10 @@ float TextureSpot::level(const Corners& corners, const TexturePyramid& pyramid) 
 
 Rgba TextureSpot::read(const Texture& texture, TextureTransfer transfer) const {
   const TexturePyramid& pyramid = frame_.images->pyramid(texture.image, transfer);
-  const Corners corners = coordinates(texture);
+  const Corners corners = corner_coordinates(*surface_.primitive, corners_, texture);
   const float w = 1 - u_ - v_;
-  const Vec2 uv{corners.uv[0].x * w + corners.uv[1].x * u_ + corners.uv[2].x * v_,
-                corners.uv[0].y * w + corners.uv[1].y * u_ + corners.uv[2].y * v_};
+  const Vec2 uv{corners[0].x * w + corners[1].x * u_ + corners[2].x * v_,
+                corners[0].y * w + corners[1].y * u_ + corners[2].y * v_};
   return pyramid.read(uv, texture.wrap_u, texture.wrap_v, texture.nearest, level(corners, pyramid));
 }
 
@@ -72,8 +72,8 @@ bool TextureSpot::axes_of_tangents(Vec3 normal, Vec3& right, Vec3& up) const {
 }
 
 bool TextureSpot::axes_of_coordinates(const Texture& normal_map, Vec3 normal, Vec3& right, Vec3& up) const {
-  const Corners corners = coordinates(normal_map);
-  const Vec2 a = minus(corners.uv[1], corners.uv[0]), b = minus(corners.uv[2], corners.uv[0]);
+  const Corners corners = corner_coordinates(*surface_.primitive, corners_, normal_map);
+  const Vec2 a = minus(corners[1], corners[0]), b = minus(corners[2], corners[0]);
   const float determinant = cross2(a, b);
   if (!(std::abs(determinant) > 0)) return false;
   // dP/du and dP/dv times |determinant|
@@ -111,11 +111,10 @@ TextureTransfer base_color_transfer(const Material& material) {
 float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v) {
   const Material& material = frame.materials[frame.surfaces[surface].material];
   if (!lets_rays_pass(material)) return 1;
-  float alpha = material.alpha;
+  float alpha = 1;
   if (material.textures && material.textures->base_color)
-    alpha *= TextureSpot(frame, surface, triangle, u, v, 0).read(material.textures->base_color, base_color_transfer(material))[3];
-  if (material.alpha_mode == Material::Alpha::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
-  return alpha;
+    alpha = TextureSpot(frame, surface, triangle, u, v, 0).read(material.textures->base_color, base_color_transfer(material))[3];
+  return coverage(material, alpha);
 }
 
 bool emission_varies(const Material& material) {
@@ -128,44 +127,6 @@ Rgb emission_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t tr
   const Rgba value =
       TextureSpot(frame, surface, triangle, u, v, width).read(material.textures->emission, TextureTransfer::srgb);
   return material.emission * Rgb{value[0], value[1], value[2]};
-}
-
-Rgb mean_emission(const SceneFrame& frame, std::uint32_t surface_index, std::uint32_t triangle) {
-  const Surface& surface = frame.surfaces[surface_index];
-  const Material& material = frame.materials[surface.material];
-  if (!material.emissive() || !emission_varies(material)) return material.emission;
-  const auto& corner = surface.primitive->triangles[triangle];
-  if (material.textures && material.textures->emission) {
-    const Texture& texture = material.textures->emission;
-    const std::vector<Vec2>& uvs = texture_coordinates(*surface.primitive, texture.uv_set);
-    Vec2 lower{INFINITY, INFINITY}, upper{-INFINITY, -INFINITY};
-    const auto& m = texture.transform;
-    for (const std::uint32_t c : corner) {
-      const Vec2 uv = uvs.empty() ? Vec2{} : uvs[c];
-      const Vec2 at{m[0] * uv.x + m[1] * uv.y + m[2], m[3] * uv.x + m[4] * uv.y + m[5]};
-      lower = {std::min(lower.x, at.x), std::min(lower.y, at.y)};
-      upper = {std::max(upper.x, at.x), std::max(upper.y, at.y)};
-    }
-    if (!frame.images->pyramid(texture.image, TextureTransfer::srgb)
-             .any_colour(lower, upper, texture.wrap_u, texture.wrap_v))
-      return Rgb(0.0f);
-  }
-  // The triangle cut into kCuts^2 small ones like it, the value at the middle of each over its width.
-  constexpr int kCuts = 8;
-  const Vec3 a = surface.position(corner[0]);
-  const float area = 0.5f * length(cross(surface.position(corner[1]) - a, surface.position(corner[2]) - a));
-  const float width = std::sqrt(area) / float(kCuts);
-  Rgbd sum{0.0};
-  for (int i = 0; i < kCuts; ++i)
-    for (int j = 0; j < kCuts - i; ++j)
-      for (int down = 0; down < (j < kCuts - i - 1 ? 2 : 1); ++down) {
-        const float third = down ? 2.0f / 3 : 1.0f / 3;
-        const float u = (float(i) + third) / float(kCuts), v = (float(j) + third) / float(kCuts);
-        sum += Rgbd(emission_at(frame, surface_index, triangle, u, v, width)) *
-               double(coverage_at(frame, surface_index, triangle, u, v));
-      }
-  const Rgb mean(sum / double(kCuts * kCuts)), least = material.emission * 0.01f;
-  return {std::max(mean.r, least.r), std::max(mean.g, least.g), std::max(mean.b, least.b)};
 }
 
 }  // namespace tempolux

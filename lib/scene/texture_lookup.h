@@ -1,7 +1,9 @@
 // lib/scene/texture_lookup.h -- textures read at a point of a surface: coordinates, level, emission, coverage.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "lib/image/texture_pyramid.h"
 #include "lib/scene/at_frame.h"
@@ -32,11 +34,7 @@ class TextureSpot {
   Vec3 bend(const Texture& normal_map, float scale, Vec3 normal, Vec3 geometric) const;
 
  private:
-  struct Corners {
-    Vec2 uv[3];   ///< transformed
-    bool exist = false;
-  };
-  Corners coordinates(const Texture& texture) const;
+  using Corners = std::array<Vec2, 3>;
   float level(const Corners& corners, const TexturePyramid& pyramid) const;
   Vec3 edge(int corner) const;
   /// Unit axes of a normal map across `normal`; false where there are none.
@@ -52,6 +50,10 @@ class TextureSpot {
 /// Texture coordinates of a set; empty if the primitive has none.
 const std::vector<Vec2>& texture_coordinates(const Primitive& primitive, std::uint32_t uv_set);
 
+/// Where a texture's image is read at the corners of a triangle: coordinates of its set, transformed.
+std::array<Vec2, 3> corner_coordinates(const Primitive& primitive, const std::array<std::uint32_t, 3>& triangle,
+                                       const Texture& texture);
+
 /// Does the material's emission, or whether it is there, depend on where?
 bool emission_varies(const Material& material);
 /// Radiance that the material emits at a point [glTF nits].
@@ -60,13 +62,21 @@ Rgb emission_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t tr
 /// Share of rays that meet the surface at a point, by the finest level of the texture: 1 for opaque materials, alpha for
 /// BLEND, 1 or 0 for MASK.
 float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v);
+/// The same of a material that lets rays pass, where the alpha of its texture is `texel` (1: none).
+inline float coverage(const Material& material, float texel) {
+  const float alpha = material.alpha * texel;
+  if (material.alpha_mode == Material::Alpha::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
+  return alpha;
+}
 /// Can a ray pass a surface of this material?
 bool lets_rays_pass(const Material& material);
 /// How its base colour's texture is to be read.
 TextureTransfer base_color_transfer(const Material& material);
 
-/// Mean over a triangle of emission times coverage: 0 only if it is 0 everywhere, at least 1 % of the material's factor
-/// elsewhere (so that nothing that emits is chosen too rarely). By 64 points, each over its share of the triangle.
-Rgb mean_emission(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle);
+/// Mean over a triangle of emission times coverage, as a share of the material's emission (1 where neither varies): 0 only
+/// if it is 0 everywhere, at least 0.01 elsewhere (so that nothing that emits is chosen too rarely). The triangle is cut
+/// into as many like it as are about a texel large, 4 to 64, each read in its middle, over its size. Depends on neither
+/// the material's emission nor the shape of the surface.
+Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle);
 
 }  // namespace tempolux

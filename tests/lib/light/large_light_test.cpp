@@ -16,7 +16,7 @@ std::vector<LargeLight> large_lights(const std::vector<Vec3>& corners, bool two_
   LightScene scene;
   scene.add(corners, Rgb(1.0f), two_sided);
   std::vector<TriangleLight> triangles;
-  for (std::uint32_t t = 0; t + 2 < corners.size(); ++t) triangles.emplace_back(scene.frame, 0, t);
+  for (std::uint32_t t = 0; t + 2 < corners.size(); ++t) triangles.emplace_back(scene.frame, 0, t, EmissionShares());
   return join_rectangles(triangles);
 }
 

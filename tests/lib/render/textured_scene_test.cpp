@@ -97,9 +97,49 @@ TEST(EmissiveTexture, TrianglesThatAreDarkAllOverAreNoLights) {
   scene.set_images({png_image(16, 1, 1, {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255, 255, 0, 0})});
   scene.add_quad(kLamp[0], kLamp[1], kLamp[2], kLamp[3], lamp);
   scene.set_uvs({{0, 0}, {0, 1}, {0.3f, 1}, {0.3f, 0}});
-  EXPECT_EQ(mean_emission(scene.frame(), 0, 0), Rgb(0.0f));
+  EXPECT_EQ(mean_emission_share(scene.frame(), 0, 0), Rgb(0.0f));
   scene.set_uvs({{0, 0}, {0, 1}, {1, 1}, {1, 0}});
-  EXPECT_NEAR(mean_emission(scene.frame(), 0, 0).r + mean_emission(scene.frame(), 0, 1).r, 2 * 2.0f / 8, 0.05);
+  EXPECT_NEAR(mean_emission_share(scene.frame(), 0, 0).r + mean_emission_share(scene.frame(), 0, 1).r, 2.0f / 8, 0.025);
+}
+
+// Small against the texels and large: what few points say of the mean. A ramp from 0 to 1 over two texels, read between
+// their middles, is its value at the triangle's centroid; stripes of 0 and 1, 4 and 400 of them, have the mean 1/2.
+TEST(EmissiveTexture, MeansOverATriangleOfAnySize) {
+  const auto lamp = [](int texels, float left, float right) {
+    HandMadeScene scene;
+    Material material = matte(Rgb(0.0f), Rgb(2.0f));
+    material.textures.emplace().emission = texture_of_image(0, false);
+    std::vector<std::uint8_t> stripes;
+    for (int i = 0; i < texels; ++i) stripes.insert(stripes.end(), 3, i % 2 ? 255 : 0);
+    scene.set_images({png_image(texels, 1, 3, stripes)});
+    scene.add_quad(kLamp[0], kLamp[1], kLamp[2], kLamp[3], material);
+    scene.set_uvs({{left, 0}, {left, 1}, {right, 1}, {right, 0}});
+    return std::array{mean_emission_share(scene.frame(), 0, 0).g, mean_emission_share(scene.frame(), 0, 1).g};
+  };
+  const auto [lower, upper] = lamp(2, 0.25f, 0.75f);
+  EXPECT_NEAR(lower, 1.0 / 3, 1e-4);
+  EXPECT_NEAR(upper, 2.0 / 3, 1e-4);
+  // A stripe is two parts wide or more: a sixteenth of them lie in the wrong one, or a level of grey is 1/255.
+  for (const int texels : {8, 800})
+    for (const float mean : lamp(texels, 0, 1)) EXPECT_NEAR(mean, 0.5, 1.0 / 16) << texels;
+}
+
+// MASK with an animated alpha: nothing of the lamp is there in the first frame, all of it in the second. What the table
+// keeps of the first must not dim the second.
+TEST(EmissiveTexture, MeansFollowTheMaterialsAlpha) {
+  HandMadeScene hidden, shown;
+  for (HandMadeScene* scene : {&hidden, &shown}) {
+    Material lamp = matte(Rgb(0.0f), Rgb(2.0f));
+    lamp.double_sided = false;
+    lamp.alpha_mode = Material::Alpha::mask;
+    lamp.alpha_cutoff = 0.5f;
+    lamp.alpha = scene == &hidden ? 0.4f : 0.6f;
+    scene->add_quad(kLamp[0], kLamp[1], kLamp[2], kLamp[3], lamp);
+  }
+  const std::vector<SceneFrame> frames{hidden.frame(), shown.frame()};
+  const EmissionTable table = build_emission_table(frames);
+  EXPECT_NEAR(Lights(frames[0], table).total_flux().r, 0.01 * 8 * M_PI, 1e-4);   // the least share: for whom all is hidden
+  EXPECT_NEAR(Lights(frames[1], table).total_flux().r, 8 * M_PI, 1e-4);
 }
 
 /// A horizontal square of side 2 at z = 0 of a material with alpha; u along x, v along y.
