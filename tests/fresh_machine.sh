@@ -2,8 +2,9 @@
 # Do the README's commands work on a machine that has nothing? sh tests/fresh_machine.sh [FOLDER]
 #
 # Puts a minimal Debian 12 into FOLDER (default: a new one under /tmp, removed at the end), clones this repository there as
-# it is committed, runs the first line of README.md and its two commands inside, and prints the minutes each took. Needs
-# root and a Debian mirror (MIRROR=http://...). Ends with 77 where it cannot be tried, 1 if a command failed.
+# it is committed, runs the first line of README.md and its two commands inside, then those of MORE (MORE=.ci/run; a line
+# each), and prints the minutes each took. Needs root and a Debian mirror (MIRROR=http://...). Ends with 77 where it cannot
+# be tried, 1 if a command failed.
 top=$(cd "$(dirname "$0")/.." && pwd)
 mirror=${MIRROR:-http://deb.debian.org/debian}
 root=$1
@@ -48,5 +49,6 @@ inside() {
 inside "$(sed -n '1s/.*`\(apt-get [^`]*\)`.*/\1/p' "$root/tempolux/README.md")"
 sed -n 's/^    \(make -f Makefile.example\( check\)\{0,1\}\)  *#.*/\1/p' "$root/tempolux/README.md" | sort -u > "$scratch/commands"
 [ "$(wc -l < "$scratch/commands")" = 2 ] || { echo 'FAILED: README.md does not begin with two commands'; exit 1; }
+printf '%s\n' "$MORE" | grep . >> "$scratch/commands"
 while read -r command; do inside "$command"; done < "$scratch/commands"
 chroot "$root" sh -c 'cd /tempolux && ls -l out/sheet.png && ls out/frames/*.exr | wc -l && du -sh build out && git status --short'
