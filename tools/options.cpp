@@ -181,9 +181,14 @@ void Tool::common_options(unsigned flags) {
         ->type_name("FILE");
     left_out(
         app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
-    app.add_option("--max-texture", common.max_texture, "reduce images of textures to this many pixels on a side")
+    left_out(app.add_option("--max-texture", common.max_texture, "refuse images of textures of more pixels on a side"))
         ->type_name("N")
-        ->check(number_between(1, 16384))
+        ->check(number_between(1, 65536))
+        ->capture_default_str();
+    app.add_option("--reduce-textures", common.reduce_textures,
+                   "reduce larger images of textures to this many pixels on a side; 0: none")
+        ->type_name("N")
+        ->check(number_between(0, 65536))
         ->capture_default_str();
     left_out(app.add_flag("--allow-outside", common.allow_outside,
                           "follow file names that leave the scene's folder"));

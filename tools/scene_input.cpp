@@ -11,6 +11,7 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   options.allow_outside = common.allow_outside;
   options.animation = common.animation;
   options.textures.max_side = common.max_texture;
+  if (common.reduce_textures > 0) options.textures.reduce_to = common.reduce_textures;
   scene_ = load_gltf(path, options);
   add_environment();
   if (needs & light) require_lights(scene_);

@@ -69,7 +69,8 @@ struct Common {
   std::string stats_file, dep_file;      ///< "": none
   std::vector<std::string> state_files;  ///< listed in the depfile instead of the scene's files
   std::uint64_t max_memory_bytes = 0;    ///< 0: no limit
-  int max_texture = 16384;               ///< pixels on a side
+  int max_texture = 16384;               ///< pixels on a side: larger images are refused
+  int reduce_textures = 0;               ///< pixels on a side: larger images are reduced; 0: none
   bool allow_stale = false, allow_outside = false, quiet = false, no_clobber = false;
   int verbose = 0;
 

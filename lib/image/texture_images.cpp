@@ -17,13 +17,13 @@ const TexturePyramid& TextureImages::decode(std::size_t image, TextureTransfer t
   const EncodedImage& source = images_[image];
   std::unique_ptr<TexturePyramid> pyramid;
   try {
-    pyramid = std::make_unique<TexturePyramid>(decode_by_module(source, limits_.max_pixels), transfer, limits_.max_side);
+    pyramid = std::make_unique<TexturePyramid>(decode_by_module(source, limits_.max_pixels), transfer, limits_.reduce_to);
   } catch (const std::bad_alloc&) {
-    throw ResourceError(source.place + ": not enough memory to decode it; reduce textures with --max-texture");
+    throw ResourceError(source.place + ": not enough memory to decode it; reduce textures with --reduce-textures");
   }
   if (bytes_.fetch_add(pyramid->byte_count()) + pyramid->byte_count() > limits_.max_bytes)
     throw InputError(source.place + ": textures take more than " + std::to_string(limits_.max_bytes) +
-                     " bytes decoded; reduce them with --max-texture");
+                     " bytes decoded; reduce them with --reduce-textures");
   ++decoded_;
   entry.pyramid = std::move(pyramid);
   entry.ready.store(entry.pyramid.get(), std::memory_order_release);

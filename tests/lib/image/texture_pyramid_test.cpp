@@ -165,11 +165,11 @@ TEST(TextureImages, LimitsOfBytesAndSide) {
   const auto error = [&](const TextureLimits& limits) {
     return message_of<InputError>([&] { make(limits).pyramid(0, TextureTransfer::linear); });
   };
-  const TextureImages small = make({2, 1 << 20, 1 << 20});
+  const TextureImages small = make({.reduce_to = 2});
   EXPECT_EQ(small.pyramid(0, TextureTransfer::linear).width(), 2);
   EXPECT_EQ(small.decoded_bytes(), 5u);
-  EXPECT_NE(error({8, 1 << 20, 80}).find("--max-texture"), std::string::npos);   // 64 + 16 + 4 + 1 bytes
-  EXPECT_NE(error({8, 63, 1 << 20}).find("limit of 63"), std::string::npos);
+  EXPECT_NE(error({.max_bytes = 80}).find("--reduce-textures"), std::string::npos);   // 64 + 16 + 4 + 1 bytes
+  EXPECT_NE(error({.max_pixels = 63}).find("limit of 63"), std::string::npos);
 }
 
 }  // namespace
