@@ -105,11 +105,11 @@ Rgb PointDensity::estimate(const IrradiancePoint& point, const PathRandom& rando
   return Rgb(Rgbd{std::max(0.0, flux.r), std::max(0.0, flux.g), std::max(0.0, flux.b)} * inverse);
 }
 
-Rgb PointDensity::estimate_sampled(Vec3 position, Vec3 normal, const PathRandom& random) const {
+Rgb PointDensity::estimate_sampled(Vec3 position, Vec3 normal, const PathRandom& random, float& radius) const {
   thread_local NeighbourList found;
   const auto [found_radius, farthest] = find(position, normal, found);
-  float radius = float(found_radius);
-  if (radius == 0) return Rgb(0.0f);
+  radius = found_radius > 0 ? float(found_radius) : options_.max_radius;
+  if (!(found_radius > 0)) return Rgb(0.0f);
   if (!(radius > 4 * reach_.offset())) return plain(position, normal, radius, found);
 
   struct Weighted {

@@ -75,7 +75,8 @@ class PointDensity {
   /// few probes. No noise is added where the disc is whole. Exact in the mean: let u of the n photons be out of reach,
   /// m of them be tested first, and P = C(n-u, m) / C(n, m) be the chance to find none; where one is found, the flux is
   /// (reached - P all) / (1 - P), so that P all + (1 - P) that = reached.
-  Rgb estimate_sampled(Vec3 position, Vec3 normal, const PathRandom& random) const;
+  /// `radius`: as estimate(), but max_radius if no photon is near.
+  Rgb estimate_sampled(Vec3 position, Vec3 normal, const PathRandom& random, float& radius) const;
 
   std::size_t photon_count() const { return index_.size(); }
 

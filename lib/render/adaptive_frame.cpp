@@ -1,64 +1,13 @@
 #include "lib/render/adaptive_frame.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "lib/render/pixel_light.h"
 #include "lib/render/pixel_samples.h"
 
 namespace tempolux {
 namespace {
-
-/// A pixel's first sample on a surface asks for caustic and indirect light, later ones that meet it there with about the
-/// same normal take its answer: that light is smooth, the first sample's place is random, and the others are there for the
-/// direct light. What is seen in a mirror or gloss may be far away on the same surface: there answers hold for a few
-/// centimetres only (of a hall; kNearby).
-class PixelLight : public DiffuseLight {
- public:
-  struct Answer {
-    std::uint32_t surface = kNone;
-    Vec3 normal;
-    Irradiance irradiance;
-  };
-  using Memory = std::array<Answer, 2>;   ///< of the pixel; surfaces beyond are asked for each time
-  PixelLight(const DiffuseLight& light, Memory& memory, float scene_size)
-      : light_(light), memory_(memory), nearby2_(kNearby * scene_size * kNearby * scene_size) {}
-
-  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const override {
-    if (!direct_view) return in_mirror(surface, geometric, shading);
-    for (Answer& answer : memory_) {
-      if (answer.surface == kNone) {
-        answer = {surface.surface, shading, light_.at(surface, geometric, shading, true)};
-        return answer.irradiance;
-      }
-      if (answer.surface == surface.surface && dot(answer.normal, shading) > kSameNormal) return answer.irradiance;
-    }
-    return light_.at(surface, geometric, shading, true);
-  }
-
- private:
-  static constexpr float kSameNormal = 0.9995f;      // 2 degrees
-  static constexpr float kNearby = 1 / 256.0f;       // of the scene's diagonal
-  struct PlacedAnswer : Answer {
-    Vec3 position;
-  };
-
-  Irradiance in_mirror(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const {
-    for (const PlacedAnswer& answer : mirrored_)
-      if (answer.surface == surface.surface && dot(answer.normal, shading) > kSameNormal &&
-          length2(answer.position - surface.position) < nearby2_)
-        return answer.irradiance;
-    PlacedAnswer& oldest = mirrored_[next_++ % mirrored_.size()];
-    oldest = {{surface.surface, shading, light_.at(surface, geometric, shading, false)}, surface.position};
-    return oldest.irradiance;
-  }
-
-  const DiffuseLight& light_;
-  Memory& memory_;
-  float nearby2_;
-  mutable std::array<PlacedAnswer, 4> mirrored_;
-  mutable std::size_t next_ = 0;
-};
 
 /// What is kept of a pixel between its first and its further samples.
 struct PixelState {
@@ -86,47 +35,27 @@ class AdaptiveFrame {
         first_half_((options.samples + 1) / 2), scene_size_(scene.frame().bounds.diagonal()), pixels_(image.pixels.size()) {}
 
   void first_samples(RayCounts& rays) {
-    for_each_pixel(view_, options_, rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-      PixelState& state = pixels_[pixel];
-      const int n = options_.samples, a = first_half_, b = n - a;
-      LightControl control[2];
-      PixelSum first, second;
-      with_light(pixel, [&](const DiffuseLight* light) {
-        for_each_sample(scene_, view_, options_.seed, light, pixel, x, y, 0, n, counts,
-                        [&](int s) { return controlled_ ? &control[s < a ? 0 : 1] : nullptr; },
-                        [&](int s, const Layers& sample) { (s < a ? first : second).add(sample); });
-      });
-      join(first, 0, a, image_.pixels[pixel]);
-      if (b > 0) join(second, a, b, image_.pixels[pixel]);
-      state.mean = float((first.value() + second.value()) / n);
-      for (const LightControl& c : control) {
-        state.add_noise(c);
-        state.sampled += c.sampled;
-        state.seen += c.seen;
-      }
-      const double sharp = first.sharp + second.sharp;
-      state.sharp_variance = std::max(0.0, first.sharp_square + second.sharp_square - sharp * sharp / n) / std::max(1, n - 1);
-      if (b == 0) return;
-      const auto noise = [](const LightControl& c) { return double(channel_mean(c.direct)); };
-      state.difference = float((first.value() - first.sharp) / a - (second.value() - second.sharp) / b);
-      state.noise_difference = float(noise(control[0]) / a - noise(control[1]) / b);
+    for_each_tile(view_, options_, rays, {}, [&](RayCounts& counts) {
+      return [&, sparse = SparseCaustics()](std::size_t pixel, int x, int y) mutable { first_samples(pixel, x, y, sparse, counts); };
     });
   }
 
   /// Returns how many.
   double further_samples(RayCounts& rays) {
     const std::vector<int> missing = missing_samples();
-    for_each_pixel(view_, options_, rays, options_.progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-      const int count = missing[pixel];
-      if (count > 0) {
-        LightControl control;
-        with_light(pixel, [&](const DiffuseLight* light) {
-          join(sample_pixel(scene_, view_, options_.seed, light, pixel, x, y, options_.samples, count, counts,
-                            controlled_ ? &control : nullptr), options_.samples, count, image_.pixels[pixel]);
-        });
-        pixels_[pixel].add_noise(control);
-      }
-      if (controlled_) take_noise_out(pixel, x, y, options_.samples + count);
+    for_each_tile(view_, options_, rays, options_.progress, [&](RayCounts& counts) {
+      return [&, sparse = SparseCaustics()](std::size_t pixel, int x, int y) mutable {
+        const int count = missing[pixel];
+        if (count > 0) {
+          LightControl control;
+          with_light(pixel, sparse, [&](const DiffuseLight* light) {
+            join(sample_pixel(scene_, view_, options_.seed, light, pixel, x, y, options_.samples, count, counts,
+                              controlled_ ? &control : nullptr), options_.samples, count, image_.pixels[pixel]);
+          });
+          pixels_[pixel].add_noise(control);
+        }
+        if (controlled_) take_noise_out(pixel, x, y, options_.samples + count);
+      };
     });
     double sum = 0;
     for (const int count : missing) sum += count;
@@ -134,10 +63,36 @@ class AdaptiveFrame {
   }
 
  private:
+  void first_samples(std::size_t pixel, int x, int y, SparseCaustics& sparse, RayCounts& counts) {
+    PixelState& state = pixels_[pixel];
+    const int n = options_.samples, a = first_half_, b = n - a;
+    LightControl control[2];
+    PixelSum first, second;
+    with_light(pixel, sparse, [&](const DiffuseLight* light) {
+      for_each_sample(scene_, view_, options_.seed, light, pixel, x, y, 0, n, counts,
+                      [&](int s) { return controlled_ ? &control[s < a ? 0 : 1] : nullptr; },
+                      [&](int s, const Layers& sample) { (s < a ? first : second).add(sample); });
+    });
+    join(first, 0, a, image_.pixels[pixel]);
+    if (b > 0) join(second, a, b, image_.pixels[pixel]);
+    state.mean = float((first.value() + second.value()) / n);
+    for (const LightControl& c : control) {
+      state.add_noise(c);
+      state.sampled += c.sampled;
+      state.seen += c.seen;
+    }
+    const double sharp = first.sharp + second.sharp;
+    state.sharp_variance = std::max(0.0, first.sharp_square + second.sharp_square - sharp * sharp / n) / std::max(1, n - 1);
+    if (b == 0) return;
+    const auto noise = [](const LightControl& c) { return double(channel_mean(c.direct)); };
+    state.difference = float((first.value() - first.sharp) / a - (second.value() - second.sharp) / b);
+    state.noise_difference = float(noise(control[0]) / a - noise(control[1]) / b);
+  }
+
   template <class Body>
-  void with_light(std::size_t pixel, const Body& body) {
+  void with_light(std::size_t pixel, SparseCaustics& sparse, const Body& body) {
     if (!options_.diffuse_light) return body(nullptr);
-    const PixelLight light(*options_.diffuse_light, pixels_[pixel].memory, scene_size_);
+    const PixelLight light(*options_.diffuse_light, pixels_[pixel].memory, sparse, scene_size_);
     body(&light);
   }
 

@@ -10,9 +10,10 @@ constexpr std::uint32_t kMirrorsInARow = 16;
 
 }  // namespace
 
-DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool) const {
+DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool, const Rgb* caustic) const {
   Irradiance result;
-  if (photons_) result.caustic = photons_->caustic(surface.position, geometric);
+  if (caustic) result.caustic = *caustic;
+  else if (photons_) result.caustic = photons_->caustic(surface.position, geometric, result.sparse_radius);
   const RecordStore::Interpolated found = records_.interpolate(surface.position, shading);
   if (found.weight > 0) {
     result.indirect = found.irradiance;

@@ -21,7 +21,7 @@ class CacheLight : public DiffuseLight {
   CacheLight(const RecordStore& records, std::function<const FinalGather*()> gather, const PhotonLight* photons)
       : records_(records), make_gather_(std::move(gather)), photons_(photons) {}
 
-  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const override;
+  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view, const Rgb* caustic) const override;
   std::uint64_t gathered_on_the_spot() const { return missing_.load(); }
 
  private:

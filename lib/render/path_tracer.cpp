@@ -157,7 +157,7 @@ Layers trace_eye_path(const RenderScene& scene, const EyeRay& eye, const PixelRa
       add_sampled_light(scene, x, throughput, path, inside, random, bounce, !ends_here, result, counts);
     if (ends_here) {
       const bool seen_directly = path.layer() == Layer::emission;
-      const DiffuseLight::Irradiance e = diffuse_light->at(point, x.normal_geometric, x.normal, seen_directly);
+      const DiffuseLight::Irradiance e = diffuse_light->at(point, x.normal_geometric, x.normal, seen_directly, nullptr);
       ++counts.lookups;
       // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
       const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi;

@@ -92,11 +92,12 @@ class DiffuseLight {
  public:
   struct Irradiance {
     Rgb caustic{0.0f}, indirect{0.0f};
+    float sparse_radius = 0;  ///< m: over which caustic light is averaged, where photons are few; else 0
   };
   virtual ~DiffuseLight() = default;
   /// Light arriving at the point; both normals are unit and on the side seen. `direct_view`: the camera ray itself met it,
-  /// no mirror, glass or gloss sent the path there. Thread-safe.
-  virtual Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const = 0;
+  /// no mirror, glass or gloss sent the path there. `caustic`: if not null, known already. Thread-safe.
+  virtual Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view, const Rgb* caustic) const = 0;
 };
 
 /// Samples of the large lights (Lights::has_large) at the ends of eye paths, shadows left out, less what they are in the mean,

@@ -28,8 +28,9 @@ class PhotonLight : public DiffuseLight {
   PhotonLight(const Tracer& tracer, std::span<const formats::Photon> photons, Vec3d photon_shift,
               const PhotonLightOptions& options);
 
-  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const override;
-  Rgb caustic(Vec3 position, Vec3 normal) const;
+  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view, const Rgb* caustic) const override;
+  /// sparse_radius: m, of the estimate if it holds fewer photons than wanted, or none; else 0.
+  Rgb caustic(Vec3 position, Vec3 normal, float& sparse_radius) const;
   std::size_t photon_count() const { return (caustic_ ? caustic_->photon_count() : 0) + indirect_.size(); }
 
  private:
@@ -38,6 +39,7 @@ class PhotonLight : public DiffuseLight {
   std::unique_ptr<PointDensity> caustic_;   ///< null: no photon is of that kind
   PhotonIndex indirect_;
   IrradianceOptions options_;
+  float caustic_radius_ = 0;                ///< m, at most
 };
 
 }  // namespace tempolux

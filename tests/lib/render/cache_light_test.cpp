@@ -218,7 +218,7 @@ TEST(CacheLight, MissingRecordsAreGatheredAndCounted) {
   const CacheLight light(chain.store, [&] { ++asked; return &chain.gather; }, nullptr);
   const auto seen = chain.surface_at({0.3f, -1, 0.2f}, {0, 1, 0}, 0.01f);
   ASSERT_TRUE(seen);
-  const auto first = light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true), second = light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true);
+  const auto first = light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true, nullptr), second = light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true, nullptr);
   EXPECT_EQ(asked, 1);
   EXPECT_EQ(light.gathered_on_the_spot(), 2u);
   EXPECT_EQ(first.indirect, second.indirect);
@@ -228,12 +228,12 @@ TEST(CacheLight, MissingRecordsAreGatheredAndCounted) {
   EXPECT_EQ(record.irradiance, first.indirect);
   record.radius = 0.1f;
   chain.store.add(record);
-  EXPECT_EQ(light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true).indirect, record.irradiance);
+  EXPECT_EQ(light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true, nullptr).indirect, record.irradiance);
   EXPECT_EQ(light.gathered_on_the_spot(), 2u);
 
   const RecordStore none(chain.frame.bounds);
   const CacheLight dark(none, [] { return nullptr; }, nullptr);
-  EXPECT_EQ(dark.at(seen->first, {0, 1, 0}, {0, 1, 0}, true).indirect, Rgb(0.0f));
+  EXPECT_EQ(dark.at(seen->first, {0, 1, 0}, {0, 1, 0}, true, nullptr).indirect, Rgb(0.0f));
   EXPECT_EQ(dark.gathered_on_the_spot(), 1u);
 }
 

@@ -50,13 +50,14 @@ TEST(CausticLight, IsRightOnAPostThinnerThanTheDisc) {
     PhotonLightOptions options;
     options.caustic_radius = 0.3f;
     const PhotonLight light(tracer, trace(tracer, lights, 40000, seed), {}, options);
+    float radius;
     for (int i = 0; i < 100; ++i) {
       const float y = (float(i) + 0.5f) / 100, z = kHalf * (float(i * 37 % 100) / 50 - 0.99f);
       const double d2 = 4.0 + double((4 - y) * (4 - y) + z * z), d = std::sqrt(d2);
       expected += pane_transmittance(double(4 - y) / d) * 2 / d / d2;
-      found += double(light.caustic({kNear, y, z}, {-1, 0, 0}).g);
+      found += double(light.caustic({kNear, y, z}, {-1, 0, 0}, radius).g);
     }
-    for (float z : {-0.04f, 0.0f, 0.04f}) EXPECT_EQ(light.caustic({kFar, 0.5f, z}, {1, 0, 0}).g, 0) << "the far face is dark";
+    for (float z : {-0.04f, 0.0f, 0.04f}) EXPECT_EQ(light.caustic({kFar, 0.5f, z}, {1, 0, 0}, radius).g, 0) << "the far face is dark";
   }
   EXPECT_NEAR(found / expected, 1, 0.06);
 }
@@ -93,7 +94,7 @@ TEST(CausticLight, ASampledEstimateHasTheMeanOfTheWhole) {
       const Vec3 at{0.1f * (float(step) + (float(i) + 0.5f) / 40), 0.02f * float(step), -0.4f + 0.02f * float(i)};
       float radius;
       all += double(density.estimate({at, {0, 1, 0}}, PathRandom(seed, std::uint64_t(i)), radius).g);
-      sampled += double(density.estimate_sampled(at, {0, 1, 0}, PathRandom(seed, std::uint64_t(i))).g);
+      sampled += double(density.estimate_sampled(at, {0, 1, 0}, PathRandom(seed, std::uint64_t(i)), radius).g);
     }
   }
   EXPECT_NEAR(all / 8000, 1, 0.04);
@@ -126,7 +127,8 @@ TEST(CausticLight, IsUnbiasedForIndependentAndForEvenlySpreadPhotons) {
       const PointDensity density(tracer, photons, {.neighbours = 30, .max_radius = 0.2f, .area_probes = 32});
       for (std::uint32_t i = 0; i < 5000; ++i) {
         const Vec2 u = random.get2(kPhotons + i, Purpose::test);
-        sum += double(density.estimate_sampled({1.6f * u.x - 0.8f, 0, 1.6f * u.y - 0.8f}, {0, 1, 0}, PathRandom(seed, i)).g);
+        float radius;
+        sum += double(density.estimate_sampled({1.6f * u.x - 0.8f, 0, 1.6f * u.y - 0.8f}, {0, 1, 0}, PathRandom(seed, i), radius).g);
       }
     }
     EXPECT_NEAR(sum / 20000, 1, even ? 0.01 : 0.018) << (even ? "even" : "independent");
@@ -142,8 +144,9 @@ TEST(CausticLight, IsNothingWithoutItsPhotons) {
   PhotonLightOptions options;
   options.caustic_only = true;
   const PhotonLight light(tracer, photons, {}, options);
+  float radius;
   EXPECT_EQ(light.photon_count(), 0u);
-  EXPECT_EQ(light.caustic({0, 0, 0}, {0, 1, 0}).g, 0);
+  EXPECT_EQ(light.caustic({0, 0, 0}, {0, 1, 0}, radius).g, 0);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "formats/error.h"
@@ -93,7 +94,7 @@ TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
 
 /// Direct light alone.
 struct NoLight : DiffuseLight {
-  Irradiance at(const SurfacePoint&, Vec3, Vec3, bool) const override { return {}; }
+  Irradiance at(const SurfacePoint&, Vec3, Vec3, bool, const Rgb*) const override { return {}; }
 };
 
 /// Extra samples go where neighbours are uncertain; a pixel's own luck must not decide. Direct light of the pixels
@@ -153,7 +154,7 @@ TEST(FrameRenderer, ExtraSamplesReuseOnlyWhatTheCameraRayMeets) {
   const Tracer tracer(frame);
   const Lights lights(frame, build_emission_table({&frame, 1}));
   struct SecondAlone : DiffuseLight {
-    Irradiance at(const SurfacePoint& surface, Vec3, Vec3, bool) const override {
+    Irradiance at(const SurfacePoint& surface, Vec3, Vec3, bool, const Rgb*) const override {
       return {Rgb(0.0f), Rgb(surface.position.z < -0.5f ? 1.0f : 0.0f)};
     }
   } light;
@@ -170,6 +171,49 @@ TEST(FrameRenderer, ExtraSamplesReuseOnlyWhatTheCameraRayMeets) {
     return sum;
   };
   EXPECT_NEAR(specular_of(2, 0.005) / specular_of(256, 0), 1, 0.05);
+}
+
+/// Caustic irradiance x [m] on a floor of two meshes, 64 x 36 pixels of 1/32 m. Where photons are few (sparse_radius 1 m) an
+/// answer may be taken from an eighth of that, four pixels, away: no pixel is farther off than that and its own half, most are
+/// not asked for. Where they are not each pixel is asked for and right to its half. Neither takes an answer from beyond the
+/// seam at x = 0, where the other mesh gives -x.
+TEST(FrameRenderer, SparseCausticLightIsTakenFromNearbyOnly) {
+  test::HandMadeScene made;
+  made.add_quad({-2, -2, 0}, {0, -2, 0}, {0, 2, 0}, {-2, 2, 0}, test::matte(Rgb(1.0f)));
+  made.add_quad({0, -2, 0}, {2, -2, 0}, {2, 2, 0}, {0, 2, 0}, test::matte(Rgb(1.0f)));
+  const SceneFrame& frame = made.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  struct Slope : DiffuseLight {
+    float sparse_radius = 0;
+    mutable std::atomic<int> asked = 0;
+    Irradiance at(const SurfacePoint& surface, Vec3, Vec3, bool, const Rgb* caustic) const override {
+      if (caustic) return {*caustic, Rgb(0.0f)};
+      ++asked;
+      return {Rgb(std::abs(surface.position.x)), Rgb(0.0f), sparse_radius};
+    }
+  } light;
+  PlacedCamera camera;
+  camera.camera.kind = Camera::Kind::orthographic;
+  camera.camera.ymag_m = 0.5625f;
+  camera.scene_from_camera.translation = {0, 0, 1};
+  const CameraView view(camera, {}, 64, 36);
+  FrameOptions options;
+  options.diffuse_light = &light;
+  options.samples = 2;
+  options.pixel_error = 1;
+  for (const float radius : {0.0f, 1.0f}) {
+    light.sparse_radius = radius;
+    light.asked = 0;
+    const RenderedFrame rendered = render_frame({tracer, lights}, view, options);
+    for (int y = 0; y < 36; ++y)
+      for (int x = 0; x < 64; ++x) {
+        const float expected = std::abs((float(x) + 0.5f) / 32 - 1);
+        EXPECT_NEAR(rendered.mean.pixels[std::size_t(y * 64 + x)][Layer::caustic].g * kPi, expected, radius / 8 + 0.5f / 32 + 1e-5f);
+      }
+    if (radius > 0) EXPECT_LT(light.asked, 64 * 36 / 4);
+    else EXPECT_EQ(light.asked, 64 * 36);
+  }
 }
 
 /// Where all of a large light is seen its noise is taken out. Four samples of the lamp by solid angle leave a pixel of the box
