@@ -10,15 +10,15 @@ constexpr std::uint32_t kMirrorsInARow = 16;
 
 }  // namespace
 
-DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool, const Rgb* caustic) const {
+DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view,
+                                        const Rgb* caustic) const {
   Irradiance result;
   if (caustic) result.caustic = *caustic;
   else if (photons_) result.caustic = photons_->caustic(surface.position, geometric, result.sparse_radius);
-  const RecordStore::Interpolated found = records_.interpolate(surface.position, shading);
+  RecordStore::Interpolated found = records_.interpolate(surface.position, shading);
+  if (!(found.weight > 0) && direct_view) found = records_.interpolate_relaxed(surface.position, shading);
   if (found.weight > 0) {
     result.indirect = found.irradiance;
-  } else if (const auto near = records_.interpolate_relaxed(surface.position, shading); near.weight > 0) {
-    result.indirect = near.irradiance;
   } else {
     missing_.fetch_add(1, std::memory_order_relaxed);
     std::call_once(gather_made_, [&] { run_isolated([&] { gather_ = make_gather_(); }); });

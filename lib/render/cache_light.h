@@ -13,7 +13,9 @@
 namespace tempolux {
 
 /// Indirect irradiance interpolated between records; where none is near it is gathered on the spot, which is
-/// slow, exact and counted. Caustic irradiance is that of `photons`, if given.
+/// slow, exact and counted. Where a place is seen directly, records with larger radii are tried before: one of the pixel's
+/// own is a fraction of a pixel away. Through glass and gloss places are seen that nobody looked at when records were
+/// placed, and what is near them need not be theirs: inside a ball of glass it was the ground below. Caustic irradiance is that of `photons`, if given.
 class CacheLight : public DiffuseLight {
  public:
   /// `gather` is asked for once, when it is first needed; it may take its time and run parallel loops. It may

@@ -237,5 +237,26 @@ TEST(CacheLight, MissingRecordsAreGatheredAndCounted) {
   EXPECT_EQ(dark.gathered_on_the_spot(), 1u);
 }
 
+/// A record whose radius ends short of a place speaks for it where it is seen directly: it is of the same pixel or the next.
+/// Through glass or gloss it may be anything, the ground under a ball of glass for what is inside, and is not asked.
+TEST(CacheLight, RecordsThatEndShortCountInDirectViewOnly) {
+  test::ClosedBox box(Shape::cube, 0.5f);
+  Chain chain(box.scene, 20000, 2000, 300);
+  const CacheLight light(chain.store, [&] { return &chain.gather; }, nullptr);
+  const auto seen = chain.surface_at({0.3f, -1, 0.2f}, {0, 1, 0}, 0.01f), beside = chain.surface_at({0.1f, -1, 0.2f}, {0, 1, 0}, 0.01f);
+  ASSERT_TRUE(seen && beside);
+  GatherCounts counts;
+  const Rgb own = chain.gather.gather(seen->first, {0, 1, 0}, counts).irradiance;
+  IrradianceRecord other = chain.gather.gather(beside->first, {0, 1, 0}, counts);
+  other.irradiance = Rgb(1000.0f);
+  other.translational = {};
+  other.radius = 0.1f;   // 0.2 away
+  chain.store.add(other);
+  EXPECT_NEAR(light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true, nullptr).indirect.g, 1000, 1e-3f);
+  EXPECT_EQ(light.gathered_on_the_spot(), 0u);
+  EXPECT_EQ(light.at(seen->first, {0, 1, 0}, {0, 1, 0}, false, nullptr).indirect, own);
+  EXPECT_EQ(light.gathered_on_the_spot(), 1u);
+}
+
 }  // namespace
 }  // namespace tempolux
