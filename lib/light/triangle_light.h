@@ -8,8 +8,8 @@
 
 namespace tempolux {
 
-/// What textures and alpha leave of the emission of a surface's material in the mean, by triangle: the same at all frames
-/// at which the material's alpha is.
+/// What textures and alpha leave of the emission of a surface's material in the mean, by triangle: the same at all
+/// frames at which the material's alpha is.
 struct EmissionShares {
   float alpha = 1;
   std::vector<Rgb> of;  ///< mean_emission_share; empty where nothing varies: all are 1

@@ -5,6 +5,7 @@
 
 #include "lib/scene/gltf_check.h"
 #include "lib/scene/gltf_deform.h"
+#include "lib/scene/tangents.h"
 
 namespace tempolux::gltf {
 namespace {
@@ -39,15 +40,6 @@ bool has_area(const std::vector<Vec3>& positions, const Triangle& t) {
   return length2(cross(b - a, c - a)) > 0;
 }
 
-template <class T>
-std::vector<T> pick(const std::vector<T>& values, const std::vector<std::uint32_t>& used) {
-  std::vector<T> picked;
-  if (values.empty()) return picked;
-  picked.reserve(used.size());
-  for (const std::uint32_t i : used) picked.push_back(values[i]);
-  return picked;
-}
-
 /// Exporters may put many primitives on one shared vertex accessor: keep the vertices that are used.
 void drop_unused_vertices(Primitive& primitive) {
   std::vector<std::uint32_t> new_index(primitive.positions.size(), 0), used;
@@ -59,22 +51,7 @@ void drop_unused_vertices(Primitive& primitive) {
       used.push_back(i);
     }
   if (used.size() == new_index.size()) return;
-  primitive.positions = pick(primitive.positions, used);
-  primitive.normals = pick(primitive.normals, used);
-  primitive.uvs = pick(primitive.uvs, used);
-  primitive.uvs1 = pick(primitive.uvs1, used);
-  primitive.tangents = pick(primitive.tangents, used);
-  primitive.tangent_sides = pick(primitive.tangent_sides, used);
-  for (MorphTarget& target : primitive.targets) {
-    target.positions = pick(target.positions, used);
-    target.normals = pick(target.normals, used);
-    target.tangents = pick(target.tangents, used);
-  }
-  const std::size_t n = primitive.influences_per_vertex;
-  for (std::size_t v = 0; v < used.size() && n > 0; ++v)  // `used` rises: nothing is overwritten before it is read
-    std::copy_n(primitive.influences.begin() + std::ptrdiff_t(used[v] * n), n,
-                primitive.influences.begin() + std::ptrdiff_t(v * n));
-  primitive.influences.resize(used.size() * n);
+  take_vertices(primitive, used);
   for (Triangle& t : primitive.triangles)
     for (std::uint32_t& i : t) i = new_index[i];
 }
@@ -111,14 +88,14 @@ void read_normals(Import& import, int accessor, const std::string& place, Primit
 }
 
 /// Tangents follow the coordinates as the file has them. A texture transform that turns or mirrors the map leaves them
-/// wrong: then the coordinates say where it lies.
+/// wrong: then they are made as where there are none.
 bool keeps_axes(const Texture& texture) {
   const auto& m = texture.transform;
   return m[0] > 0 && m[4] > 0 && m[1] == 0 && m[3] == 0;
 }
 
 /// glTF 2.0, 3.7.2.1: a unit vector and the side of the third axis. Only where a normal map reads them; without normals
-/// they do not count.
+/// they do not count. Where they are left out make_tangents has the word.
 void read_tangents(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
   const auto found = source.attributes.find("TANGENT");
   const Material& material = import.scene.materials[primitive.material];
@@ -131,7 +108,7 @@ void read_tangents(Import& import, const tinygltf::Primitive& source, const std:
   for (std::size_t v = 0; v < count; ++v) {
     const Vec3d unit = normalize(Vec3d{numbers[4 * v], numbers[4 * v + 1], numbers[4 * v + 2]});
     if (length2(unit) == 0) {
-      import.ignore("tangents of zero length (normal maps follow the texture coordinates there)");
+      import.ignore("tangents of zero length (theirs are made from the texture coordinates)");
       primitive.tangents.clear(), primitive.tangent_sides.clear();
       return;
     }
@@ -196,6 +173,11 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
   read_influences(import, source, place, primitive);
   note_ignored(import, source);
   drop_unused_vertices(primitive);
+  const Material& material = import.scene.materials[primitive.material];
+  if (primitive.tangents.empty() && material.textures && material.textures->normal) {
+    make_tangents(primitive, material.textures->normal);
+    import.take_memory(primitive.tangents.size() * (sizeof(Vec3) * (1 + primitive.targets.size()) + sizeof(float)), place);
+  }
   return primitive;
 }
 

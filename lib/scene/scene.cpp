@@ -6,6 +6,34 @@
 #include "formats/error.h"
 
 namespace tempolux {
+namespace {
+
+template <class T>
+void take(std::vector<T>& values, const std::vector<std::uint32_t>& sources, std::size_t per_vertex = 1) {
+  if (values.empty()) return;
+  std::vector<T> taken;
+  taken.reserve(sources.size() * per_vertex);
+  for (const std::uint32_t i : sources)
+    for (std::size_t k = 0; k < per_vertex; ++k) taken.push_back(values[i * per_vertex + k]);
+  values = std::move(taken);
+}
+
+}  // namespace
+
+void take_vertices(Primitive& primitive, const std::vector<std::uint32_t>& sources) {
+  take(primitive.positions, sources);
+  take(primitive.normals, sources);
+  take(primitive.uvs, sources);
+  take(primitive.uvs1, sources);
+  take(primitive.tangents, sources);
+  take(primitive.tangent_sides, sources);
+  take(primitive.influences, sources, primitive.influences_per_vertex);
+  for (MorphTarget& target : primitive.targets) {
+    take(target.positions, sources);
+    take(target.normals, sources);
+    take(target.tangents, sources);
+  }
+}
 
 int Scene::camera_node(const std::string& name) const {
   int first = -1;

@@ -108,6 +108,9 @@ struct Primitive {
   std::size_t influences_per_vertex = 0;                    ///< 0: a skin does not move it
 };
 
+/// Gives the primitive other vertices: copies of its own by number, in this order. Its triangles stay as they are.
+void take_vertices(Primitive& primitive, const std::vector<std::uint32_t>& sources);
+
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;      ///< all with the same number of morph targets

@@ -112,8 +112,10 @@ float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t 
   const Material& material = frame.materials[frame.surfaces[surface].material];
   if (!lets_rays_pass(material)) return 1;
   float alpha = 1;
-  if (material.textures && material.textures->base_color)
-    alpha = TextureSpot(frame, surface, triangle, u, v, 0).read(material.textures->base_color, base_color_transfer(material))[3];
+  if (material.textures && material.textures->base_color) {
+    const TextureSpot spot(frame, surface, triangle, u, v, 0);
+    alpha = spot.read(material.textures->base_color, base_color_transfer(material))[3];
+  }
   return coverage(material, alpha);
 }
 

@@ -59,8 +59,8 @@ bool emission_varies(const Material& material);
 /// Radiance that the material emits at a point [glTF nits].
 Rgb emission_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v, float width);
 
-/// Share of rays that meet the surface at a point, by the finest level of the texture: 1 for opaque materials, alpha for
-/// BLEND, 1 or 0 for MASK.
+/// Share of rays that meet the surface at a point, by the finest level of the texture: 1 for opaque materials, alpha
+/// for BLEND, 1 or 0 for MASK.
 float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v);
 /// The same of a material that lets rays pass, where the alpha of its texture is `texel` (1: none).
 inline float coverage(const Material& material, float texel) {
@@ -73,10 +73,10 @@ bool lets_rays_pass(const Material& material);
 /// How its base colour's texture is to be read.
 TextureTransfer base_color_transfer(const Material& material);
 
-/// Mean over a triangle of emission times coverage, as a share of the material's emission (1 where neither varies): 0 only
-/// if it is 0 everywhere, at least 0.01 elsewhere (so that nothing that emits is chosen too rarely). The triangle is cut
-/// into as many like it as are about a texel large, 4 to 64, each read in its middle, over its size. Depends on neither
-/// the material's emission nor the shape of the surface.
+/// Mean over a triangle of emission times coverage, as a share of the material's emission (1 where neither varies): 0
+/// only if it is 0 everywhere, at least 0.01 elsewhere (so that nothing that emits is chosen too rarely). The triangle
+/// is cut into as many like it as are about a texel large, 4 to 64, each read in its middle, over its size. Depends on
+/// neither the material's emission nor the shape of the surface.
 Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle);
 
 }  // namespace tempolux

@@ -1,0 +1,242 @@
+#include "lib/scene/tangents.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <unordered_map>
+
+#include "lib/scene/texture_lookup.h"
+
+namespace tempolux {
+namespace {
+
+using Corner = std::uint32_t;  // 3 x triangle + 0, 1 or 2
+
+Corner next(Corner c) { return c % 3 == 2 ? c - 2 : c + 1; }
+Corner previous(Corner c) { return c % 3 == 0 ? c + 2 : c - 1; }
+
+/// What of a corner must be equal for it to be the same vertex as another.
+struct VertexKey {
+  std::array<float, 8> values;  // + 0.0f: -0 is 0
+  VertexKey(Vec3 p, Vec3 n, Vec2 uv)
+      : values{p.x + 0.0f, p.y + 0.0f, p.z + 0.0f, n.x + 0.0f, n.y + 0.0f, n.z + 0.0f, uv.x + 0.0f, uv.y + 0.0f} {}
+  bool operator==(const VertexKey&) const = default;
+};
+struct KeyHash {
+  std::size_t operator()(const VertexKey& key) const {
+    std::uint64_t hash = 0;
+    for (const float value : key.values) {
+      hash = (hash ^ std::bit_cast<std::uint32_t>(value)) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 29;
+    }
+    return hash;
+  }
+};
+
+/// The part of v across the unit vector n, unit; zero if there is none.
+Vec3d across(Vec3d v, Vec3d n) { return normalize(v - n * dot(n, v)); }
+
+/// Differences of coordinates from corner 0 to 1 and 2.
+struct Gradient {
+  double v1, v2, area;  // area: twice, positive if u and v turn as the corners do
+  explicit Gradient(const std::array<Vec2, 3>& at) : v1(double(at[1].y) - at[0].y), v2(double(at[2].y) - at[0].y) {
+    area = (double(at[1].x) - at[0].x) * v2 - (double(at[2].x) - at[0].x) * v1;
+  }
+  /// The direction in which u grows, times |area|; edges: to corners 1 and 2.
+  Vec3d along_u(Vec3d edge1, Vec3d edge2) const { return (edge1 * v2 - edge2 * v1) * (area < 0 ? -1.0 : 1.0); }
+};
+
+/// Which corners share a tangent. Depends on the shape at rest alone.
+class TangentGroups {
+ public:
+  TangentGroups(const Primitive& primitive, const Texture& normal_map)
+      : primitive_(primitive), normal_map_(normal_map), group_(3 * primitive.triangles.size(), kNone) {
+    join_vertices();
+    measure();
+    join_edges();
+    for (Corner c = 0; c < group_.size(); ++c)
+      if (speaks_[c / 3] && group_[c] == kNone) grow(c);
+    lend();
+  }
+
+  std::size_t count() const { return side_.size(); }
+  std::uint32_t group(Corner c) const { return group_[c]; }
+  float side(std::uint32_t group) const { return side_[group]; }
+  /// Unit tangents by group of the same triangles in another shape: with these positions and normals by vertex.
+  std::vector<Vec3> tangents(const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) const;
+
+ private:
+  std::uint32_t vertex(Corner c) const { return primitive_.triangles[c / 3][c % 3]; }
+  std::array<Vec2, 3> coordinates(std::size_t triangle) const {
+    return corner_coordinates(primitive_, primitive_.triangles[triangle], normal_map_);
+  }
+  void join_vertices();
+  void measure();
+  void join_edges();
+  void grow(Corner first);
+  void lend();
+
+  const Primitive& primitive_;
+  const Texture& normal_map_;
+  std::vector<std::uint32_t> joined_;   // by vertex: the first that is equal to it
+  std::vector<bool> speaks_;            // by triangle: has corners and coordinates that are apart
+  std::vector<std::int8_t> turns_;      // by triangle: +1 (-1) u and v turn as (against) the corners; 0: not known
+  std::vector<std::uint32_t> across_;   // by corner: of the edge to the next the corner beyond it, or kNone
+  std::vector<std::uint32_t> group_;    // by corner
+  std::vector<float> side_;             // by group
+};
+
+void TangentGroups::join_vertices() {
+  const std::vector<Vec2>& uvs = texture_coordinates(primitive_, normal_map_.uv_set);
+  std::unordered_map<VertexKey, std::uint32_t, KeyHash> first;
+  first.reserve(primitive_.positions.size());
+  for (std::uint32_t v = 0; v < primitive_.positions.size(); ++v)
+    joined_.push_back(first.try_emplace({primitive_.positions[v], primitive_.normals[v], uvs[v]}, v).first->second);
+}
+
+void TangentGroups::measure() {
+  for (std::size_t t = 0; t < primitive_.triangles.size(); ++t) {
+    const auto& c = primitive_.triangles[t];
+    const auto& p = primitive_.positions;
+    const bool collapsed = p[c[0]] == p[c[1]] || p[c[1]] == p[c[2]] || p[c[2]] == p[c[0]];
+    const double area = collapsed ? 0 : Gradient(coordinates(t)).area;
+    turns_.push_back(area > 0 ? 1 : area < 0 ? -1 : 0);
+    speaks_.push_back(area != 0);
+  }
+}
+
+/// Two triangles share an edge if they run along it in opposite directions.
+void TangentGroups::join_edges() {
+  struct Edge {
+    std::uint32_t low, high;
+    Corner corner;
+  };
+  std::vector<Edge> edges;
+  edges.reserve(group_.size());
+  for (Corner c = 0; c < group_.size(); ++c) {
+    const std::uint32_t a = joined_[vertex(c)], b = joined_[vertex(next(c))];
+    edges.push_back({std::min(a, b), std::max(a, b), c});
+  }
+  std::sort(edges.begin(), edges.end(), [](const Edge& x, const Edge& y) {
+    return std::tie(x.low, x.high, x.corner) < std::tie(y.low, y.high, y.corner);
+  });
+  across_.assign(group_.size(), kNone);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto starts_low = [&](const Edge& e) { return joined_[vertex(e.corner)] == e.low; };
+    if (across_[edges[i].corner] != kNone) continue;
+    for (std::size_t j = i + 1; j < edges.size() && edges[j].low == edges[i].low && edges[j].high == edges[i].high; ++j)
+      if (across_[edges[j].corner] == kNone && starts_low(edges[j]) != starts_low(edges[i])) {
+        across_[edges[i].corner] = edges[j].corner;
+        across_[edges[j].corner] = edges[i].corner;
+        break;
+      }
+  }
+}
+
+/// A new group from a corner over all edges at its vertex.
+void TangentGroups::grow(Corner first) {
+  const auto group = std::uint32_t(side_.size());
+  const std::int8_t turns = turns_[first / 3];
+  side_.push_back(turns > 0 ? -1.0f : 1.0f);
+  std::vector<Corner> open{first};
+  while (!open.empty()) {
+    const Corner c = open.back();
+    open.pop_back();
+    std::int8_t& here = turns_[c / 3];
+    if (here == 0) here = turns;  // what does not speak sides with whom it meets first
+    if (group_[c] != kNone || here != turns) continue;
+    group_[c] = group;
+    // Over the edge before this corner the other triangle's corner here starts the edge; over the one after it ends it.
+    if (const Corner over = across_[previous(c)]; over != kNone) open.push_back(over);
+    if (const Corner over = across_[c]; over != kNone) open.push_back(next(over));
+  }
+}
+
+/// Corners of triangles that do not speak and no one reached take the first tangent of their vertex.
+void TangentGroups::lend() {
+  std::vector<std::uint32_t> lender(joined_.size(), kNone);
+  for (Corner c = 0; c < group_.size(); ++c)
+    if (std::uint32_t& group = lender[joined_[vertex(c)]]; group == kNone) group = group_[c];
+  for (Corner c = 0; c < group_.size(); ++c)
+    if (group_[c] == kNone) group_[c] = lender[joined_[vertex(c)]];
+}
+
+std::vector<Vec3> TangentGroups::tangents(const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) const {
+  std::vector<Vec3d> sums(count(), Vec3d{});
+  for (std::size_t t = 0; t < primitive_.triangles.size(); ++t) {
+    if (!speaks_[t]) continue;
+    const auto& corners = primitive_.triangles[t];
+    const Vec3d p[] = {Vec3d(positions[corners[0]]), Vec3d(positions[corners[1]]), Vec3d(positions[corners[2]])};
+    const Vec3d along_u = Gradient(coordinates(t)).along_u(p[1] - p[0], p[2] - p[0]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3d normal(normals[corners[c]]);
+      const Vec3d before = across(p[(c + 2) % 3] - p[c], normal), after = across(p[(c + 1) % 3] - p[c], normal);
+      sums[group_[3 * t + c]] += across(along_u, normal) * std::acos(std::clamp(dot(before, after), -1.0, 1.0));
+    }
+  }
+  std::vector<Vec3> unit;
+  for (const Vec3d& sum : sums) unit.push_back(Vec3(normalize(sum)));
+  return unit;
+}
+
+/// What a morph target adds to the tangents of groups and of no group; empty: nothing.
+std::vector<Vec3> added_by(const MorphTarget& target, const Primitive& primitive, const TangentGroups& groups,
+                           const std::vector<Vec3>& at_rest) {
+  if (target.positions.empty() && target.normals.empty()) return {};
+  std::vector<Vec3> positions = primitive.positions, normals = primitive.normals;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (!target.positions.empty()) positions[v] = positions[v] + target.positions[v];
+    if (!target.normals.empty())
+      if (const Vec3 n = normalize(normals[v] + target.normals[v]); length2(n) > 0.5f) normals[v] = n;
+  }
+  std::vector<Vec3> added = groups.tangents(positions, normals);
+  for (std::size_t g = 0; g < added.size(); ++g) added[g] = added[g] - at_rest[g];
+  added.push_back({});
+  return added;
+}
+
+}  // namespace
+
+void make_tangents(Primitive& primitive, const Texture& normal_map) {
+  if (primitive.normals.empty() || texture_coordinates(primitive, normal_map.uv_set).empty()) return;
+  const TangentGroups groups(primitive, normal_map);
+  std::vector<Vec3> at_rest = groups.tangents(primitive.positions, primitive.normals);
+  at_rest.push_back({});  // of no group
+  std::vector<std::vector<Vec3>> added;
+  for (const MorphTarget& target : primitive.targets) added.push_back(added_by(target, primitive, groups, at_rest));
+
+  // Each vertex for its first group; for others copies of it, one behind the other.
+  constexpr std::uint32_t kNew = kNone - 1;
+  std::vector<std::uint32_t> sources(primitive.positions.size());
+  std::iota(sources.begin(), sources.end(), 0u);
+  std::vector<std::uint32_t> group(sources.size(), kNew), copy(sources.size(), kNone);
+  auto triangles = primitive.triangles;
+  for (Corner c = 0; c < 3 * triangles.size(); ++c) {
+    std::uint32_t v = triangles[c / 3][c % 3];
+    const std::uint32_t source = v, wanted = groups.group(c);
+    while (group[v] != wanted && group[v] != kNew) {
+      if (copy[v] == kNone) {
+        copy[v] = std::uint32_t(sources.size());
+        sources.push_back(source);
+        group.push_back(kNew);
+        copy.push_back(kNone);
+      }
+      v = copy[v];
+    }
+    group[v] = wanted;
+    triangles[c / 3][c % 3] = v;
+  }
+  if (sources.size() > primitive.positions.size()) take_vertices(primitive, sources);
+  primitive.triangles = std::move(triangles);
+  const auto number = [&](std::uint32_t v) { return group[v] < groups.count() ? group[v] : groups.count(); };
+  for (std::uint32_t v = 0; v < sources.size(); ++v) {
+    primitive.tangents.push_back(at_rest[number(v)]);
+    primitive.tangent_sides.push_back(group[v] < groups.count() ? groups.side(group[v]) : 1.0f);
+    for (std::size_t t = 0; t < added.size(); ++t)
+      if (!added[t].empty()) primitive.targets[t].tangents.push_back(added[t][number(v)]);
+  }
+}
+
+}  // namespace tempolux
