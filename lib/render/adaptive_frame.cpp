@@ -92,7 +92,7 @@ class AdaptiveFrame {
   template <class Body>
   void with_light(std::size_t pixel, SparseCaustics& sparse, const Body& body) {
     if (!options_.diffuse_light) return body(nullptr);
-    const PixelLight light(*options_.diffuse_light, pixels_[pixel].memory, sparse, scene_size_);
+    const PixelLight light(*options_.diffuse_light, pixels_[pixel].memory, sparse, view_, scene_size_);
     body(&light);
   }
 

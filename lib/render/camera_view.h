@@ -33,6 +33,9 @@ class CameraView {
     return float(camera_.camera.kind == Camera::Kind::perspective ? at_one * double(distance) : at_one);
   }
 
+  /// Where the camera is, scene space.
+  Vec3 eye() const { return Vec3(camera_.scene_from_camera.translation); }
+
   /// What a pixel's ray stands for, for textures.
   RayCone cone() const {
     return camera_.camera.kind == Camera::Kind::perspective ? RayCone{0, pixel_size(1)} : RayCone{pixel_size(0), 0};

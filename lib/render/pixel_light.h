@@ -1,9 +1,11 @@
 // lib/render/pixel_light.h -- caustic and indirect light asked for once where a pixel's samples, or a tile's, would hear the same.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
+#include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
 
 namespace tempolux {
@@ -43,8 +45,8 @@ class SparseCaustics {
 
 /// A pixel's first sample on a surface asks for caustic and indirect light, later ones that meet it there with about the
 /// same normal take its answer: that light is smooth, the first sample's place is random, and the others are there for the
-/// direct light. What is seen in a mirror or gloss may be far away on the same surface: there answers hold for a few
-/// centimetres only (of a hall; kNearby).
+/// direct light. What is seen in a mirror or gloss may be far away on the same surface: there answers hold for kPixels
+/// pixels, as large as the camera would see them there without the mirror, and for a few centimetres (of a hall; kNearby).
 class PixelLight : public DiffuseLight {
  public:
   struct Answer {
@@ -53,8 +55,9 @@ class PixelLight : public DiffuseLight {
     Irradiance irradiance;
   };
   using Memory = std::array<Answer, 2>;   ///< of the pixel; surfaces beyond are asked for each time
-  PixelLight(const DiffuseLight& light, Memory& memory, SparseCaustics& sparse, float scene_size)
-      : light_(light), memory_(memory), sparse_(sparse), nearby2_(kNearby * scene_size * kNearby * scene_size) {}
+  PixelLight(const DiffuseLight& light, Memory& memory, SparseCaustics& sparse, const CameraView& view, float scene_size)
+      : light_(light), memory_(memory), sparse_(sparse), eye_(view.eye()), cone_(view.cone()),
+        nearby2_(kNearby * scene_size * kNearby * scene_size) {}
 
   Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view, const Rgb* caustic) const override {
     if (!direct_view) return in_mirror(surface, geometric, shading, caustic);
@@ -71,6 +74,7 @@ class PixelLight : public DiffuseLight {
  private:
   static constexpr float kSameNormal = 0.9995f;      // 2 degrees
   static constexpr float kNearby = 1 / 256.0f;       // of the scene's diagonal
+  static constexpr float kPixels = 4;
   struct PlacedAnswer : Answer {
     Vec3 position;
   };
@@ -82,10 +86,16 @@ class PixelLight : public DiffuseLight {
     return light;
   }
 
+  /// Square of a pixel's size where the camera is as far as a point; one of the cone's two numbers is 0.
+  float pixel2(Vec3 point) const {
+    return cone_.width * cone_.width + cone_.spread * cone_.spread * length2(point - eye_);
+  }
+
   Irradiance in_mirror(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, const Rgb* caustic) const {
+    const float reach2 = std::min(nearby2_, kPixels * kPixels * pixel2(surface.position));
     for (const PlacedAnswer& answer : mirrored_)
       if (answer.surface == surface.surface && dot(answer.normal, shading) > kSameNormal &&
-          length2(answer.position - surface.position) < nearby2_)
+          length2(answer.position - surface.position) < reach2)
         return answer.irradiance;
     PlacedAnswer& oldest = mirrored_[next_++ % mirrored_.size()];
     oldest = {{surface.surface, shading, ask(surface, geometric, shading, false, caustic)}, surface.position};
@@ -95,6 +105,8 @@ class PixelLight : public DiffuseLight {
   const DiffuseLight& light_;
   Memory& memory_;
   SparseCaustics& sparse_;
+  Vec3 eye_;
+  RayCone cone_;
   float nearby2_;
   mutable std::array<PlacedAnswer, 4> mirrored_;
   mutable std::size_t next_ = 0;
