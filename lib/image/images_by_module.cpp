@@ -18,7 +18,7 @@ class Answer {
   void ask(PixelsRequest request, const std::string& place) {
     auto* entry = reinterpret_cast<PixelsEntry*>(
         module_symbol("tempolux-images.so", kPixelsSymbol, default_module_folders(), place + ": reading an image",
-                      "it belongs beside the tools: install all of tempolux together"));
+                      "install all of tempolux together, or copy its folder of modules with the tools"));
     request.abi = kPixelsAbi;
     request.user = this;
     request.allocate = [](void* user, std::int32_t width, std::int32_t height, std::int32_t channels,

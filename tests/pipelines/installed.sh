@@ -24,6 +24,7 @@ trace() { "$scratch/usr/bin/photon-trace" pipelines/scenes/S1_cornell.glb --envi
 trace || bad "environment: $(cat "$scratch/log")"
 find "$scratch/usr" -name tempolux-images.so -exec rm {} +
 trace
-[ $? = 2 ] && [ "$(wc -l < "$scratch/log")" = 1 ] && grep -q 'tempolux-images.so, which was not' "$scratch/log" ||
+[ $? = 2 ] && [ "$(wc -l < "$scratch/log")" = 1 ] &&
+  grep -q 'tempolux-images.so, which was not .*; install all of tempolux together, or copy its folder' "$scratch/log" ||
   bad "without its module: $(cat "$scratch/log")"
 echo 'installed, and rendered two frames'
