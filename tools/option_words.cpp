@@ -20,27 +20,30 @@ std::string after_colon(const std::string& type) {
   return colon == std::string::npos ? "" : type.substr(colon + 1);
 }
 
-CLI::Validator number_that(const std::function<bool(double)>& holds, const std::string& limits, const std::string& from) {
-  return CLI::Validator(
-      [=](std::string& text) -> std::string {
-        double value = 0;
-        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && holds(value)) return "";
-        return "'" + text + "' is not " + from + limits;
-      },
-      limits);
-}
+/// A check for numbers of [least, most], or of (least, most] if `above`. Its words are made when somebody reads them: every
+/// start of a tool sets up dozens of checks.
+class NumberCheck : public CLI::Validator {
+ public:
+  NumberCheck(double least, double most, bool above) {
+    const auto limits = [=] {
+      if (above) return "above " + text_of(least);
+      return text_of(least) + (std::isinf(most) ? " or more" : " to " + text_of(most));
+    };
+    desc_function_ = limits;
+    func_ = [=](std::string& text) -> std::string {
+      double value = 0;
+      if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && (above ? value > least : value >= least) && value <= most)
+        return "";
+      return "'" + text + "' is not " + (above || std::isinf(most) ? "" : "from ") + limits();
+    };
+  }
+};
 
 }  // namespace
 
-CLI::Validator number_between(double least, double most) {
-  const bool open = std::isinf(most);
-  return number_that([=](double value) { return value >= least && value <= most; },
-                     text_of(least) + (open ? " or more" : " to " + text_of(most)), open ? "" : "from ");
-}
+CLI::Validator number_between(double least, double most) { return NumberCheck(least, most, false); }
 
-CLI::Validator number_above(double limit) {
-  return number_that([=](double value) { return value > limit; }, "above " + text_of(limit), "");
-}
+CLI::Validator number_above(double limit) { return NumberCheck(limit, INFINITY, true); }
 
 std::string value_name(const CLI::Option& option) {
   const std::string type = option.get_type_name();

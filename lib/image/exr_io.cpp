@@ -98,7 +98,8 @@ Matrix to_imath(const std::array<double, 16>& m) {
   return result;
 }
 
-Imf::Header make_header(const Image& image, const ExrWriteOptions& options) {
+/// Size, compression and channels alone.
+Imf::Header make_bare_header(const Image& image, const ExrWriteOptions& options) {
   const bool zip = options.compression == ExrWriteOptions::Compression::zip;
   Imf::Header header(image.width, image.height, 1, Imath::V2f(0, 0), 1, Imf::INCREASING_Y,
                      zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION);
@@ -108,6 +109,11 @@ Imf::Header make_header(const Image& image, const ExrWriteOptions& options) {
                              Imf::Channel(!channel.ids.empty()                      ? Imf::UINT
                                           : options.half && is_colour(channel.name) ? Imf::HALF
                                                                                     : Imf::FLOAT));
+  return header;
+}
+
+Imf::Header make_header(const Image& image, const ExrWriteOptions& options) {
+  Imf::Header header = make_bare_header(image, options);
   for (const auto& [name, text] : image.text) header.insert(name, Imf::StringAttribute(text));
   for (const auto& [name, number] : image.numbers) {
     if (name == "framesPerSecond")
@@ -144,7 +150,8 @@ class MemoryOut : public Imf::OStream {
 };
 
 /// Lines [first, first + count) of the image as chunks, each: int32 line, int32 size, bytes.
-std::string encode_slab(const Image& image, Imf::Header header, int first, int count) {
+std::string encode_slab(const Image& image, const ExrWriteOptions& options, int first, int count) {
+  Imf::Header header = make_bare_header(image, options);
   const Imath::Box2i window({0, first}, {image.width - 1, first + count - 1});
   header.dataWindow() = window;
   const std::size_t width = std::size_t(image.width), begin = std::size_t(first) * width;
@@ -350,12 +357,11 @@ void limit_openexr() {
 
 void save_exr(const std::string& path, const Image& image, const ExrWriteOptions& options) {
   check_writable(path, image, options.half);
-  const Imf::Header header = make_header(image, options);
   std::vector<std::string> slabs((std::size_t(image.height) + kSlabLines - 1) / kSlabLines);
   parallel_chunks(std::size_t(image.height), kSlabLines, [&](std::size_t first, std::size_t last) {
-    slabs[first / kSlabLines] = encode_slab(image, header, int(first), int(last - first));
+    slabs[first / kSlabLines] = encode_slab(image, options, int(first), int(last - first));
   });
-  slabs.insert(slabs.begin(), make_head(header, slabs));
+  slabs.insert(slabs.begin(), make_head(make_header(image, options), slabs));
   write_pieces(path, slabs);
 }
 
