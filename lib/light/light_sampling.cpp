@@ -96,34 +96,9 @@ bool Lights::Impl::sample_placed(const PlacedLight& placed, Vec3 point, double p
   return falloff > 0;
 }
 
-bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
-  const Impl& m = *impl_;
-  return m.sample(m.tree, m.tree_slot, m.tree.start(point, normal), m.distant_irradiance(normal), point, normal, u_choice, u, false, sample);
-}
-
-bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const {
-  const Impl& m = *impl_;
-  return m.sample(m.tree, m.tree_slot, m.tree.start(point, normal), m.distant_irradiance(normal), point, normal, u.x, u, true, sample);
-}
-
-/// Of the lights of a tree, slot_of its lights, and of those infinitely far.
-bool Lights::Impl::sample(const LightTree& from, const std::vector<std::uint32_t>& slot_of, const LightTree::Start& start,
-                          double distant, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const {
-  sample = {};
-  const double share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
-  if (u_choice < share) {
-    // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
-    return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) && is_finite(sample.radiance);
-  }
-  if (from.empty()) return false;
-  LightTree::Choice choice;
-  if (!from.choose(start, point, normal, to_float(stretch(u_choice, share, 1 - share)), choice)) return false;
-  return sample_slot(slot_of[choice.light], point, choice.probability * (1 - share), choice.left, u, joint, sample);
-}
-
 /// What Lights::sample has of the light in the slot, chosen with this probability. left: what the choice left of its number,
 /// if joint in place of u.x.
-bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
+inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
                                LightSample& sample) const {
   const Impl& m = *this;
   if (slot >= m.triangles.size())
@@ -144,6 +119,31 @@ bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double probabilit
   sample.radiance = Rgb(Rgbd(m.emitted_at(slot, on_triangle.barycentric.x, on_triangle.barycentric.y)) / pdf);
   sample.pdf_solid_angle = float(pdf);
   return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.radiance);
+}
+
+/// Of the lights of a tree, slot_of its lights, and of those infinitely far.
+inline bool Lights::Impl::sample(const LightTree& from, const std::vector<std::uint32_t>& slot_of, const LightTree::Start& start,
+                          double distant, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const {
+  sample = {};
+  const double share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
+  if (u_choice < share) {
+    // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
+    return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) && is_finite(sample.radiance);
+  }
+  if (from.empty()) return false;
+  LightTree::Choice choice;
+  if (!from.choose(start, point, normal, to_float(stretch(u_choice, share, 1 - share)), choice)) return false;
+  return sample_slot(slot_of[choice.light], point, choice.probability * (1 - share), choice.left, u, joint, sample);
+}
+
+bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
+  const Impl& m = *impl_;
+  return m.sample(m.tree, m.tree_slot, m.tree.start(point, normal), m.distant_irradiance(normal), point, normal, u_choice, u, false, sample);
+}
+
+bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const {
+  const Impl& m = *impl_;
+  return m.sample(m.tree, m.tree_slot, m.tree.start(point, normal), m.distant_irradiance(normal), point, normal, u.x, u, true, sample);
 }
 
 bool Lights::has_large() const { return !impl_->large.empty(); }
