@@ -95,6 +95,7 @@ ContainerReader::ContainerReader(const std::string& path, const Format& format) 
         8,
         "version " + std::to_string(major) + "." + std::to_string(minor) + " of " + std::string(format.name),
         "this program reads version " + std::to_string(format.major) + ": make the file again with it");
+  minor_ = minor;
   later_minor_ = minor > format.minor;
   const auto text_size = get<std::uint32_t>(&fixed[12]);
   if (text_size > kMaxTextSize) bytes_.fail(12, "header text of " + std::to_string(text_size) + " bytes");

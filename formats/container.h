@@ -94,7 +94,8 @@ class ContainerReader {
   ContainerReader(const std::string& path, const Format& format);
 
   const std::string& text() const { return text_; }
-  /// Of a later minor version: unknown keys pass.
+  std::uint16_t minor() const { return minor_; }
+  /// Of a later minor version than the format's: unknown keys pass.
   bool later_minor() const { return later_minor_; }
   /// fail()s if parsing the text found an error.
   void expect_good(const std::optional<HeaderError>& error) const;
@@ -123,6 +124,7 @@ class ContainerReader {
  private:
   ByteReader bytes_;
   std::string text_;
+  std::uint16_t minor_ = 0;
   bool later_minor_ = false;
   Chain chain_;
   std::uint32_t crc_ = 0, expected_crc_ = 0;

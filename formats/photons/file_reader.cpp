@@ -15,7 +15,7 @@ void resize(std::vector<T>& values, std::size_t count) {
 }  // namespace
 
 FileReader::FileReader(const std::string& path) : in_(path, kFormat) {
-  in_.expect_good(parse_header_text(in_.text(), in_.later_minor(), header_));
+  in_.expect_good(parse_header_text(in_.text(), in_.minor(), header_));
   rules_ = rules_of(header_);
 }
 

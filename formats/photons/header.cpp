@@ -45,8 +45,10 @@ std::string_view fault_of(const PhotonHeader& h) {
   return "";
 }
 
+constexpr std::uint16_t kEmissionSince = 1;  ///< minor version
+
 /// Takes one line's value into the header.
-Line take_line(std::string_view key, std::string_view value, PhotonHeader& h) {
+Line take_line(std::string_view key, std::string_view value, std::uint16_t minor, PhotonHeader& h) {
   const auto result = [](bool good) { return good ? Line::good : Line::bad_value; };
   if (key == "map") return h.map = value, Line::good;
   if (key == "kinds") return h.kinds = value, Line::good;
@@ -57,13 +59,19 @@ Line take_line(std::string_view key, std::string_view value, PhotonHeader& h) {
   }
   if (key == "groups") return result(parse_numbers(value, &h.group_count, 1));
   if (key == "emitted") return result(parse_numbers(value, &h.emitted_count, 1));
-  if (key == "emission") return h.identity.emission = value, result(!value.empty());
+  if (key == "emission" && minor >= kEmissionSince) return h.identity.emission = value, result(!value.empty());
   if (key == "base") return h.base_name = value, result(!value.empty());
   if (key == "base-digest") return h.base_digest = value, result(!value.empty());
   return take_common_line(key, value, common_keys(h));
 }
 
 }  // namespace
+
+Format format_of(const PhotonHeader& h) {
+  Format format = kFormat;
+  format.minor = h.identity.emission.empty() ? 0 : kEmissionSince;
+  return format;
+}
 
 std::string header_text(const PhotonHeader& h) {
   HeaderText text("photons");
@@ -84,12 +92,12 @@ std::string header_text(const PhotonHeader& h) {
   return text.finish();
 }
 
-std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown, PhotonHeader& h) {
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, PhotonHeader& h) {
   h = PhotonHeader();
   constexpr std::array<std::string_view, 6> required{"map",    "kinds",  "columns",
                                                      "origin", "groups", "emitted"};
-  auto error = parse_lines(text, allow_unknown, required, [&](std::string_view key, std::string_view value) {
-    return take_line(key, value, h);
+  auto error = parse_lines(text, minor > kFormat.minor, required, [&](std::string_view key, std::string_view value) {
+    return take_line(key, value, minor, h);
   });
   if (error) return error;
   if (const std::string_view fault = fault_of(h); !fault.empty())

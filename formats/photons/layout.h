@@ -13,7 +13,7 @@
 
 namespace tempolux::formats::photons {
 
-inline constexpr Format kFormat{{"\x89TPHOT\r\n", 8}, ".photons", "photon-trace"};
+inline constexpr Format kFormat{{"\x89TPHOT\r\n", 8}, ".photons", "photon-trace", 1, 1};
 inline constexpr std::uint32_t kMaxGroupCount = 1u << 24;
 inline constexpr std::string_view kBlockMark = "PHOT", kLedgerMark = "LEDG";
 inline constexpr std::size_t kBlockHeadSize = 16, kLedgerEntrySize = 76, kEndBodySize = 104;
@@ -23,11 +23,15 @@ constexpr std::size_t photon_size(std::uint32_t columns) {
   return 32 + (columns & column_direction ? 4 : 0) + (columns & column_albedo ? 4 : 0);
 }
 
+/// The version a file with this header has: the oldest that knows its keys.
+Format format_of(const PhotonHeader& header);
+
 /// The text of a header. std::invalid_argument if a value is out of range.
 std::string header_text(const PhotonHeader& header);
 
-/// Parses a text; unknown keys pass if `allow_unknown`. Nothing if the header is good.
-std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown, PhotonHeader& header);
+/// Parses the text of a file of version 1.minor; keys that we do not know pass if it is later than ours. Nothing if the
+/// header is good.
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, PhotonHeader& header);
 
 /// What records of this file may hold.
 struct RecordRules {

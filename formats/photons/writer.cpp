@@ -60,7 +60,7 @@ struct PhotonWriter::State {
   FluxSum stored_flux;
 
   State(ContainerWriter::Sink sink, const PhotonHeader& h)
-      : out(std::move(sink), kFormat, header_text(h)), header(h), rules(rules_of(h)) {}
+      : out(std::move(sink), format_of(h), header_text(h)), header(h), rules(rules_of(h)) {}
   bool is_overlay() const { return !header.base_name.empty(); }
   /// Checksums of the blocks in `bytes`, which must be those of `block`.
   std::vector<std::uint32_t> checksums_of(std::string_view bytes, const PhotonBlock& block) const;

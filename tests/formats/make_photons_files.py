@@ -118,6 +118,8 @@ def refuse_headers():
     save("refuse/header-size-beyond-end", header_bytes(TEXT, size=2**19))
     save("refuse/header-checksum", GOOD.replace(b"emitted: 4", b"emitted: 5"))
     save("refuse/header-key-unknown", header_bytes(TEXT + b"colour-of-ink: blue\n"))
+    save("refuse/header-key-of-a-later-version", header_bytes(TEXT + b"frames: 0 23\nemission: d4\n"))
+    save("refuse/header-key-unknown-1.1", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=1))
     save("refuse/header-key-missing", header_bytes(TEXT.replace(b"groups: 1\n", b"")))
     save("refuse/header-key-twice", header_bytes(TEXT + b"groups: 1\n"))
     save("refuse/header-line-without-colon", header_bytes(TEXT + b"photons\n"))

@@ -267,6 +267,8 @@ TEST(Photons, FilesForTheSecondReader) {
   dynamic.map = "dynamic";
   PhotonBlock block = block_of(0, 1000, 0);
   for (Photon& p : block.photons) p.flux[p.bounce % 3] *= -1e6f;
+  dynamic.identity = {"g1", "m1", "a1", "l1", "v1", 0, 0};
+  dynamic.identity.emission = "e1";   // version 1.1
   save(folder + "dynamic.photons", bytes_of(dynamic, {block}));
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder))

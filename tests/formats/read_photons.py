@@ -75,9 +75,9 @@ def parse_text(text, minor):                                              # sect
             history.append(value)
         elif key in header:
             refuse(16, f"key twice: {key}")
-        elif key in KEYS:
+        elif key in KEYS and (key != "emission" or minor > 0):
             header[key] = value
-        elif minor == 0:
+        elif minor <= 1:
             refuse(16, f"unknown key: {key}")
     for key in REQUIRED:
         if key not in header:
@@ -248,7 +248,7 @@ def encode_photons(p):
     """The bytes of a file."""
     lines = [f"{key}: {p.header[key]}\n" for key in KEYS if key in p.header] + [f"history: {h}\n" for h in p.history]
     text = "".join(lines).encode()
-    head = struct.pack("<8sHHI", MAGIC, 1, 0, len(text)) + text
+    head = struct.pack("<8sHHI", MAGIC, 1, int("emission" in p.header), len(text)) + text
     crcs = struct.pack("<I", zlib.crc32(head))
     out = [head, crcs]
     for b in p.blocks:
