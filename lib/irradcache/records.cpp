@@ -1,6 +1,9 @@
 #include "lib/irradcache/records.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "lib/core/random.h"
@@ -29,9 +32,19 @@ void for_each_cell(Vec3d local, float radius, double inverse_cell, const Body& b
   const double reach = double(radius) * (1 + kRounding);
   const Cell low = cell_at(local - Vec3d{1, 1, 1} * reach, inverse_cell);
   const Cell high = cell_at(local + Vec3d{1, 1, 1} * reach, inverse_cell);
+  const double width = 1 / inverse_cell;
+  // Squared distance to a cell along one axis, if there are several.
+  const auto beyond2 = [&](double centre, std::int64_t cell, std::int64_t first, std::int64_t last) {
+    if (first == last) return 0.0;
+    const double d = std::max({0.0, double(cell) * width - centre, centre - double(cell + 1) * width});
+    return d * d;
+  };
   for (std::int64_t x = low.x; x <= high.x; ++x)
-    for (std::int64_t y = low.y; y <= high.y; ++y)
-      for (std::int64_t z = low.z; z <= high.z; ++z) body(Cell{x, y, z});
+    for (std::int64_t y = low.y; y <= high.y; ++y) {
+      const double aside2 = beyond2(local.x, x, low.x, high.x) + beyond2(local.y, y, low.y, high.y);
+      for (std::int64_t z = low.z; z <= high.z; ++z)
+        if (aside2 + beyond2(local.z, z, low.z, high.z) <= reach * reach) body(Cell{x, y, z});
+    }
 }
 
 std::size_t bucket_of(Cell c, std::size_t count) {
@@ -51,6 +64,47 @@ bool is_usable(const IrradianceRecord& r) {
 RecordStore::RecordStore(const Box3& bounds, const InterpolationOptions& options)
     : lower_(bounds.empty() ? Vec3{} : bounds.lower), largest_cell_(std::max(double(bounds.diagonal()), 1e-30)), options_(options) {}
 
+void RecordStore::Bucket::add(const Entry& entry) {
+  const std::size_t lane = count_++ % kLanes;
+  if (lane == 0) eights_.emplace_back();
+  Eight& last = eights_.back();
+  last.x[lane] = entry.position.x;
+  last.y[lane] = entry.position.y;
+  last.z[lane] = entry.position.z;
+  last.radius[lane] = entry.radius;
+  last.normal_x[lane] = entry.normal.x;
+  last.normal_y[lane] = entry.normal.y;
+  last.normal_z[lane] = entry.normal.z;
+  last.record[lane] = entry.record;
+}
+
+bool RecordStore::Bucket::ends_with(std::uint32_t record) const {
+  return count_ > 0 && eights_.back().record[(count_ - 1) % kLanes] == record;
+}
+
+void RecordStore::Bucket::set_radius(std::uint32_t record, float radius) {
+  for (std::size_t i = 0; i < count_; ++i)
+    if (Eight& eight = eights_[i / kLanes]; eight.record[i % kLanes] == record) eight.radius[i % kLanes] = radius;
+}
+
+template <class Found>
+inline bool RecordStore::Bucket::any_near(Vec3 position, Vec3 normal, float least_cosine, const Found& found) const {
+  constexpr float kSlack = 1e-5f;   // rounding differs between lanes and one by one: that decides
+  const auto all = [](float x) { return _mm256_set1_ps(x); };
+  const __m256 least = all(least_cosine - kSlack), reach = all(1 + kSlack);
+  for (const Eight& e : eights_) {
+    const auto of = [](const float* lanes) { return _mm256_load_ps(lanes); };
+    const __m256 dx = all(position.x) - of(e.x), dy = all(position.y) - of(e.y), dz = all(position.z) - of(e.z), r = of(e.radius);
+    const __m256 cosine = all(normal.x) * of(e.normal_x) + all(normal.y) * of(e.normal_y) + all(normal.z) * of(e.normal_z);
+    const __m256 near = _mm256_cmp_ps(dx * dx + dy * dy + dz * dz, r * r * reach, _CMP_LT_OQ);
+    for (int lanes = _mm256_movemask_ps(_mm256_and_ps(near, _mm256_cmp_ps(cosine, least, _CMP_GT_OQ))); lanes; lanes &= lanes - 1) {
+      const auto i = std::size_t(std::countr_zero(unsigned(lanes)));
+      if (found(Entry{{e.x[i], e.y[i], e.z[i]}, e.radius[i], {e.normal_x[i], e.normal_y[i], e.normal_z[i]}, e.record[i]})) return true;
+    }
+  }
+  return false;
+}
+
 /// The level whose cells are between one and two radii wide.
 RecordStore::Level& RecordStore::level_of(float radius) {
   const int exponent = std::clamp(int(std::floor(std::log2(largest_cell_ / double(radius)))), 0, kFinest);
@@ -66,9 +120,9 @@ RecordStore::Level& RecordStore::level_of(float radius) {
 void RecordStore::list(Level& level, std::uint32_t record) const {
   const IrradianceRecord& r = records_[record];
   for_each_cell(Vec3d(r.position) - lower_, r.radius, level.inverse_cell, [&](Cell cell) {
-    std::vector<Entry>& bucket = level.buckets[bucket_of(cell, level.buckets.size())];
-    if (!bucket.empty() && bucket.back().record == record) return;   // two cells of one hash: once
-    bucket.push_back({r.position, r.radius, r.normal, record});
+    Bucket& bucket = level.buckets[bucket_of(cell, level.buckets.size())];
+    if (bucket.ends_with(record)) return;   // two cells of one hash: once
+    bucket.add({r.position, r.radius, r.normal, record});
     ++level.listed;
   });
 }
@@ -81,7 +135,7 @@ bool RecordStore::add(const IrradianceRecord& record) {
   const auto index = std::uint32_t(records_.size());
   records_.push_back(record);
   if (double(record.radius) > largest_cell_) {
-    everywhere_.push_back({record.position, record.radius, record.normal, index});
+    everywhere_.add({record.position, record.radius, record.normal, index});
     return true;
   }
   Level& level = level_of(record.radius);
@@ -99,34 +153,29 @@ bool RecordStore::add(const IrradianceRecord& record) {
 /// A smaller radius: the record stays on its level and in its cells.
 void RecordStore::shrink(std::uint32_t record, float radius) {
   const float before = records_[record].radius;
-  const auto update = [&](std::vector<Entry>& entries) {
-    for (Entry& entry : entries)
-      if (entry.record == record) entry.radius = radius;
-  };
-  if (double(before) > largest_cell_) update(everywhere_);
+  if (double(before) > largest_cell_) everywhere_.set_radius(record, radius);
   for (Level& level : levels_) {
     if (!std::binary_search(level.members.begin(), level.members.end(), record)) continue;
     const Vec3d local = Vec3d(records_[record].position) - lower_;
     for_each_cell(local, before, level.inverse_cell,
-                  [&](Cell c) { update(level.buckets[bucket_of(c, level.buckets.size())]); });
+                  [&](Cell c) { level.buckets[bucket_of(c, level.buckets.size())].set_radius(record, radius); });
   }
   records_[record].radius = radius;
 }
 
 template <class Found>
-inline bool RecordStore::any_near(Vec3 position, const Found& found) const {
+inline bool RecordStore::any_near(Vec3 position, Vec3 normal, const Found& found) const {
   const Vec3d local = Vec3d(position) - lower_;
   for (const Level& level : levels_)
-    for (const Entry& entry : level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())])
-      if (found(entry)) return true;
-  for (const Entry& entry : everywhere_)
-    if (found(entry)) return true;
-  return false;
+    if (level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())].any_near(position, normal,
+                                                                                                   options_.max_angle_cos, found))
+      return true;
+  return everywhere_.any_near(position, normal, options_.max_angle_cos, found);
 }
 
 void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first) {
   std::vector<std::pair<std::uint32_t, float>> near;
-  any_near(record.position, [&](const Entry& entry) {
+  any_near(record.position, record.normal, [&](const Entry& entry) {
     if (const float d = length(entry.position - record.position);
         d < entry.radius && dot(entry.normal, record.normal) > options_.max_angle_cos)
       near.emplace_back(entry.record, d);
@@ -169,7 +218,7 @@ inline void RecordStore::accumulate(const Entry& entry, float scale, Vec3 positi
 RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) const {
   Interpolated result;
   Rgb sum{0.0f};
-  any_near(position, [&](const Entry& entry) {
+  any_near(position, normal, [&](const Entry& entry) {
     accumulate(entry, 1, position, normal, sum, result);
     return false;
   });
@@ -179,7 +228,7 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) c
 
 float RecordStore::lit_share(Vec3 position, Vec3 normal) const {
   float weights = 0, sum = 0;
-  any_near(position, [&](const Entry& entry) {
+  any_near(position, normal, [&](const Entry& entry) {
     const float weight = weight_of(entry, 1, position, normal);
     weights += weight;
     sum += weight * records_[entry.record].lit_share;
@@ -190,7 +239,7 @@ float RecordStore::lit_share(Vec3 position, Vec3 normal) const {
 
 bool RecordStore::covers(Vec3 position, Vec3 normal, float weight) const {
   float sum = 0;
-  return any_near(position, [&](const Entry& entry) { return (sum += weight_of(entry, 1, position, normal)) >= weight; });
+  return any_near(position, normal, [&](const Entry& entry) { return (sum += weight_of(entry, 1, position, normal)) >= weight; });
 }
 
 RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {

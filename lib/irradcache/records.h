@@ -84,18 +84,36 @@ class RecordStore {
     Vec3 normal;
     std::uint32_t record;
   };
+  /// Entries in eights, so that a look-up compares eight at once: one in twenty is valid where it is listed.
+  class Bucket {
+   public:
+    void add(const Entry& entry);
+    bool ends_with(std::uint32_t record) const;
+    void set_radius(std::uint32_t record, float radius);
+    /// found(entry) of those that are near and face about the same way (a little more than valid ones), in order, until true.
+    template <class Found> bool any_near(Vec3 position, Vec3 normal, float least_cosine, const Found& found) const;
+
+   private:
+    static constexpr std::size_t kLanes = 8;
+    struct alignas(32) Eight {
+      float x[kLanes], y[kLanes], z[kLanes], radius[kLanes] = {}, normal_x[kLanes], normal_y[kLanes], normal_z[kLanes];
+      std::uint32_t record[kLanes];
+    };
+    std::vector<Eight> eights_;
+    std::uint32_t count_ = 0;
+  };
   struct Level {
     int exponent = 0;                   ///< cells are largest_cell / 2^exponent wide
     double inverse_cell = 0;
     std::size_t listed = 0;             ///< entries in all buckets
     std::vector<std::uint32_t> members;
-    std::vector<std::vector<Entry>> buckets;   ///< by the hash of the cell; a power of two of them
+    std::vector<Bucket> buckets;          ///< by the hash of the cell; a power of two of them
   };
   Level& level_of(float radius);
   void list(Level& level, std::uint32_t record) const;
   void shrink(std::uint32_t record, float radius);
   /// Is found(entry) true of a record that may be valid at the point? Each is asked once, until one is.
-  template <class Found> bool any_near(Vec3 position, const Found& found) const;
+  template <class Found> bool any_near(Vec3 position, Vec3 normal, const Found& found) const;
   /// Of a record at a point, its radius scaled; 0 where it is not valid.
   float weight_of(const Entry& entry, float scale, Vec3 position, Vec3 normal) const;
   void accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
@@ -105,7 +123,7 @@ class RecordStore {
   InterpolationOptions options_;
   std::vector<IrradianceRecord> records_;
   std::vector<Level> levels_;           ///< those that have members, in the order they came
-  std::vector<Entry> everywhere_;       ///< records larger than the largest cell
+  Bucket everywhere_;                   ///< records larger than the largest cell
   std::uint64_t refused_ = 0;
 };
 
