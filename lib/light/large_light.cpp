@@ -1,6 +1,9 @@
 #include "lib/light/large_light.h"
 
+#include <immintrin.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lib/core/sampling.h"
@@ -12,18 +15,31 @@ constexpr double kSameShape = 1e-5;      // of the size
 constexpr float kSmallSolidAngle = 0.02f;
 constexpr float kFewDigits = 0.05f;      // sr: below, sums over edges cancel too many digits of a float
 
+constexpr std::array kArcTangent{0.0028662257f, -0.0161657367f, 0.0429096138f,  -0.0752896400f, 0.1065626393f,
+                                 -0.1420889944f, 0.1999355085f, -0.3333314528f, 1.0f};
 /// The angle in [0, pi] of a sine >= 0 and a cosine of any common length. Abramowitz & Stegun 4.4.49, to 2e-8.
 inline float angle_of(float sine, float cosine) {
   const float c = std::abs(cosine), small = std::min(sine, c), large = std::max(sine, c);
   const float x = large > 0 ? small / large : 0, x2 = x * x;
-  float p = 0.0028662257f;
-  for (const float k : {-0.0161657367f, 0.0429096138f, -0.0752896400f, 0.1065626393f, -0.1420889944f, 0.1999355085f, -0.3333314528f, 1.0f})
-    p = p * x2 + k;
+  float p = kArcTangent[0];
+  for (std::size_t i = 1; i < kArcTangent.size(); ++i) p = p * x2 + kArcTangent[i];
   p *= x;
   const float first = sine > c ? kPi / 2 - p : p;
   return cosine < 0 ? kPi - first : first;
 }
 inline double angle_of(double sine, double cosine) { return std::atan2(sine, cosine); }
+
+/// The same of four at a time, bit for bit.
+inline __m128 angles_of(__m128 sine, __m128 cosine) {
+  const auto all = [](float x) { return _mm_set1_ps(x); };
+  const __m128 c = _mm_andnot_ps(all(-0.0f), cosine), large = _mm_max_ps(sine, c);
+  const __m128 x = _mm_and_ps(_mm_cmpgt_ps(large, _mm_setzero_ps()), _mm_min_ps(sine, c) / large), x2 = x * x;
+  __m128 p = all(kArcTangent[0]);
+  for (std::size_t i = 1; i < kArcTangent.size(); ++i) p = p * x2 + all(kArcTangent[i]);
+  p *= x;
+  const __m128 first = _mm_blendv_ps(p, all(kPi / 2) - p, _mm_cmpgt_ps(sine, c));
+  return _mm_blendv_ps(first, all(kPi) - first, cosine);   // by its sign
+}
 
 /// Twice the integral of the cosine over a polygon seen from the origin, all of it above the horizon.
 template <class T>
@@ -35,6 +51,31 @@ T edge_sum(const Vec3T<T>* corner, int count, Vec3T<T> normal) {
     if (sine > 0) sum += angle_of(sine, dot(a, b)) / sine * dot(around, normal);
   }
   return std::abs(sum);
+}
+
+/// Four corners, in the order of the float form.
+float edge_sum(__m128 x, __m128 y, __m128 z, Vec3 normal) {
+  const auto next = [](__m128 v) { return _mm_shuffle_ps(v, v, _MM_SHUFFLE(0, 3, 2, 1)); };
+  const auto all = [](float f) { return _mm_set1_ps(f); };
+  const __m128 x2 = next(x), y2 = next(y), z2 = next(z);
+  const __m128 around_x = y * z2 - z * y2, around_y = z * x2 - x * z2, around_z = x * y2 - y * x2;
+  const __m128 sine = _mm_sqrt_ps(around_x * around_x + around_y * around_y + around_z * around_z);
+  const __m128 along = around_x * all(normal.x) + around_y * all(normal.y) + around_z * all(normal.z);
+  const __m128 part = angles_of(sine, x * x2 + y * y2 + z * z2) / sine * along;
+  alignas(16) float each[4];
+  _mm_store_ps(each, _mm_and_ps(_mm_cmpgt_ps(sine, _mm_setzero_ps()), part));
+  return std::abs(each[0] + each[1] + each[2] + each[3]);
+}
+
+/// projected() of a rectangle all of which is above the horizon; below 0: it is not.
+float projected_rectangle(const LargeLight& light, Vec3 from, Vec3 normal) {
+  const auto& c = light.corner;
+  const auto all = [](float f) { return _mm_set1_ps(f); };
+  const __m128 x = _mm_setr_ps(c[0].x, c[1].x, c[2].x, c[3].x) - all(from.x), y = _mm_setr_ps(c[0].y, c[1].y, c[2].y, c[3].y) - all(from.y),
+               z = _mm_setr_ps(c[0].z, c[1].z, c[2].z, c[3].z) - all(from.z);
+  const __m128 height = x * all(normal.x) + y * all(normal.y) + z * all(normal.z);
+  if (_mm_movemask_ps(_mm_cmplt_ps(height, _mm_setzero_ps()))) return -1;
+  return edge_sum(x, y, z, normal) / 2;
 }
 
 template <class T>
@@ -74,15 +115,14 @@ Vec2 sample_spherical_rectangle(const LargeLight& light, Vec3 from, float z, Vec
   const float width = length(side_x), height = length(side_y);
   const float x0 = dot(to, side_x) / width, x1 = x0 + width, y0 = dot(to, side_y) / height, y1 = y0 + height;
   // Planes through the point and the sides y0, x1, y1, x0, normals inwards: z components alone are needed of two.
-  const float a0 = 1 / std::sqrt(z * z + y0 * y0), a1 = 1 / std::sqrt(z * z + x1 * x1), a2 = 1 / std::sqrt(z * z + y1 * y1),
-              a3 = 1 / std::sqrt(z * z + x0 * x0);
-  const float b0 = -y0 * a0, b1 = x1 * a1, b2 = y1 * a2, b3 = -x0 * a3;
-  const auto corner_angle = [](float p, float q) {   // acos(-p q)
-    const float c = -p * q;
-    return angle_of(std::sqrt(std::max(0.0f, 1 - c * c)), c);
-  };
-  const float k = 2 * kPi - corner_angle(b2, b3) - corner_angle(b3, b0);
-  solid_angle = corner_angle(b0, b1) + corner_angle(b1, b2) - k;
+  const __m128 side = _mm_setr_ps(-y0, x1, y1, -x0), one = _mm_set1_ps(1);
+  const __m128 b = side * (one / _mm_sqrt_ps(_mm_set1_ps(z * z) + side * side));
+  const __m128 cosine = _mm_setzero_ps() - b * _mm_shuffle_ps(b, b, _MM_SHUFFLE(0, 3, 2, 1));   // of the angles at the corners
+  alignas(16) float angle[4], bs[4];
+  _mm_store_ps(angle, angles_of(_mm_sqrt_ps(_mm_max_ps(_mm_setzero_ps(), one - cosine * cosine)), cosine));
+  _mm_store_ps(bs, b);
+  const float b0 = bs[0], b2 = bs[2], k = 2 * kPi - angle[2] - angle[3];
+  solid_angle = angle[0] + angle[1] - k;
   if (!(solid_angle > kSmallSolidAngle)) {
     solid_angle = 0;
     return u;
@@ -137,7 +177,8 @@ std::vector<LargeLight> join_rectangles(const std::vector<TriangleLight>& triang
 
 double projected_solid_angle(const LargeLight& light, Vec3 from, Vec3 normal) {
   if (!(height_above(light, from) > 0)) return 0;
-  const float found = projected<float>(light, from, normal);
+  float found = light.is_rectangle() ? projected_rectangle(light, from, normal) : -1;
+  if (found < 0) found = projected<float>(light, from, normal);
   return found > kFewDigits ? double(found) : projected<double>(light, from, normal);
 }
 

@@ -11,6 +11,11 @@ struct AlbedoPair {
   float a = 0, b = 0;
 };
 
+namespace albedo_table {
+inline constexpr int kRows = 28, kColumns = 48;
+inline constexpr double kMinAlpha = 0.0004;
+}
+
 /// Albedo of the single-scattering lobe of ggx.h for one alpha. Bicubic in a table of 28 x 48
 /// (albedo_table.cpp) over alpha^(1/4) and the square root of x = cos (1 + alpha) / (cos + alpha): a + b is
 /// within 5e-5 and b within 8e-5 of the integrals over the whole domain (tested).
@@ -18,7 +23,8 @@ class GgxAlbedo {
  public:
   /// alpha is held within [0.0004, 1], the table's range.
   explicit GgxAlbedo(float alpha);
-  GgxAlbedo() : GgxAlbedo(1) {}
+  /// Of alpha 1; matte materials make one for every hit.
+  GgxAlbedo() = default;
 
   /// Towards cos_theta in (0, 1].
   AlbedoPair at(float cos_theta) const;
@@ -26,14 +32,12 @@ class GgxAlbedo {
   AlbedoPair mean() const;
 
  private:
-  float alpha_;
-  int row_;          ///< first of the four rows in use
-  float weight_[4];  ///< of each
+  float alpha_ = 1;
+  int row_ = albedo_table::kRows - 4;   ///< first of the four rows in use
+  float weight_[4] = {0, 0, 0, 1};      ///< of each
 };
 
 namespace albedo_table {
-inline constexpr int kRows = 28, kColumns = 48;
-inline constexpr double kMinAlpha = 0.0004;
 extern const float kTotal[kRows][kColumns];   ///< E at F = 1: a + b
 extern const float kCosine[kRows][kColumns];  ///< m with b = E (1 - m (cos + alpha))^5
 extern const float kMeanA[kRows], kMeanB[kRows];
