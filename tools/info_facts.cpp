@@ -129,6 +129,7 @@ FileType file_type(const std::string& path) {
     return FileType::json;
   for (const char* magic : {"\x76\x2f\x31\x01", "\x89PNG", "\xff\xd8\xff", "#?", "II*", "MM"})
     if (head.starts_with(magic)) return FileType::image;
+  if (head.starts_with("glTF")) throw InputError(path + ": a scene; scene-plan says what is in it");
   throw InputError(path + ": not a file we know; it is none of our formats, no image and no JSON");
 }
 

@@ -28,7 +28,8 @@ demo demo && says 'Nothing to be done' || bad 'after questions something runs'
 
 # Refused before anything runs, by the name of what is wrong.
 refuses() { what=$1; shift; demo "$@" && bad "$*: not refused"; says "$what" || bad "$*: not said why"; }
-refuses "no goal 'dmeo'" dmeo
+refuses "no goal 'dmeo'; .*help. lists them" dmeo
+demo help && says 'QUALITY=draft' && says 'Further goals: estimate' || bad 'help'
 refuses 'QUALITY=drft' demo QUALITY=drft
 refuses 'VOLUME=smoke' demo VOLUME=smoke.vdb
 refuses 'SIZE=32:' demo SIZE=32
