@@ -20,6 +20,7 @@ namespace {
 
 std::atomic<Temporary::Entry*> first_entry{nullptr};
 std::atomic<pid_t> running_child{0};
+bool pipe_may_end = false;
 static_assert(std::atomic<Temporary::Entry*>::is_always_lock_free && std::atomic<pid_t>::is_always_lock_free);
 
 // Calls async-signal-safe functions only.
@@ -68,8 +69,12 @@ void install_signal_handlers() {
       sigaction(signal, &action, nullptr);
   }
   action.sa_handler = SIG_IGN;
-  sigaction(SIGPIPE, &action, nullptr);
+  pipe_may_end = sigaction(SIGPIPE, &action, &before) == 0 && before.sa_handler != SIG_IGN;
   sigaction(SIGXFSZ, &action, nullptr);
+}
+
+void end_by_broken_pipe() {
+  if (pipe_may_end) remove_temporaries_and_end(SIGPIPE);
 }
 
 }  // namespace tempolux::tools

@@ -38,4 +38,7 @@ void end_together_with(pid_t child);
 /// so that a write fails with a reason instead.
 void install_signal_handlers();
 
+/// Ends the process as a broken pipe does, by PIPE, temporaries removed; returns if PIPE was ignored at the start.
+void end_by_broken_pipe();
+
 }  // namespace tempolux::tools

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <malloc.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <unistd.h>
 #include <xmmintrin.h>
@@ -55,11 +56,16 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// Text on standard output. A reader that has seen enough (`| head`) is no fault.
 void flush_stdout() {
   errno = 0;
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::cout) return;
-  throw ResourceError(std::string("standard output: write failed: ") + std::strerror(errno ? errno : EIO));
+  int error = errno ? errno : EIO;
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  if (poll(&out, 1, 0) > 0 && (out.revents & POLLERR)) error = EPIPE;   // failed long before: errno is another's
+  if (error == EPIPE) end_by_broken_pipe();
+  throw ResourceError(std::string("standard output: write failed: ") + std::strerror(error));
 }
 
 std::string out_of_memory_text(const Common& common) {

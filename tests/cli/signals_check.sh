@@ -18,4 +18,10 @@ sleep 0.2
 kill -HUP $process
 wait $process || { echo "an ignored HUP ended the tool: $?"; failed=1; }
 [ "$(tail -1 a.out)" = end ] || { echo 'no output after an ignored HUP'; failed=1; }
+# Who reads the text has seen enough: no word, the code of PIPE. Where that is ignored it is a write that failed.
+{ sleep 0.2; env --default-signal=PIPE tempolux-info --help 2> errors; echo $? > code; } | true
+[ "$(cat code)" = 141 ] && [ ! -s errors ] || { echo "a reader that left: $(cat code) $(cat errors)"; failed=1; }
+{ sleep 0.2; env --ignore-signal=PIPE tempolux-info --help 2> errors; echo $? > code; } | true
+[ "$(cat code)" = 3 ] && grep -q 'standard output: write failed: Broken pipe' errors ||
+  { echo "a reader that left, PIPE ignored: $(cat code) $(cat errors)"; failed=1; }
 exit $failed
