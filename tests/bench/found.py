@@ -1,21 +1,24 @@
 #!/usr/bin/env python3
 """Scenes made by others, path-traced and by the photon chain: does each render, and do the layers agree?
 
-    python3 tests/bench/found.py                        all of ../shared/scenes/found/gltf: about ten minutes on two idle cores
+    python3 tests/bench/found.py                        all of ../shared/scenes/found/gltf: below 15 minutes on two idle cores
     python3 tests/bench/found.py --only 'Fox|17_ior'    some of them
 
 A file without a camera is copied to a temporary folder and gets one that sees all of it, and a ground below; a file without
 a light gets a lamp and a dim sky; in one with lights without extent no surface is smoother than a roughness of 0.1: the path
 tracer could not find those in a mirror. Where things stand (skins, morphs, instances) is learnt from a few photons of a sun. Prints a table;
 writes found.json and sheet.png (path tracer left, photon chain right, each pair at its own exposure) to --out.
-The path tracer takes as many samples as it needs for standard errors of 0.4 %, up to --spp; the photon chain runs with three
-seeds. A layer agrees if its means differ by less than 1.5 % and two standard errors; layers below 0.1 % of the picture are
-listed, but not judged.
+A first run of either way tells the variance and the cost of every layer; then as many samples per pixel of the one and seeds of
+the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows. An error bar
+is that of 95 %, by Student's t for the few seeds. A layer agrees if the means differ by at most 1.5 % and the bar is no wider
+than that; it does not if they differ by more than 1.5 % and the bar; else it is undecided. Layers below 0.1 % of the picture
+are listed, but not judged.
 """
 import argparse
 import json
 import math
 import re
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -28,10 +31,11 @@ from measure import Bench, Missing, figure
 
 LAYERS = ("emission", "specular", "direct", "caustic", "indirect")
 FRAME = 10
-SEEDS = (1, 2, 3)
 JUDGED = 0.001          # of the picture: layers below are listed only
-WANTED_ERROR = 0.004    # of a judged layer's mean, path traced
-PILOT = 32              # samples per pixel that tell how many are needed
+LIMIT = 0.015           # of a layer's mean: what the two may differ by
+WANTED_BAR = 0.01       # of a judged layer's mean
+PILOT, PILOT_SEEDS = 32, 3   # samples per pixel and seeds that tell how many are needed
+MOST_SEEDS = 16
 
 
 class Refused(Exception):
@@ -41,8 +45,8 @@ class Refused(Exception):
 class Found:
     """How the scenes are rendered, and what is kept."""
 
-    def __init__(self, bench, folder, size, spp, photons):
-        self.bench, self.folder, self.size, self.spp, self.photons = bench, folder, size, spp, photons
+    def __init__(self, bench, folder, size, cpu, photons):
+        self.bench, self.folder, self.size, self.cpu, self.photons = bench, folder, size, cpu, photons
         self.sky, self.pictures = [], bench.out / "found"
         self.pictures.mkdir(exist_ok=True)
 
@@ -95,20 +99,29 @@ class Found:
                           photon_map, "--channels", "RGBA,layers", "--compression", "none", "-o", image)]
         return image, sum(stats["cpu_s"] for stats, _ in runs)
 
+    def chains(self, scene, seeds):
+        """Pictures by the photon chain, CPU seconds of all."""
+        images, sum_cpu = [], 0
+        for seed in seeds:
+            image, cpu = self.by_photons(scene, self.size, self.photons, seed)
+            images.append(exr.read(image))
+            sum_cpu += cpu
+        return images, sum_cpu
+
     def compare(self, file):
         """A row: both ways, layer by layer."""
         row = {"file": file.name, "layers": {}}
         try:
             scene, row["given"] = self.usable(file)
-            path, halves, row["path_cpu_s"], row["warnings"] = self.reference(scene, min(self.spp, PILOT))
-            row["spp"] = enough_samples(path, halves, min(self.spp, PILOT), self.spp)
-            if row["spp"] > PILOT:
-                path, halves, row["path_cpu_s"], _ = self.reference(scene, row["spp"])
-            chain, row["chain_cpu_s"] = [], 0
-            for seed in SEEDS:
-                image, cpu = self.by_photons(scene, self.size, self.photons, seed)
-                chain.append(exr.read(image))
-                row["chain_cpu_s"] += cpu / len(SEEDS)
+            path, halves, row["path_cpu_s"], row["warnings"] = self.reference(scene, PILOT)
+            chain, row["chain_cpu_s"] = self.chains(scene, range(1, PILOT_SEEDS + 1))
+            spp, seeds = samples_wanted(path, halves, row["path_cpu_s"], chain, row["chain_cpu_s"], self.cpu)
+            if spp > PILOT:
+                path, halves, row["path_cpu_s"], _ = self.reference(scene, spp)
+            if seeds > PILOT_SEEDS:
+                more, cpu = self.chains(scene, range(PILOT_SEEDS + 1, seeds + 1))
+                chain, row["chain_cpu_s"] = chain + more, row["chain_cpu_s"] + cpu
+            row |= {"spp": spp, "seeds": seeds}
         except Refused as refusal:
             row["exit"], row["message"] = refusal.args
             return row
@@ -151,24 +164,57 @@ def error_of_mean(halves, layer):
     return math.sqrt(3 * math.fsum((x - y) ** 2 for x, y in zip(a, b)) / 4) / len(a)
 
 
-def enough_samples(path, halves, spp, most):
-    """Samples per pixel at which every layer that is judged has an error below WANTED_ERROR, by those of `spp`."""
-    worst = max((error_of_mean(halves, layer) / mean(path, layer) for layer in LAYERS
-                 if mean(path, layer) > JUDGED * mean(path)), default=0)
-    return min(most, 16 * math.ceil(spp * (worst / WANTED_ERROR) ** 2 / 16))
+def student(freedom):
+    """Quantile of 97.5 % of Student's t, right to 0.5 %."""
+    return 1.96 + 2.37 / freedom + 2.8 / freedom ** 2 + 3.2 / freedom ** 3
+
+
+def error_bar(path_error, chain_error, seeds):
+    return math.hypot(1.96 * path_error, student(seeds - 1) * chain_error)
+
+
+def is_judged(path, layer, chain):
+    return max(mean(path, layer), chain) >= JUDGED * mean(path)
+
+
+def samples_wanted(path, halves, path_cpu, chain, chain_cpu, most_cpu):
+    """(samples per pixel, seeds) by a first run of both: see above."""
+    variances = []    # of one sample per pixel, of one seed; of the mean
+    for layer in LAYERS:
+        seeds, size = [mean(image, layer) for image in chain], mean(path, layer)
+        if size > 0 and is_judged(path, layer, statistics.mean(seeds)):
+            variances.append((error_of_mean(halves, layer) ** 2 * PILOT / size ** 2, statistics.variance(seeds) / size ** 2))
+    best = (math.inf, 0, PILOT, PILOT_SEEDS)
+    for seeds in range(PILOT_SEEDS, MOST_SEEDS + 1):
+        left = [WANTED_BAR ** 2 - student(seeds - 1) ** 2 * v / seeds for _, v in variances]
+        wanted = max((1.96 ** 2 * v / room if room > 0 else math.inf for (v, _), room in zip(variances, left)), default=0)
+        paid = (most_cpu - seeds * chain_cpu / len(chain)) / (path_cpu / PILOT)
+        spp = max(PILOT, 16 * math.ceil(min(wanted, paid) / 16))
+        widest = max((error_bar(math.sqrt(v / spp), math.sqrt(w / seeds), seeds) for v, w in variances), default=0)
+        cost = seeds * chain_cpu / len(chain) + spp * path_cpu / PILOT
+        if seeds == PILOT_SEEDS or cost <= 1.1 * most_cpu:
+            best = min(best, (max(widest, WANTED_BAR), cost, spp, seeds))
+    return best[2:]
 
 
 def layer_row(layer, path, halves, chain):
-    """Means, standard errors, and whether they agree: None if the layer is too dark to be judged."""
-    path_error = error_of_mean(halves, layer)
+    """Means, their standard errors, the relative difference with its bar, and the verdict: None if the layer is too dark."""
     seeds = [mean(image, layer) for image in chain]
-    ours, theirs = mean(path, layer), sum(seeds) / len(seeds)
-    chain_error = math.sqrt(math.fsum((s - theirs) ** 2 for s in seeds) / (len(seeds) - 1) / len(seeds))
-    agrees = abs(theirs - ours) <= 0.015 * abs(ours) + 2 * math.hypot(path_error, chain_error)
-    if max(ours, theirs) < JUDGED * mean(path):
-        agrees = None
-    return {"path": ours, "path_error": path_error, "chain": theirs, "chain_error": chain_error,
-            "of_picture": ours / max(mean(path), 1e-30), "agrees": agrees}
+    ours, theirs = mean(path, layer), statistics.mean(seeds)
+    path_error, chain_error = error_of_mean(halves, layer), statistics.stdev(seeds) / math.sqrt(len(seeds))
+    row = {"path": ours, "path_error": path_error, "chain": theirs, "chain_error": chain_error,
+           "of_picture": ours / max(mean(path), 1e-30), "verdict": None}
+    if ours > 0:
+        row |= {"difference": theirs / ours - 1, "bar": error_bar(path_error, chain_error, len(seeds)) / ours}
+    if is_judged(path, layer, theirs):
+        row["verdict"] = verdict(row.get("difference", math.inf), row.get("bar", 0))
+    return row
+
+
+def verdict(difference, bar):
+    if abs(difference) > LIMIT + bar:
+        return "apart"
+    return "agrees" if abs(difference) <= LIMIT and bar <= LIMIT else "undecided"
 
 
 def brightness(image):
@@ -187,39 +233,40 @@ def table_rows(name, row):
     """Strings: the file's line, one for each layer that is not black."""
     if row["exit"] != 0:
         return [[name, f"exit {row['exit']}: {row['message']}", "", "", "", ""]]
-    cpu = f"{row['path_cpu_s']:.1f}, {row['chain_cpu_s']:.1f}"
+    cpu = f"{row['path_cpu_s']:.1f} ({row['spp']} samples), {row['chain_cpu_s']:.1f} ({row['seeds']} seeds)"
     lines = [[name, "rendered" + (f" ({row['given']})" if row["given"] else ""), "", "", "", cpu]]
     for layer, r in row["layers"].items():
         if r["path"] or r["chain"]:
-            relative = f"{100 * (r['chain'] / r['path'] - 1):+.2f} %" if r["path"] else "-"
-            verdict = {True: "", False: " (!)", None: " (below 0.1 % of the picture)"}[r["agrees"]]
+            relative = f"{100 * r['difference']:+.2f} ± {100 * r['bar']:.2f} %" if r["path"] else "-"
+            said = {"agrees": "", "apart": " (!)", "undecided": " (?)", None: " (below 0.1 % of the picture)"}[r["verdict"]]
             lines.append(["", layer, f"{r['path']:.4g} ± {r['path_error']:.1g}", f"{r['chain']:.4g} ± {r['chain_error']:.1g}",
-                          relative + verdict, ""])
+                          relative + said, ""])
     return lines
 
 
 def summary(rows):
-    """Sentences: how many layers agree, how large those are that are not judged or do not agree."""
+    """Sentences: how many layers agree, and which do not, are undecided, are not judged."""
     layers = [(f"{Path(name).stem} {layer}", r) for name, row in rows.items() for layer, r in row["layers"].items()
               if r["path"] or r["chain"]]
-    judged = [r for _, r in layers if r["agrees"] is not None]
-    apart = [name for name, r in layers if r["agrees"] is False]
-    return [f"{sum(r['agrees'] for r in judged)} of {len(judged)} layers agree within 1.5 % and two standard errors; "
-            f"{len(layers) - len(judged)} below 0.1 % of their picture are listed without a verdict."] + (
-        [f"Beyond it: {', '.join(apart)}."] if apart else [])
+    names = {v: [name for name, r in layers if r["verdict"] == v] for v in ("agrees", "apart", "undecided", None)}
+    notes = [f"{len(names['agrees'])} of {len(layers) - len(names[None])} layers agree within 1.5 %, by an error bar (95 %) no wider; "
+             f"{len(names['apart'])} do not (!), {len(names['undecided'])} are undecided (?); "
+             f"{len(names[None])} below 0.1 % of their picture are listed without a verdict."]
+    notes += [f"Beyond 1.5 % and the error bar: {', '.join(names['apart'])}."] if names["apart"] else []
+    return notes + ([f"Undecided: {', '.join(names['undecided'])}."] if names["undecided"] else [])
 
 
-def found(bench, _=None, only="", size="320x180", spp=256, photons="4M"):
+def found(bench, _=None, only="", size="320x180", cpu=45, photons="4M"):
     """The figure: every found scene, by both ways."""
     folder = bench.project / ".." / "shared" / "scenes" / "found" / "gltf"
     if not folder.is_dir():
         raise Missing("../shared/scenes/found/gltf is absent")
     if bench.quick:
-        only, size, spp, photons = only or "CornellBox|BoxDraco", bench.size, 4, "10k"
+        only, size, cpu, photons = only or "CornellBox|BoxDraco", bench.size, 0, "10k"
     files = sorted(p for p in folder.rglob("*.gl*") if p.suffix in (".gltf", ".glb") and re.search(only, str(p)))
     rows, lines, notes, good, pictures, rendered = {}, [], [], True, [], []
     with tempfile.TemporaryDirectory(dir=bench.out) as temporary:
-        work = Found(bench, Path(temporary), size, spp, photons)
+        work = Found(bench, Path(temporary), size, cpu, photons)
         for file in files:
             name = str(file.relative_to(folder))
             row = rows[name] = work.compare(file)
@@ -230,7 +277,7 @@ def found(bench, _=None, only="", size="320x180", spp=256, photons="4M"):
             if row["exit"] != 0:
                 good = good and expected_refusal(file, row)
                 continue
-            good = good and not row["not_finite"] and all(r["agrees"] is not False for r in row["layers"].values())
+            good = good and not row["not_finite"] and all(r["verdict"] in ("agrees", None) for r in row["layers"].values())
             pictures += row.pop("pictures")
             rendered.append(file)
         for file in rendered[::max(1, len(rendered) // 5)][:0 if bench.quick else 5]:
@@ -243,7 +290,7 @@ def found(bench, _=None, only="", size="320x180", spp=256, photons="4M"):
         bench.run([bench.bin / "tempolux-info", "--sheet", bench.out / "found.png", "--columns", 6, "--exposure", 0, *pictures])
     return figure("Scenes made by others, path tracer and photon chain",
                   "all render or are refused by name; means of layers within 1.5 %; the same bytes for any number of threads",
-                  ["file, layer", "", "path tracer, mean", "photon chain, mean", "chain / path - 1", "CPU s, path and chain"],
+                  ["file, layer", "", "path tracer, mean", "photon chain, mean", "chain / path - 1, error bar", "CPU s, path tracer and chain"],
                   lines, None if bench.quick or only else good, notes)
 
 
@@ -254,12 +301,12 @@ def main():
     parser.add_argument("--out", type=Path, default=project / "out" / "found", help="sheet, table as JSON [out/found]")
     parser.add_argument("--only", default="", help="regular expression: files whose path it is found in")
     parser.add_argument("--size", default="320x180", help="[320x180]")
-    parser.add_argument("--spp", type=int, default=256, help="samples per pixel of the path tracer, at most [256]")
+    parser.add_argument("--cpu", type=float, default=45, help="CPU s for a scene, about: beyond, a layer stays undecided [45]")
     parser.add_argument("--photons", default="4M", help="[4M]")
     args = parser.parse_args()
     bench = Bench(args.build.resolve(), args.out.resolve(), project, False, 0)
     try:
-        result = found(bench, None, args.only, args.size, args.spp, args.photons)
+        result = found(bench, None, args.only, args.size, args.cpu, args.photons)
     except Missing as reason:
         print(f"left out: {reason}")
         return 0
