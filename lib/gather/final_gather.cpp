@@ -204,7 +204,8 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
       const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
       result = scale * (further && is_near(met, *point, random)
                             ? near_irradiance(met, *point, random, key, scale, counts, *further)
-                            : point->total());
+                        : point->shadow_edge ? beside_shadow(met, *point, random, counts)
+                                             : point->total());
     }
   }
   if (!specular || depth >= kDeepestSpecular) return result;
@@ -254,21 +255,30 @@ Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, const 
   ++counts.near_hits;
   const SeenSide side(met.hit, met.wo);
   const bool nearer = met.distance < points_.spacing() * threshold(random) || std::isinf(point.radius);
-  Rgb irradiance = nearer ? points_.point(point).caustic : point.first;
-  LightSample light;
-  if (nearer && !lights_.empty() && lights_.sample(met.hit.position, side.normal, random.get1(1, Purpose::light_choice),
-                                         random.get2(1, Purpose::light_point), light)) {
-    if (side.sees(light.wi)) {
-      ++counts.shadow_rays;
-      const float cosine = dot(light.wi, side.normal);
-      if (!tracer_.occluded(spawn_shadow_ray(met.hit, light.position, light.position_offset)))
-        irradiance += light.radiance * (cosine * met.bsdf->arrival_weight(cosine));
-    }
-  }
+  const Rgb irradiance =
+      nearer || point.shadow_edge ? points_.point(point).caustic + sampled_light(met, side, random, counts) : point.first;
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
   if (dot(travel, met.geometric) > 0)
     further.push_back({spawn_ray(met.hit, travel), mix64(key + 1), weight * (kPi * met.bsdf->arrival_weight(drawn.z)), 0});
   return irradiance;
+}
+
+/// Direct irradiance at a hit by one light sample.
+Rgb FinalGather::sampled_light(const Met& met, const SeenSide& side, const PathRandom& random, GatherCounts& counts) const {
+  LightSample light;
+  if (lights_.empty() || !lights_.sample(met.hit.position, side.normal, random.get1(1, Purpose::light_choice),
+                                         random.get2(1, Purpose::light_point), light) || !side.sees(light.wi))
+    return Rgb(0.0f);
+  ++counts.shadow_rays;
+  if (tracer_.occluded(spawn_shadow_ray(met.hit, light.position, light.position_offset))) return Rgb(0.0f);
+  const float cosine = dot(light.wi, side.normal);
+  return light.radiance * (cosine * met.bsdf->arrival_weight(cosine));
+}
+
+/// Irradiance at a hit where the point's direct light is not its own.
+Rgb FinalGather::beside_shadow(const Met& met, const PointLight& point, const PathRandom& random, GatherCounts& counts) const {
+  const IrradiancePoint& read = points_.point(point);
+  return read.indirect + read.caustic + sampled_light(met, SeenSide(met.hit, met.wo), random, counts);
 }
 
 float FinalGather::lit_share(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {

@@ -77,6 +77,8 @@ class FinalGather {
                        GatherCounts& counts, const MaterialValues* inside = nullptr) const;
   static float threshold(const PathRandom& random);
   bool is_near(const Met& met, const PointLight& point, const PathRandom& random) const;
+  Rgb sampled_light(const Met& met, const struct SeenSide& side, const PathRandom& random, GatherCounts& counts) const;
+  Rgb beside_shadow(const Met& met, const PointLight& point, const PathRandom& random, GatherCounts& counts) const;
   Rgb near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key, Rgb weight,
                       GatherCounts& counts, std::vector<Further>& further) const;
 

@@ -20,6 +20,9 @@ constexpr float kNeighbourhood = 2.5f;    ///< spacings: how far the neighbours 
 constexpr float kCellDiagonal = 1.4142f;  ///< of a cell's section along a surface
 constexpr float kHot = 20;        ///< times the mean: light of which little must not be read beside where it falls
 constexpr float kContrast = 8;    ///< to a neighbour, from which on neither stands for what lies between them
+constexpr float kShadow = 64;     ///< the same of direct light: a shadow that nothing else lights
+constexpr float kOnePlane = 0.95f;  ///< cosine between normals: what faces elsewhere is not in a shadow's edge
+constexpr float kBeside = 1.5f;   ///< spacings: how far off the point is that a hit may read
 
 Vec3 bin_direction(std::uint32_t bin) {
   const auto middle = [](std::uint32_t i) { return (2 * float(i) + 1) / PointLookup::kNormalBins - 1; };
@@ -70,10 +73,11 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, const Box3& bo
   }
   index_ = PhotonIndex(as_photons);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    lights_.push_back({points[i].total(), points[i].radius, points[i].direct + points[i].caustic, std::uint32_t(i)});
+    lights_.push_back({points[i].total(), points[i].radius, points[i].direct + points[i].caustic, std::uint32_t(i) & 0x7fffffffu, 0});
     objects_ = std::max(objects_, points[i].object + 2);  // one more for all objects without points
   }
   mark_hot_edges();
+  mark_shadow_edges();
   value_bits_ = int(std::bit_width(2 * (points.size() + 1)));  // a point + 1 or a crowd + 1, and kSeparated
   const Vec3 extent = bounds.empty() ? Vec3{1, 1, 1} : bounds.upper - bounds.lower;
   cell_ = std::max(spacing / kCellsPerSpacing, max_component(extent) / PointLookup::kMostCells);
@@ -111,6 +115,28 @@ void PointLookup::mark_hot_edges() {
     for (const std::uint32_t other : found.photons())
       if (PointLight& there = lights_[index_.source(other)]; channel_sum(there.all) * kContrast < here)
         there.radius = lights_[i].radius = INFINITY;
+  }
+}
+
+/// Points in the light beside others in the dark, and those: at hits near them direct light is sampled, one shadow ray.
+/// Read instead, light reaches a spacing into shadows, where much of what sees it is: the ground in a chair's shadow is seen
+/// by the chair.
+void PointLookup::mark_shadow_edges() {
+  double sum = 0;
+  for (const IrradiancePoint& point : points_) sum += double(channel_sum(point.direct));
+  const double mean = sum / double(std::max<std::size_t>(1, points_.size()));
+  if (!(mean > 0)) return;
+  NeighbourList found;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const float here = channel_sum(points_[i].direct);
+    if (!(double(here) > mean)) continue;
+    PhotonQuery query = facing(points_[i].position, points_[i].normal);
+    query.min_cos = kOnePlane;
+    query.max_radius = kBeside * spacing_;
+    index_.find_within(query, found);
+    for (const std::uint32_t other : found.photons())
+      if (const std::uint32_t there = index_.source(other); channel_sum(points_[there].direct) * kShadow < here)
+        lights_[there].shadow_edge = lights_[i].shadow_edge = 1;
   }
 }
 

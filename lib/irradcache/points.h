@@ -34,7 +34,8 @@ struct alignas(32) PointLight {
   Rgb all{0.0f};            ///< W/m^2, of all kinds
   float radius = 0;         ///< as IrradiancePoint's; infinite at the edge of a spot much brighter than the mean
   Rgb first{0.0f};          ///< W/m^2, that no Lambert lobe has scattered before: direct and caustic
-  std::uint32_t point = 0;  ///< index of the IrradiancePoint
+  std::uint32_t point : 31 = 0;        ///< index of the IrradiancePoint
+  std::uint32_t shadow_edge : 1 = 0;   ///< its direct light is not that of all places near it
   Rgb total() const { return all; }
 };
 
@@ -93,6 +94,7 @@ class PointLookup {
   Answer fetched(std::uint32_t value) const;
   const PointLight* read_one_by_one(const Question& question, Answer answer) const;
   void mark_hot_edges();
+  void mark_shadow_edges();
   std::uint32_t search(Vec3 position, Vec3 normal, std::uint32_t object) const;
   std::uint32_t search_cell(Vec3 middle, std::uint32_t bin, std::uint32_t object) const;
   std::uint32_t search_reachable(const Question& question, const struct PointCrowd* tried) const;

@@ -204,5 +204,54 @@ TEST(FinalGather, AllMissesGiveNothingAndAnInfiniteRadius) {
   EXPECT_EQ(record.radius_unclamped, INFINITY);
 }
 
+/// A plate of half-width 0.5, 0.25 above a wide floor, under a light so far off that it is a sun of irradiance 1: what its
+/// underside sees of the floor is in its own shadow but for a rim. From the middle the share of the hemisphere in a square
+/// floor of half-width w straight below is 4 / (2 pi) 2 X / sqrt(1 + X^2) atan(X / sqrt(1 + X^2)), X = w / h: of the lit rim
+/// 0.998 - 0.831. The points of the floor, 0.25 apart, are lit from 0.01 outside of the shadow: read as they stand, they would
+/// bring light from 0.12 inside of it, half as much again at least. 4 gathers of 4000 rays, one shadow ray each in the shadow's edge:
+/// 0.5 %; the light's height moves the shadow's edge by 0.01 %.
+TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
+  constexpr float h = 0.25f, half = 0.5f, wide = 5, step = 0.25f, distance = 2000, rho = 0.5f;
+  HandMadeScene scene;
+  scene.add_quad({-half, h, -half}, {-half, h, half}, {half, h, half}, {half, h, -half}, matte(Rgb(rho)));
+  scene.add_quad({-wide, 0, -wide}, {-wide, 0, wide}, {wide, 0, wide}, {wide, 0, -wide}, matte(Rgb(rho)));
+  scene.add_point_light({0, distance, 0}, Rgb(distance * distance));
+  const SceneFrame& frame = scene.frame();
+  std::vector<IrradiancePoint> points;
+  for (float x = 0.01f; x < wide; x += step)
+    for (float z = 0.01f; z < wide; z += step)
+      for (const Vec3 p : {Vec3{x, 0, z}, Vec3{-x, 0, z}, Vec3{x, 0, -z}, Vec3{-x, 0, -z}}) {
+        IrradiancePoint point;
+        point.position = p;
+        point.normal = {0, 1, 0};
+        point.object = frame.surfaces[1].object;
+        point.radius = 1e-4f;
+        point.direct = Rgb(x < half && z < half ? 0.0f : 1.0f);
+        points.push_back(point);
+      }
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  const PointLookup lookup(points, frame.bounds, step);
+  SurfacePoint from;
+  from.position = {0, h, 0};
+  from.normal = from.normal_geometric = {0, -1, 0};
+  from.offset = 1e-6f;
+  from.object = frame.surfaces[0].object;
+  double mean = 0;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    GatherOptions options;
+    options.rays = 4000;
+    options.seed = seed;
+    GatherCounts counts;
+    mean += double(FinalGather(tracer, lights, lookup, options).gather(from, {0, -1, 0}, counts).irradiance.g) / 4;
+  }
+  const auto share = [](double w) {
+    const double x = w / double(h), along = x / std::sqrt(1 + x * x);
+    return 4 / M_PI * along * std::atan(along);
+  };
+  const double exact = double(rho) * (share(wide) - share(half));
+  EXPECT_NEAR(mean / exact, 1, 0.02);
+}
+
 }  // namespace
 }  // namespace tempolux
