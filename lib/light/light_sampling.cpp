@@ -148,30 +148,35 @@ bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const 
 
 bool Lights::has_large() const { return !impl_->large.empty(); }
 
-bool Lights::sample_large(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, Rgb& irradiance) const {
-  const std::vector<LargeLight>& large = impl_->large;
-  std::array<float, Impl::kMostLarge> each;
-  float sum = 0;
-  irradiance = Rgb(0.0f);
-  for (std::size_t i = 0; i < large.size(); ++i) {
-    const float projected = float(projected_solid_angle(large[i], point, normal));
-    irradiance += large[i].triangle.radiance * projected;
-    sum += each[i] = max_component(large[i].triangle.radiance) * projected;
+Lights::Apart Lights::apart(Vec3 point, Vec3 normal) const {
+  const Impl& m = *impl_;
+  Apart at{point, normal, Rgb(0.0f), {}, 0, m.rest.start(point, normal), m.distant_irradiance(normal), 0};
+  for (std::size_t i = 0; i < m.large.size(); ++i) {
+    const float projected = float(projected_solid_angle(m.large[i], point, normal));
+    at.irradiance += m.large[i].triangle.radiance * projected;
+    at.sum_large += at.large[i] = max_component(m.large[i].triangle.radiance) * projected;
   }
+  const double all = at.distant + at.rest.sum;
+  if (all > 0) at.chance = std::min(1.0, all / (kFew * (all + double(max_component(at.irradiance)))));
+  return at;
+}
+
+bool Lights::sample_large(const Apart& at, Vec2 u, LightSample& sample) const {
+  const std::vector<LargeLight>& large = impl_->large;
   sample = {};
-  if (!(sum > 0)) return false;
-  float left = u.x * sum;
+  if (!(at.sum_large > 0)) return false;
+  float left = u.x * at.sum_large;
   std::size_t chosen = 0;
   for (std::size_t i = 0; i < large.size(); ++i) {
-    if (!(each[i] > 0)) continue;
+    if (!(at.large[i] > 0)) continue;
     chosen = i;
-    if (left < each[i]) break;
-    left -= each[i];
+    if (left < at.large[i]) break;
+    left -= at.large[i];
   }
-  u.x = std::min(left / each[chosen], kOneMinusEpsilon);
+  u.x = std::min(left / at.large[chosen], kOneMinusEpsilon);
   LargeLightPoint found;
-  if (!sample_large_light(large[chosen], point, u, found)) return false;
-  const double pdf = double(each[chosen] / sum) * found.pdf_solid_angle;
+  if (!sample_large_light(large[chosen], at.point, u, found)) return false;
+  const double pdf = double(at.large[chosen] / at.sum_large) * found.pdf_solid_angle;
   sample.wi = found.wi;
   sample.position = found.position;
   sample.position_offset = large[chosen].triangle.offset;
@@ -180,17 +185,13 @@ bool Lights::sample_large(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, 
   return is_finite(sample.radiance);
 }
 
-bool Lights::sample_rest(Vec3 point, Vec3 normal, float besides, Vec2 u, LightSample& sample) const {
+bool Lights::sample_rest(const Apart& at, Vec2 u, LightSample& sample) const {
   const Impl& m = *impl_;
-  const LightTree::Start start = m.rest.start(point, normal);
-  const double distant = m.distant_irradiance(normal), all = distant + start.sum;
-  if (!(all > 0)) return false;
-  const double chance = std::min(1.0, all / (kFew * (all + double(besides))));
-  if (!(double(u.x) < chance)) return false;
-  u.x = to_float(double(u.x) / chance);
-  if (!m.sample(m.rest, m.rest_slot, start, distant, point, normal, u.x, u, true, sample)) return false;
-  sample.radiance *= float(1 / chance);
-  sample.pdf_solid_angle *= float(chance);
+  if (!(double(u.x) < at.chance)) return false;
+  u.x = to_float(double(u.x) / at.chance);
+  if (!m.sample(m.rest, m.rest_slot, at.rest, at.distant, at.point, at.normal, u.x, u, true, sample)) return false;
+  sample.radiance *= float(1 / at.chance);
+  sample.pdf_solid_angle *= float(at.chance);
   return is_finite(sample.radiance);
 }
 

@@ -11,6 +11,7 @@
 
 #include "lib/core/vec.h"
 #include "lib/light/environment_light.h"
+#include "lib/light/light_tree.h"
 #include "lib/light/triangle_light.h"
 #include "lib/scene/at_frame.h"
 #include "lib/scene/surface_point.h"
@@ -98,12 +99,23 @@ class Lights {
   /// Are there large lights: up to four triangles of even radiance that each hold a twentieth of what the lights that are
   /// somewhere emit?
   bool has_large() const;
-  /// The same for the large lights alone, chosen by their exact irradiance where nothing is in the way, which is also given:
-  /// the mean of radiance cos over u. Needs a unit normal.
-  bool sample_large(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, Rgb& irradiance) const;
-  /// And for all others. Where they can give little against the irradiance `besides` of the same point a sample comes by chance
-  /// only, and is as much brighter.
-  bool sample_rest(Vec3 point, Vec3 normal, float besides, Vec2 u, LightSample& sample) const;
+  static constexpr std::size_t kMostLarge = 4;
+  /// A point at which samples of the large lights and of the others are wanted: what all of them have in common.
+  struct Apart {
+    Vec3 point, normal;                               ///< unit
+    Rgb irradiance{0.0f};                             ///< exactly, of the large lights where nothing is in the way
+    std::array<float, kMostLarge> large{};            ///< of each, greatest channel
+    float sum_large = 0;
+    LightTree::Start rest;
+    double distant = 0;                               ///< weight of the lights infinitely far
+    double chance = 0;                                ///< of a sample of the others
+  };
+  Apart apart(Vec3 point, Vec3 normal) const;
+  /// sample() for the large lights alone, chosen by their irradiance; the mean of radiance cos over u is that.
+  bool sample_large(const Apart& at, Vec2 u, LightSample& sample) const;
+  /// And for all others. Where they can give little against the large ones a sample comes by chance only, and is as much
+  /// brighter.
+  bool sample_rest(const Apart& at, Vec2 u, LightSample& sample) const;
   /// Density per solid angle with which sample() at (point, normal) would have chosen the position
   /// `on_light` of this emissive triangle, seen from its front or (two-sided) back; 0 if it is no light. The
   /// triangle's own plane decides, as in sample(); light_normal is not looked at.

@@ -38,7 +38,6 @@ struct Lights::Impl {
   LightTree rest{{}};                     // without them; only if there are any
   std::vector<std::uint32_t> rest_slot;   // by light of `rest`
 
-  static constexpr std::size_t kMostLarge = 4;
   static constexpr double kLarge = 0.05;  // of the weight of all lights in the tree
 
   Impl(const SceneFrame& frame_, const EmissionTable& table);

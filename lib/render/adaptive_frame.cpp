@@ -15,6 +15,8 @@ struct PixelState {
   float mean = 0;                       ///< of the first samples, mean of the channels
   Rgb direct_noise{0.0f}, specular_noise{0.0f};   ///< LightControl, of all samples
   float sampled = 0, seen = 0;          ///< of the first
+  bool plain = false;                   ///< the first met one matte surface, controlled
+  int lights = 1;                       ///< samples of the lights to a further camera ray
   double sharp_variance = 0;            ///< of one of the first: PixelSum::sharp; a square of light may be beyond float
   float difference = 0, noise_difference = 0;     ///< of all else: mean over half of the first samples less that over the others
 
@@ -26,6 +28,7 @@ struct PixelState {
 
 constexpr int kNear = 2;   // pixels: a pixel is judged by the 24 around it
 // Samples that are stratified err as n^(-5/6) or so. The least error for a number of samples has n ~ sigma^(2 / (1 + 10/6)).
+constexpr int kLightsTogether = 4;     // samples of the lights at a place where only they are uncertain
 constexpr double kStratified = 0.75, kTypical = 12;
 
 class AdaptiveFrame {
@@ -45,12 +48,14 @@ class AdaptiveFrame {
     const std::vector<int> missing = missing_samples();
     for_each_tile(view_, options_, rays, options_.progress, [&](RayCounts& counts) {
       return [&, sparse = SparseCaustics()](std::size_t pixel, int x, int y) mutable {
-        const int count = missing[pixel];
+        const int count = missing[pixel], lights = pixels_[pixel].lights;
         if (count > 0) {
           LightControl control;
           with_light(pixel, sparse, [&](const DiffuseLight* light) {
-            join(sample_pixel(scene_, view_, options_.seed, light, pixel, x, y, options_.samples, count, counts,
-                              controlled_ ? &control : nullptr), options_.samples, count, image_.pixels[pixel]);
+            PixelSum sum = sample_pixel(scene_, view_, options_.seed, light, pixel, x, y, options_.samples, count / lights, lights,
+                                        counts, controlled_ ? &control : nullptr);
+            sum.stand_for(lights);
+            join(sum, options_.samples, count, image_.pixels[pixel]);
           });
           pixels_[pixel].add_noise(control);
         }
@@ -69,7 +74,7 @@ class AdaptiveFrame {
     LightControl control[2];
     PixelSum first, second;
     with_light(pixel, sparse, [&](const DiffuseLight* light) {
-      for_each_sample(scene_, view_, options_.seed, light, pixel, x, y, 0, n, counts,
+      for_each_sample(scene_, view_, options_.seed, light, pixel, x, y, 0, n, 1, counts,
                       [&](int s) { return controlled_ ? &control[s < a ? 0 : 1] : nullptr; },
                       [&](int s, const Layers& sample) { (s < a ? first : second).add(sample); });
     });
@@ -81,6 +86,7 @@ class AdaptiveFrame {
       state.sampled += c.sampled;
       state.seen += c.seen;
     }
+    state.plain = control[0].seen_matte + control[1].seen_matte == n && state.memory[1].surface == kNone;
     const double sharp = first.sharp + second.sharp;
     state.sharp_variance = std::max(0.0, first.sharp_square + second.sharp_square - sharp * sharp / n) / std::max(1, n - 1);
     if (b == 0) return;
@@ -135,9 +141,18 @@ class AdaptiveFrame {
     return state.sharp_variance + difference * difference * a * b / (a + b);
   }
 
+  /// Do the pixel and the eight around it see one matte surface each? Then it is its light that is uncertain, not which place of
+  /// it is seen.
+  bool is_plain(int x, int y) const {
+    for (int j = std::max(0, y - 1); j <= std::min(view_.height() - 1, y + 1); ++j)
+      for (int i = std::max(0, x - 1); i <= std::min(view_.width() - 1, x + 1); ++i)
+        if (!pixels_[std::size_t(j) * std::size_t(view_.width()) + std::size_t(i)].plain) return false;
+    return true;
+  }
+
   /// Samples each pixel still needs, by what its neighbours saw. Its own samples are left out: a pixel whose
   /// first samples happened to agree would keep them, and penumbrae would come out too bright.
-  std::vector<int> missing_samples() const {
+  std::vector<int> missing_samples() {
     double all = 0;
     for (const PixelState& state : pixels_) all += double(state.mean);
     const double picture = all / double(std::max<std::size_t>(1, pixels_.size()));
@@ -157,7 +172,9 @@ class AdaptiveFrame {
       if (n == 0) return;   // a picture of one pixel
       const double error = options_.pixel_error * (std::min(level / n, picture) + 0.1 * picture);
       const double wanted = error > 0 ? kTypical * std::pow(std::sqrt(pooled / n) / (kTypical * error), kStratified) : 0;
-      missing[pixel] = std::clamp(int(std::min(wanted, double(options_.adaptive_limit))) - options_.samples, 0, options_.adaptive_limit);
+      const int more = std::clamp(int(std::min(wanted, double(options_.adaptive_limit))) - options_.samples, 0, options_.adaptive_limit);
+      const int lights = pixels_[pixel].lights = is_plain(x, y) ? kLightsTogether : 1;
+      missing[pixel] = more > 0 ? std::max(1, (more + lights / 2) / lights) * lights : 0;
     });
     return missing;
   }

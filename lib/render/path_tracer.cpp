@@ -58,29 +58,33 @@ bool reaches(const RenderScene& scene, const ShadingPoint& x, const LightSample&
   return !scene.tracer.occluded(spawn_shadow_ray(x.surface, light.position, light.position_offset));
 }
 
-/// The same at a matte end of the path: large lights and the others apart.
+/// The same at a matte end of the path: large lights and the others apart; the mean of the light of samples [first, first + n).
 void add_controlled_light(const RenderScene& scene, const ShadingPoint& x, const Rgb& throughput, const EyePath& path,
-                          const PixelRandom& random, std::uint32_t bounce, Layers& result, LightControl& control, RayCounts& counts) {
+                          const PixelRandom& random, std::uint32_t first, std::uint32_t n, std::uint32_t bounce, Layers& result,
+                          LightControl& control, RayCounts& counts) {
   const Layer layer = path.after(true).layer();
   const Rgb reflected = throughput * x.bsdf.diffuse_albedo() * kInvPi;
-  const Vec3 position = x.surface.position;
   Rgb& noise = layer == Layer::direct ? control.direct : control.specular;
-  LightSample light;
-  Rgb exact;
-  if (scene.lights.sample_large(position, x.normal, random.get2(bounce, Purpose::light_point), light, exact)) {
-    const Rgb arriving = reflected * light.radiance * std::max(0.0f, dot(light.wi, x.normal));
-    noise += arriving;
-    control.sampled += channel_mean(arriving);
-    if (!is_black(arriving) && reaches(scene, x, light, counts)) {
-      control.seen += channel_mean(arriving);
-      result[layer] += arriving;
+  const Lights::Apart at = scene.lights.apart(x.surface.position, x.normal);
+  Rgb sum(0.0f);
+  for (std::uint32_t i = first; i < first + n; ++i) {
+    const PixelRandom numbers = random.of_sample(i);
+    LightSample light;
+    if (scene.lights.sample_large(at, numbers.get2(bounce, Purpose::light_point), light)) {
+      const Rgb arriving = reflected * light.radiance * std::max(0.0f, dot(light.wi, x.normal));
+      noise += arriving;
+      control.sampled += channel_mean(arriving);
+      if (!is_black(arriving) && reaches(scene, x, light, counts)) {
+        control.seen += channel_mean(arriving);
+        sum += arriving;
+      }
     }
+    if (!scene.lights.sample_rest(at, numbers.get2(bounce, Purpose::light_choice), light)) continue;
+    const Rgb arriving = reflected * light.radiance * std::max(0.0f, dot(light.wi, x.normal));
+    if (!is_black(arriving) && reaches(scene, x, light, counts)) sum += arriving;
   }
-  noise += reflected * exact * -1.0f;
-
-  if (!scene.lights.sample_rest(position, x.normal, max_component(exact), random.get2(bounce, Purpose::light_choice), light)) return;
-  const Rgb arriving = reflected * light.radiance * std::max(0.0f, dot(light.wi, x.normal));
-  if (!is_black(arriving) && reaches(scene, x, light, counts)) result[layer] += arriving;
+  noise += reflected * at.irradiance * -float(n);
+  result[layer] += n == 1 ? sum : sum * (1 / float(n));
 }
 
 /// Emission of the surface that was hit, weighed against light sampling from the scattering before.
@@ -152,11 +156,12 @@ Layers trace_eye_path(const RenderScene& scene, const EyeRay& eye, const PixelRa
     const ShadingPoint x(point, wo, material);
     const bool ends_here = diffuse_light && x.bsdf.has_diffuse();
     if (ends_here && control && x.bsdf.is_matte() && !inside.any())
-      add_controlled_light(scene, x, throughput, path, random, bounce, result, *control, counts);
+      add_controlled_light(scene, x, throughput, path, random, eye.first_light, eye.lights, bounce, result, *control, counts);
     else
       add_sampled_light(scene, x, throughput, path, inside, random, bounce, !ends_here, result, counts);
     if (ends_here) {
       const bool seen_directly = path.layer() == Layer::emission;
+      if (control && seen_directly && x.bsdf.is_matte()) ++control->seen_matte;
       const DiffuseLight::Irradiance e = diffuse_light->at(point, x.normal_geometric, x.normal, seen_directly, nullptr);
       ++counts.lookups;
       // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h

@@ -61,6 +61,13 @@ class PixelRandom {
   PixelRandom(std::uint64_t seed, std::uint64_t pixel, std::uint32_t sample)
       : key_(mix64(mix64(seed ^ 0x8f14e45fceea167aull) + pixel * 0x9e3779b97f4a7c15ull)), sample_(sample), plain_(key_, sample) {}
 
+  /// Those of another sample of the pixel.
+  PixelRandom of_sample(std::uint32_t sample) const {
+    PixelRandom other = *this;
+    other.sample_ = sample;
+    other.plain_ = PathRandom(key_, sample);
+    return other;
+  }
   Vec2 get2(std::uint32_t bounce, Purpose purpose) const {
     return bounce < kSobolBounces ? sobol_owen_2d(sample_, key(bounce, purpose)) : plain_.get2(bounce, purpose);
   }
@@ -105,6 +112,7 @@ class DiffuseLight {
 struct LightControl {
   Rgb direct{0.0f}, specular{0.0f};   ///< by layer: sampled less exact [W/m^2/sr]; 0 in the mean
   float sampled = 0, seen = 0;        ///< samples without and with shadows, mean of the channels
+  int seen_matte = 0;                 ///< paths that ended at the camera ray's own hit
 };
 
 /// The scene as a renderer sees it; all must outlive it.
@@ -133,6 +141,7 @@ struct EyeRay {
   Ray ray;
   Hit hit;
   RayCone cone;
+  std::uint32_t first_light = 0, lights = 1;   ///< with a control: which samples' light a matte end takes the mean of
 };
 Layers trace_eye_path(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random, const DiffuseLight* diffuse_light,
                       RayCounts& counts, LightControl* control);

@@ -22,6 +22,11 @@ struct PixelSum {
     sharp += v;
     sharp_square += v * v;
   }
+  /// Each for so many.
+  void stand_for(int times) {
+    for (Rgbd& radiance : layers.value) radiance *= times;
+    layers.coverage *= times;
+  }
   /// Mean channel of all layers.
   double value() const {
     double sum = 0;
@@ -70,10 +75,11 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
 }
 
 /// Samples [first, first + count) of a pixel, one after the other: add(sample, radiance); control(sample): where that one's
-/// LightControl goes, or nullptr.
+/// LightControl goes, or nullptr. Each takes the mean of the light of `lights` samples, which [first, first + count x lights) are.
 template <class Control, class Add>
 void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const DiffuseLight* light,
-                     std::size_t pixel, int x, int y, int first, int count, RayCounts& counts, const Control& control, const Add& add) {
+                     std::size_t pixel, int x, int y, int first, int count, int lights, RayCounts& counts, const Control& control, const Add& add) {
+  const int start = first;
   constexpr int kTogether = 8, kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
   for (const int end = first + count; first < end; first += kTogether) {
     const int n = std::min(kTogether, end - first);
@@ -87,17 +93,19 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint
       for (int i = 0; i < n; ++i) scene.tracer.intersect(rays[i], hits[i]);
     else
       scene.tracer.intersect({rays, std::size_t(n)}, {hits, std::size_t(n)});
-    for (int i = 0; i < n; ++i)
-      add(first + i, trace_eye_path(scene, {rays[i], hits[i], view.cone()}, PixelRandom(seed, pixel, std::uint32_t(first + i)), light,
-                                    counts, control(first + i)));
+    for (int i = 0; i < n; ++i) {
+      const auto first_light = std::uint32_t(start + (first + i - start) * lights);
+      add(first + i, trace_eye_path(scene, {rays[i], hits[i], view.cone(), first_light, std::uint32_t(lights)},
+                                    PixelRandom(seed, pixel, std::uint32_t(first + i)), light, counts, control(first + i)));
+    }
   }
 }
 
 inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const DiffuseLight* light,
-                             std::size_t pixel, int x, int y, int first, int count, RayCounts& counts,
+                             std::size_t pixel, int x, int y, int first, int count, int lights, RayCounts& counts,
                              LightControl* control = nullptr) {
   PixelSum sum;
-  for_each_sample(scene, view, seed, light, pixel, x, y, first, count, counts, [&](int) { return control; },
+  for_each_sample(scene, view, seed, light, pixel, x, y, first, count, lights, counts, [&](int) { return control; },
                   [&](int, const Layers& sample) { sum.add(sample); });
   return sum;
 }

@@ -105,15 +105,15 @@ TEST(LargeLight, AndTheRestAreAllLights) {
   const Lights lights = scene.lights();
   ASSERT_TRUE(lights.has_large());
   const Vec3 normal = normalize(Vec3{0.3f, 0, 1});
+  const Lights::Apart at = lights.apart({0, 0, 0}, normal);
   constexpr int kCount = 1 << 16;
   double large = 0, rest = 0, rest2 = 0, exact_rest = 0;
   for (std::uint32_t i = 0; i < kCount; ++i) {
     LightSample s;
-    Rgb known;
-    ASSERT_TRUE(lights.sample_large({0, 0, 0}, normal, sobol_owen_2d(i, 1), s, known));
-    EXPECT_NEAR(known.g, 2 * polygon_irradiance({0, 0, 0}, normal, panel), 1e-4);
+    ASSERT_TRUE(lights.sample_large(at, sobol_owen_2d(i, 1), s));
+    EXPECT_NEAR(at.irradiance.g, 2 * polygon_irradiance({0, 0, 0}, normal, panel), 1e-4);
     large += double(s.radiance.g * std::max(0.0f, dot(s.wi, normal))) / kCount;
-    if (!lights.sample_rest({0, 0, 0}, normal, known.b, sobol_owen_2d(i, 2), s)) continue;
+    if (!lights.sample_rest(at, sobol_owen_2d(i, 2), s)) continue;
     const double e = double(s.radiance.g * std::max(0.0f, dot(s.wi, normal)));
     rest += e / kCount;
     rest2 += e * e / kCount;
