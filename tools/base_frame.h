@@ -22,8 +22,8 @@ struct Picture {
   std::array<double, 16> world_to_camera{}, world_to_ndc{};   ///< as in its attributes (frames.md 3)
 };
 
-/// Reads both. InputError if the mask has another size, or if the base shows another state of the scene (check_identity)
-/// or was seen by another camera; with --allow-stale a warning.
+/// Reads both. InputError if the mask has another size, or if the base shows another state of the scene
+/// (check_identity) or was seen by another camera; with --allow-stale a warning.
 BaseFrame read_base_frame(Tool& tool, const std::string& mask, const std::string& base, const SceneFrame& frame,
                           const Picture& picture);
 

@@ -2,7 +2,8 @@
 //
 //     frame-render room.glb --frame 12 --size 640x360 --spp 256 --halves -o ref.0012.exr
 //     frame-render room.glb --frame 12 --size 640x360 --photons p.0012.photons -o f.0012.exr
-//     frame-render room.glb --frame 12 --size 640x360 --irradcache c.0012.irradcache --photons p.0012.photons -o f.0012.exr
+//     frame-render room.glb --frame 12 --size 640x360 --irradcache c.0012.irradcache --photons p.0012.photons -o
+// f.0012.exr
 //
 // Channels and attributes: formats/frames/frames.md.
 #include <CLI/CLI.hpp>
@@ -49,7 +50,8 @@ struct MotionFrame {
   NeighbourFrame get() const { return {frame ? &*frame : nullptr, view ? &*view : nullptr}; }
 };
 
-void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& tracer, const tools::IndirectLight& light) {
+void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& tracer,
+                const tools::IndirectLight& light) {
   tools::Stats& stats = tool.stats();
   stats.count("camera_rays", double(rendered.rays.camera));
   stats.count("bounce_rays", double(rendered.rays.bounce));
@@ -63,7 +65,8 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
 }
 
 void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing) {
-  tools::FrameOutputs outputs(tools::frame_name(options.output, number), options.frame.halves, tool.common().no_clobber);
+  tools::FrameOutputs outputs(tools::frame_name(options.output, number), options.frame.halves,
+                              tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
   const int camera = input.scene().camera_node(tool.common().camera);
@@ -73,8 +76,8 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tools::BaseFrame base;
   if (!options.mask.empty()) {
     const tools::Picture picture{options.width, options.height, view.world_to_camera(), view.world_to_ndc()};
-    base = tools::read_base_frame(tool, tools::frame_name(options.mask, number), tools::frame_name(options.base, number), frame,
-                                  picture);
+    base = tools::read_base_frame(tool, tools::frame_name(options.mask, number),
+                                  tools::frame_name(options.base, number), frame, picture);
     frame_options.mask = base.mask;
   }
   tool.stats().phase("build");
@@ -118,7 +121,8 @@ void check(Options& options, const std::vector<int>& frames) {
   if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
   for (const char* other : {".png", ".jpg", ".jpeg", ".hdr", ".tif", ".tiff", ".bmp", ".ppm", ".pfm", ".webp"})
     if (options.output.ends_with(other))
-      throw InputError("--output " + options.output + ": a frame is OpenEXR; name it f.exr, then tempolux-info --png f.png f.exr");
+      throw InputError("--output " + options.output +
+                       ": a frame is OpenEXR; name it f.exr, then tempolux-info --png f.png f.exr");
   if (options.integrator == "photons" && !options.light.irradcache.empty())
     throw InputError("--integrator photons reads no cache; leave out --irradcache, or the integrator");
   if (options.integrator == "photons" && options.light.photons.empty())
@@ -131,14 +135,16 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--points: only a cache needs them, --irradcache FILE");
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
-    throw InputError("--halves: pixels of --base are the same in both, so that they are not independent; leave out one");
+    throw InputError(
+        "--halves: pixels of --base are the same in both, so that they are not independent; leave out one");
   if (!options.base.empty() && options.half_float)
     throw InputError("--half: would round the pixels of --base, which are kept bit for bit; leave out one");
   if (options.pixel_error < 0) options.frame.pixel_error = options.traces_paths() ? 0 : 0.01;
   else options.frame.pixel_error = options.pixel_error;
   const bool halves = options.frame.halves || options.frame.target_error > 0;
   if (halves && options.frame.samples % 2 != 0) throw InputError("--spp: halves need an even number of samples");
-  if (halves && options.pixel_error > 0) throw InputError("--pixel-error: halves take the same samples everywhere; leave out one");
+  if (halves && options.pixel_error > 0)
+    throw InputError("--pixel-error: halves take the same samples everywhere; leave out one");
   if (halves) options.frame.pixel_error = 0;
   check_channels(options.channels);
 }
@@ -146,15 +152,23 @@ void check(Options& options, const std::vector<int>& frames) {
 void add_light_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("--integrator", options.integrator,
-                 "path: unbiased path tracing; photons, cache: indirect light from --photons or --irradcache; auto: by what is given")
-      ->capture_default_str()->check(CLI::IsMember({"auto", "path", "photons", "cache"}));
+                 "path: unbiased path tracing; photons, cache: indirect light from --photons or --irradcache; auto: by "
+                 "what is given")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "path", "photons", "cache"}));
   app.add_option("--photons", options.light.photons,
-                 ".photons file, or a pattern: indirect and caustic light; with --irradcache caustic light")->type_name("FILE");
-  app.add_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light")->type_name("FILE");
-  app.add_option("--points", options.light.points,
-                 ".irradpoints file, or a pattern: what missing records are gathered from (else points made from --photons)")->type_name("FILE");
-  app.add_option("--neighbours", options.light.photon_light.neighbours, "photons per density estimate of indirect light")
-      ->capture_default_str()->check(tools::number_between(2, kMaxNeighbours));
+                 ".photons file, or a pattern: indirect and caustic light; with --irradcache caustic light")
+      ->type_name("FILE");
+  app.add_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light")
+      ->type_name("FILE");
+  app.add_option(
+         "--points", options.light.points,
+         ".irradpoints file, or a pattern: what missing records are gathered from (else points made from --photons)")
+      ->type_name("FILE");
+  app.add_option("--neighbours", options.light.photon_light.neighbours,
+                 "photons per density estimate of indirect light")
+      ->capture_default_str()
+      ->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--max-radius", options.light.photon_light.max_radius,
                  "farthest photon used for it, m; 0: a twentieth of the scene's diagonal")
       ->capture_default_str()->check(tools::number_between(0));
@@ -172,11 +186,15 @@ void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   tool.size_option("--size", options.width, options.height, "picture size in pixels");
-  app.add_option("--spp", options.frame.samples, "samples per pixel: all, or with --pixel-error or --target-error the first")
-      ->capture_default_str()->check(tools::number_between(1, 1 << 24));
+  app.add_option("--spp", options.frame.samples,
+                 "samples per pixel: all, or with --pixel-error or --target-error the first")
+      ->capture_default_str()
+      ->check(tools::number_between(1, 1 << 24));
   app.add_option("--pixel-error", options.pixel_error,
-                 "more samples where pixels are uncertain: n = 12 (sigma / (12 x this x radiance))^0.75; 0: none; -1: 0.01 with photons or a cache, else none")
-      ->capture_default_str()->check(tools::number_between(-1.0, 1.0));
+                 "more samples where pixels are uncertain: n = 12 (sigma / (12 x this x radiance))^0.75; 0: none; -1: "
+                 "0.01 with photons or a cache, else none")
+      ->capture_default_str()
+      ->check(tools::number_between(-1.0, 1.0));
   app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
   add_light_options(tool, options);
@@ -190,17 +208,22 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--channels", options.channels,
                  "RGBA, layers (or emission, specular, direct, caustic, indirect), Z, N, P, id, albedo, motion")
       ->delimiter(',')->type_name("NAMES")->default_str("RGBA,Z,N,id");
-  app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")->type_name("FILE");
-  app.add_option("--base", options.base, "EXR file, or a pattern: where the other pixels come from, bit for bit")->type_name("FILE");
+  app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")
+      ->type_name("FILE");
+  app.add_option("--base", options.base, "EXR file, or a pattern: where the other pixels come from, bit for bit")
+      ->type_name("FILE");
   app.add_flag("--half", options.half_float, "colour as 16-bit floats; refuses values above 65504");
-  app.add_option("--compression", options.compression, "EXR compression")->capture_default_str()->check(CLI::IsMember({"zip", "none"}));
+  app.add_option("--compression", options.compression, "EXR compression")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"zip", "none"}));
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("frame-render", "Trace the pixels of a frame: by path tracing, from a photon map, or from an irradiance cache.",
+  tools::Tool tool("frame-render",
+                   "Trace the pixels of a frame: by path tracing, from a photon map, or from an irradiance cache.",
                    argc, argv);
   Options options;
   options.frame.samples = 8;

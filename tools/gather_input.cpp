@@ -25,7 +25,8 @@ void check_kinds(Tool& tool, const std::string& file, const std::string& kinds, 
     if (holds(kinds, kind)) continue;
     const std::string lacks = file + ": holds no " + kind + " light (its kinds: " + kinds + ")";
     if (kind != "caustic") throw InputError(lacks + ", which this scene has; " + remedy);
-    if (lobes.specular) tool.warn(lacks + ", which mirrors, glass and gloss of this scene throw: it is left out; " + remedy);
+    if (lobes.specular)
+      tool.warn(lacks + ", which mirrors, glass and gloss of this scene throw: it is left out; " + remedy);
   }
 }
 
@@ -44,7 +45,8 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
   tool.depends_on(file);
   formats::PhotonMap map = formats::load_photons(file);
   if (map.header.map != "global")
-    throw InputError(file + ": a " + map.header.map + " map is a part of the scene's light; give a global one, as photon-trace writes it");
+    throw InputError(file + ": a " + map.header.map +
+                     " map is a part of the scene's light; give a global one, as photon-trace writes it");
   check_identity(tool, file, map.header.identity, frame);
   const std::vector<std::string> kinds = needed == LightNeeded::all ? std::vector<std::string>{"indirect", "caustic"}
                                                                     : std::vector<std::string>{"caustic"};
@@ -57,7 +59,8 @@ GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer
   const SceneFrame& frame = tracer.frame();
   const bool caustic = holds(map.header.kinds, "caustic") || !lobes_of(frame).specular;
   GatherPoints result{place_points(frame, options), point_spacing(frame, options),
-                      caustic ? "direct,caustic,indirect" : "direct,indirect", map.header.history, map.header.emitted_count};
+                      caustic ? "direct,caustic,indirect" : "direct,indirect", map.header.history,
+                      map.header.emitted_count};
   estimate_points(tracer, lights, map.photons, shift_of(map.header.origin, frame), options, result.points);
   tool.stats().count("points", double(result.points.size()));
   return result;
@@ -77,7 +80,8 @@ void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& fram
   output.commit();
 }
 
-std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame, RecordStore& store) {
+std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame,
+                         RecordStore& store) {
   tool.depends_on(file, role);
   const formats::IrradcacheFile in = formats::load_irradcache(file);
   check_identity(tool, file, in.header.identity, frame);

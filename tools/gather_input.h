@@ -14,9 +14,9 @@ namespace tempolux::tools {
 /// What a reader of photons or points takes from them.
 enum class LightNeeded { all, caustic };
 
-/// Reads the photons of a whole map made for this state of the scene (InputError otherwise, see check_identity). It must
-/// hold the kinds that the scene's surfaces call for: without indirect light it is refused, without caustic light there
-/// is a warning.
+/// Reads the photons of a whole map made for this state of the scene (InputError otherwise, see check_identity). It
+/// must hold the kinds that the scene's surfaces call for: without indirect light it is refused, without caustic light
+/// there is a warning.
 formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed);
 
 /// Points and what they came from.
@@ -37,6 +37,7 @@ GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer
 void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output);
 
 /// Adds the records of a .irradcache file to a store; returns the file's history.
-std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame, RecordStore& store);
+std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame,
+                         RecordStore& store);
 
 }  // namespace tempolux::tools

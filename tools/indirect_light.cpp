@@ -5,7 +5,8 @@
 
 namespace tempolux::tools {
 
-IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, int number)
+IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer,
+                             const Lights& lights, int number)
     : tool_(tool), options_(options), tracer_(tracer), lights_(lights) {
   const SceneFrame& frame = tracer.frame();
   if (!options.photons.empty()) {
@@ -23,7 +24,8 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
   if (options.irradcache.empty()) return;
   const Lobes lobes = lobes_of(frame);
   if (options.photons.empty() && lobes.lambert && lobes.specular)
-    tool.warn(frame.scene->path + ": mirrors, glass and gloss throw caustic light, which a cache does not hold: it is left out; "
+    tool.warn(frame.scene->path +
+              ": mirrors, glass and gloss throw caustic light, which a cache does not hold: it is left out; "
               "give --photons FILE");
   tool.stats().phase("read cache");
   records_ = std::make_unique<RecordStore>(frame.bounds);
@@ -36,12 +38,15 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
 const FinalGather* IndirectLight::make_gather(int number) {
   if (!options_.points.empty()) points_ = read_points(tool_, frame_name(options_.points, number), tracer_.frame());
   else if (!options_.photons.empty())
-    points_ = make_points(tool_, read_photons(tool_, frame_name(options_.photons, number), tracer_.frame(), LightNeeded::all), tracer_,
-                          lights_, options_.points_made);
+    points_ =
+        make_points(tool_, read_photons(tool_, frame_name(options_.photons, number), tracer_.frame(), LightNeeded::all),
+                    tracer_, lights_, options_.points_made);
   else
-    throw InputError(frame_name(options_.irradcache, number) + ": has no record near some of what is seen, and there is nothing to "
+    throw InputError(frame_name(options_.irradcache, number) +
+                     ": has no record near some of what is seen, and there is nothing to "
                      "gather one from; give --points FILE or --photons FILE");
-  lookup_ = std::make_unique<PointLookup>(points_.points, tracer_.frame().bounds, points_.spacing, point_reach(tracer_));
+  lookup_ =
+      std::make_unique<PointLookup>(points_.points, tracer_.frame().bounds, points_.spacing, point_reach(tracer_));
   gather_ = std::make_unique<FinalGather>(tracer_, lights_, *lookup_, options_.gather);
   return gather_.get();
 }

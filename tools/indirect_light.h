@@ -19,7 +19,8 @@ struct IndirectLightOptions {
 /// Opens what the options name, checked against the frame's identity, and owns it while the frame is rendered.
 class IndirectLight {
  public:
-  IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, int number);
+  IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights,
+                int number);
 
   /// nullptr: none was named, trace paths.
   const DiffuseLight* get() const { return cache_ ? static_cast<const DiffuseLight*>(cache_.get()) : photons_.get(); }

@@ -95,7 +95,9 @@ void append_row(std::string& to, const std::array<double, 3>& position, const Ph
                     double(photon.flux[2]), double(normal[0]), double(normal[1]), double(normal[2]),
                     unsigned(photon.object), kKindNames[std::size_t(photon.kind)], unsigned(photon.bounce));
   to.append(text, std::size_t(length));
-  const auto add = [&](double value) { to.append(text, std::size_t(std::snprintf(text, sizeof text, ",%.6g", value))); };
+  const auto add = [&](double value) {
+    to.append(text, std::size_t(std::snprintf(text, sizeof text, ",%.6g", value)));
+  };
   if (columns & column_direction)
     for (const float w : decode_normal(block.directions[i])) add(double(w));
   if (columns & column_albedo)
@@ -177,8 +179,8 @@ void export_photons(const std::string& path, const std::string& format, Output& 
   const std::uint32_t columns = reader.header().columns;
   if (!ply)
     text = std::string("x_m,y_m,z_m,flux_r_W,flux_g_W,flux_b_W,nx,ny,nz,object,kind,bounce") +
-           (columns & column_direction ? ",wi_x,wi_y,wi_z" : "") + (columns & column_albedo ? ",albedo_r,albedo_g,albedo_b" : "") +
-           "\n";
+           (columns & column_direction ? ",wi_x,wi_y,wi_z" : "") +
+           (columns & column_albedo ? ",albedo_r,albedo_g,albedo_b" : "") + "\n";
   PhotonBlock block;
   while (reader.read_block(block)) {
     for (std::size_t i = 0; i < block.photons.size(); ++i) {

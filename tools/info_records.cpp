@@ -199,10 +199,12 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
   if (csv)
     for (const auto& [gradient, unit] : {std::pair{"rotational", "W_m2"}, {"translational", "W_m3"}})
       for (const char* channel : {"_r", "_g", "_b"})
-        for (const char* axis : {"_x", "_y", "_z"}) columns.push_back({std::string(gradient) + channel + axis, unit, 1});
+        for (const char* axis : {"_x", "_y", "_z"})
+          columns.push_back({std::string(gradient) + channel + axis, unit, 1});
   if (influence) columns.push_back({"influence", "W_m2", 1});
   if (update) columns.push_back({"update", "W_m2", 3});
-  PointTable table(format, output, file.records.size(), "irradiance records; irradiance in W/m^2, positions in m", columns);
+  PointTable table(format, output, file.records.size(), "irradiance records; irradiance in W/m^2, positions in m",
+                   columns);
   for (const IrradianceCacheRecord& record : file.records) {
     start_row(table, file.header.origin, record, record.normal);
     for (const float e : record.irradiance) table.add(double(e));

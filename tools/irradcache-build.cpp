@@ -39,15 +39,16 @@ struct Options {
 };
 
 /// Points from a file of photons, in two phases: only the second works with all threads.
-tools::GatherPoints points_of_photons(tools::Tool& tool, const std::string& file, const Tracer& tracer, const Lights& lights,
-                                      const PointOptions& options) {
+tools::GatherPoints points_of_photons(tools::Tool& tool, const std::string& file, const Tracer& tracer,
+                                      const Lights& lights, const PointOptions& options) {
   tool.stats().phase("read photons");
   const formats::PhotonMap map = tools::read_photons(tool, file, tracer.frame(), tools::LightNeeded::all);
   tool.stats().phase("points", true);
   return tools::make_points(tool, map, tracer, lights, options);
 }
 
-void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing) {
+void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number,
+                  StandingTree& standing) {
   tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
@@ -71,7 +72,8 @@ formats::IrradcacheHeader cache_header(const Options& options, const SceneFrame&
   header.rays = std::uint32_t(options.gather.rays);
   header.error_bound = double(options.placement.error_bound);
   for (const IrradianceRecord& record : store.records()) {
-    header.min_radius = header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
+    header.min_radius =
+        header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
     header.max_radius = std::max(header.max_radius, double(record.radius));
   }
   std::vector<int> sorted = frames;
@@ -108,7 +110,8 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   const FinalGather gather(tracer, lights, lookup, options.gather);
   RecordStore store(first.bounds);
   std::string history = points.history;
-  if (!options.records.empty()) history = tools::read_records(tool, options.records, tools::InputRole::replaceable, first, store);
+  if (!options.records.empty())
+    history = tools::read_records(tool, options.records, tools::InputRole::replaceable, first, store);
 
   tool.stats().phase("records", true);
   GatherCounts counts;
@@ -116,12 +119,15 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   for (int number : frames) {
     const SceneFrame frame = input.at(number);
     if (!formats::stale_concerns(tools::identity_of(frame), tools::identity_of(first)).empty())
-      throw InputError(options.scene() + ": frame " + std::to_string(number) + " is lit or built differently from frame " +
-                       std::to_string(first.frame) + ": one cache cannot hold for both; make one for each");
+      throw InputError(options.scene() + ": frame " + std::to_string(number) +
+                       " is lit or built differently from frame " + std::to_string(first.frame) +
+                       ": one cache cannot hold for both; make one for each");
     const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
     PlacementOptions placement = options.placement;
     if (number != frames.front()) placement.min_weight *= kLaterWeight;
-    const PixelView seen = [&](float x, float y, const PathRandom* random) { return seen_through(tracer, view, x, y, random); };
+    const PixelView seen = [&](float x, float y, const PathRandom* random) {
+      return seen_through(tracer, view, x, y, random);
+    };
     const std::size_t added = place_records(gather, seen, options.width, options.height, first.bounds, placement,
                                             store, counts, [&](double done) { tool.progress(done); });
     tool.stats().set("records_added." + std::to_string(number), double(added));
@@ -159,9 +165,11 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
     refuse_unread(app, "points", {"--points", "--records", "--rays", "--error-bound", "--radii", "--free-radii",
                                   "--min-radius-px", "--min-weight", "--size", "--keep-points"});
   else if (!options.points.empty())
-    refuse_unread(app, "a run with --points", {"--photons", "--point-count", "--neighbours", "--light-samples", "--keep-points"});
+    refuse_unread(app, "a run with --points",
+                  {"--photons", "--point-count", "--neighbours", "--light-samples", "--keep-points"});
   if (options.point_count < 1 || options.point_count > kMaxPoints)
-    throw InputError("--point-count: " + std::to_string(options.point_count) + " is not from 1 to " + std::to_string(kMaxPoints));
+    throw InputError("--point-count: " + std::to_string(options.point_count) + " is not from 1 to " +
+                     std::to_string(kMaxPoints));
   if (mode == "points" && frames.size() > 1 && !tools::has_frame_pattern(options.output))
     throw InputError("--output: several frames need a pattern, for example f.####.irradpoints");
 }
@@ -170,8 +178,10 @@ void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.inputs, "glTF 2.0 scene, after the word points or records if only that is wanted")
       ->required()->expected(1, 2)->type_name("[points|records] SCENE");
-  app.add_option("--photons", options.photons, ".photons file of this frame with caustic and indirect light")->type_name("FILE");
-  app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons")->type_name("FILE");
+  app.add_option("--photons", options.photons, ".photons file of this frame with caustic and indirect light")
+      ->type_name("FILE");
+  app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons")
+      ->type_name("FILE");
   app.add_option("--records", options.records, ".irradcache file to extend: its records are kept")->type_name("FILE");
   tool.count_option("--point-count", options.point_count, "irradiance points per side of all surfaces together");
   app.add_option("--neighbours", options.point.neighbours, "photons per density estimate")
@@ -179,18 +189,23 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
       ->capture_default_str()->check(tools::number_between(1, 4096));
   app.add_option("--rays", options.gather.rays,
-                 "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many, all of it up "
+                 "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many, all "
+                 "of it up "
                  "to 8 times where light comes from a small share of it")
-      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
+      ->capture_default_str()
+      ->check(tools::number_between(1, 1 << 20));
   app.add_option("--error-bound", options.placement.error_bound,
                  "radius of a record / harmonic mean distance to what it sees: smaller is finer")
       ->capture_default_str()->check(tools::number_between(1e-3, 2.0));
-  app.add_option("--radii", options.radii,
-                 "what the radius of a record follows from: ward (distances of what it sees) or hessian (second derivatives)")
-      ->capture_default_str()->check(CLI::IsMember({"ward", "hessian"}));
-  app.add_flag("--free-radii", options.free_radii,
-               "leave radii as each record's own rays tell; else none exceeds a neighbour's by more than the error bound x "
-               "their distance: what is small is missed by many");
+  app.add_option(
+         "--radii", options.radii,
+         "what the radius of a record follows from: ward (distances of what it sees) or hessian (second derivatives)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"ward", "hessian"}));
+  app.add_flag(
+      "--free-radii", options.free_radii,
+      "leave radii as each record's own rays tell; else none exceeds a neighbour's by more than the error bound x "
+      "their distance: what is small is missed by many");
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
       ->capture_default_str()->check(tools::number_above(0));
   app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
@@ -203,7 +218,8 @@ void add_options(tools::Tool& tool, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("irradcache-build", "Spread irradiance points over the surfaces; gather irradiance records where a camera needs them.",
+  tools::Tool tool("irradcache-build",
+                   "Spread irradiance points over the surfaces; gather irradiance records where a camera needs them.",
                    argc, argv);
   Options options;
   add_options(tool, options);

@@ -20,8 +20,8 @@ std::string after_colon(const std::string& type) {
   return colon == std::string::npos ? "" : type.substr(colon + 1);
 }
 
-/// A check for numbers of [least, most], or of (least, most] if `above`. Its words are made when somebody reads them: every
-/// start of a tool sets up dozens of checks.
+/// A check for numbers of [least, most], or of (least, most] if `above`. Its words are made when somebody reads them:
+/// every start of a tool sets up dozens of checks.
 class NumberCheck : public CLI::Validator {
  public:
   NumberCheck(double least, double most, bool above) {
@@ -32,7 +32,8 @@ class NumberCheck : public CLI::Validator {
     desc_function_ = limits;
     func_ = [=](std::string& text) -> std::string {
       double value = 0;
-      if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && (above ? value > least : value >= least) && value <= most)
+      if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && (above ? value > least : value >= least) &&
+          value <= most)
         return "";
       return "'" + text + "' is not " + (above || std::isinf(most) ? "" : "from ") + limits();
     };

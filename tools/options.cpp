@@ -99,14 +99,16 @@ void Tool::environment_options() {
   CLI::App& app = state_->app;
   Common& common = state_->common;
   CLI::Option* file =
-      app.add_option("--environment", common.environment,
-                     "latitude-longitude map of the light around the scene, .hdr or .exr: its middle is +Z, its top +Y; "
-                     "maps made for Blender's axes want --environment-rotation 90")
+      app.add_option(
+             "--environment", common.environment,
+             "latitude-longitude map of the light around the scene, .hdr or .exr: its middle is +Z, its top +Y; "
+             "maps made for Blender's axes want --environment-rotation 90")
           ->type_name("FILE");
-  CLI::Option* color = parsed_option(app, "--environment-color", "the same light from all around, W/m^2/sr, instead of a map",
-                                     "", [&common](const std::string& text) { common.environment_color = parse_color(text); })
-                           ->type_name("R,G,B")
-                           ->excludes(file);
+  CLI::Option* color =
+      parsed_option(app, "--environment-color", "the same light from all around, W/m^2/sr, instead of a map", "",
+                    [&common](const std::string& text) { common.environment_color = parse_color(text); })
+          ->type_name("R,G,B")
+          ->excludes(file);
   const auto needs_one = [file, color](const CLI::Option* option) {
     if (option->count() > 0 && file->count() == 0 && color->count() == 0)
       throw CLI::RequiresError(option->get_name(), "--environment or --environment-color");

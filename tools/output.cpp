@@ -136,7 +136,8 @@ struct Ledger {
   std::mutex mutex;
   std::vector<Line> lines;
   std::set<std::string> open_keys;   ///< of the lines that are open
-  std::map<FileId, std::string> to_be_replaced;   ///< by the lines that are open: what stands under their names, and these
+  std::map<FileId, std::string>
+      to_be_replaced;  ///< by the lines that are open: what stands under their names, and these
   std::map<FileId, std::string> inputs;           ///< and their names
 
   /// Neither number is an input's for good: a file that is gone leaves it to another.

@@ -53,9 +53,9 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
 
   tool.stats().phase("trace", true);
   const PhotonTracer photons(tracer, lights, photon_options);
-  const PhotonMapResult result =
-      write_photon_map(photons, photon_options, header, [&](const void* data, std::size_t size) { output.write(data, size); },
-                       [&](double fraction) { tool.progress(fraction); });
+  const PhotonMapResult result = write_photon_map(
+      photons, photon_options, header, [&](const void* data, std::size_t size) { output.write(data, size); },
+      [&](double fraction) { tool.progress(fraction); });
   tool.stats().phase("commit");
   output.commit();
   tool.stats().end_phase();
@@ -70,14 +70,19 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("photon-trace", "Trace photons from the lights of a scene and record where they arrive.", argc, argv);
+  tools::Tool tool("photon-trace", "Trace photons from the lights of a scene and record where they arrive.", argc,
+                   argv);
   Options options;
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
-  app.add_option("--photons", options.photons, "photon paths to start per frame (10k, 1M, 1G), rounded up to a multiple of the groups")->capture_default_str();
+  app.add_option("--photons", options.photons,
+                 "photon paths to start per frame (10k, 1M, 1G), rounded up to a multiple of the groups")
+      ->capture_default_str();
   app.add_option("--kinds", options.kinds, "kinds of light to record: direct,caustic,indirect")->capture_default_str();
-  app.add_option("--groups", options.groups, "photon groups N_g (photon i is of group i mod N_g), or auto")->capture_default_str();
-  app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")->required();
+  app.add_option("--groups", options.groups, "photon groups N_g (photon i is of group i mod N_g), or auto")
+      ->capture_default_str();
+  app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
+      ->required();
   tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_frames);
 
   return tool.run([&] {

@@ -31,7 +31,8 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// Removed with all that the pilots wrote, by a signal too. Named as left-overs are, for --tidy, and readable by nobody else.
+/// Removed with all that the pilots wrote, by a signal too. Named as left-overs are, for --tidy, and readable by nobody
+/// else.
 class Folder {
  public:
   Folder() : path_(short_run_stem() + std::to_string(::getpid())), mark_(path_.string()) {
@@ -40,7 +41,8 @@ class Folder {
     if (::lstat(path_.c_str(), &there) == 0 && there.st_uid == ::geteuid()) fs::remove_all(path_, ignored);
     if (::mkdir(path_.c_str(), 0700) == 0) return;
     mark_.release();
-    throw ResourceError(path_.string() + ": cannot make a folder for short runs: " + std::strerror(errno) + "; set TMPDIR");
+    throw ResourceError(path_.string() + ": cannot make a folder for short runs: " + std::strerror(errno) +
+                        "; set TMPDIR");
   }
   ~Folder() {
     std::error_code ignored;
@@ -208,8 +210,8 @@ class Pilots {
     const std::string output = folder_.file("p.irradpoints");
     words.insert(words.end(), {"--photons", folder_.file("p.photons"), "-o", output});
     const Cost cost = run(folder_, "irradcache-build", words, output);
-    estimate_.stages.push_back(
-        scaled("irradcache-build points", double(counts_.lights.size()), pilot_of(cost, {"read photons", "points", "write"}, 1), 1));
+    estimate_.stages.push_back(scaled("irradcache-build points", double(counts_.lights.size()),
+                                      pilot_of(cost, {"read photons", "points", "write"}, 1), 1));
   }
   /// Records for pictures of `width` pixels, of one view or two.
   Cost place(int width, int height, bool both, const std::string& output) {
@@ -217,7 +219,8 @@ class Pilots {
     take(words, "--size", "");
     if (both) words[1] += "," + std::to_string(counts_.second);
     words.insert(words.begin(), "records");
-    words.insert(words.end(), {"--points", folder_.file("p.irradpoints"), "--size", size_of(width, height), "-o", output});
+    words.insert(words.end(),
+                 {"--points", folder_.file("p.irradpoints"), "--size", size_of(width, height), "-o", output});
     return run(folder_, "irradcache-build", words, output);
   }
   void records() {
@@ -227,7 +230,8 @@ class Pilots {
     const Cost large = place(width_, height_, false, output);
     const double small_pixels = double(half_width) * half_height;
     const double n1 = small.count("records"), n2 = large.count("records");
-    const TwoCosts costs = two_costs(n1, small_pixels, small.phases({"records"}), n2, pilot_pixels(), large.phases({"records"}));
+    const TwoCosts costs =
+        two_costs(n1, small_pixels, small.phases({"records"}), n2, pilot_pixels(), large.phases({"records"}));
     const double first = power_law(half_width, n1, width_, n2, options_.width);
     double others = 0;
     if (counts_.second != counts_.first) {
@@ -245,7 +249,8 @@ class Pilots {
     take(words, "--size", "");
     words.insert(words.end(), {"--size", size_of(width, height), "-o", output});
     if (!kinds_.empty())
-      words.insert(words.end(), {"--irradcache", folder_.file("p.irradcache"), "--points", folder_.file("p.irradpoints")});
+      words.insert(words.end(),
+                   {"--irradcache", folder_.file("p.irradcache"), "--points", folder_.file("p.irradpoints")});
     if (kinds_.find("caustic") != std::string::npos)
       words.insert(words.end(), {"--photons", folder_.file("p.photons")});
     return run(folder_, "frame-render", words, output);

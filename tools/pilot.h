@@ -21,8 +21,8 @@ struct RunOptions {
 std::string short_run_stem();
 
 /// Runs the programs beside this one on a fraction of the photons and pixels, for the first picture of the plan, in
-/// a folder of its own that is removed again, by a signal too. Takes a few hundredths of the time of one frame. ResourceError if one
-/// of them fails; what it said stands on standard error.
+/// a folder of its own that is removed again, by a signal too. Takes a few hundredths of the time of one frame.
+/// ResourceError if one of them fails; what it said stands on standard error.
 Estimate estimate_run(const std::string& scene, const Plan& plan, const RunOptions& options);
 
 }  // namespace tempolux::tools

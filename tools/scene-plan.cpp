@@ -65,8 +65,8 @@ void remove_left_overs(tools::Tool& tool, const Options& options) {
 }
 
 /// The plan as files; of those whose content would be the same only plan.mk is written.
-void write_plan(tools::Tool& tool, const Plan& plan, const Scene& scene, const Options& options, tools::Output& makefile,
-                const std::string& estimate) {
+void write_plan(tools::Tool& tool, const Plan& plan, const Scene& scene, const Options& options,
+                tools::Output& makefile, const std::string& estimate) {
   const std::string rules = plan_makefile(plan, options.folder, scene.files);
   std::size_t changed = 0;
   const std::vector<PlanFile> states = state_files(plan);
@@ -119,32 +119,45 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; needed but for --tidy");
-  const CLI::Option* output = tool.output_option(options.folder, "folder for plan.json, plan.mk and state/; with --estimate "
-                                                 "only if it is given")->capture_default_str();
+  const CLI::Option* output = tool.output_option(options.folder,
+                                                 "folder for plan.json, plan.mk and state/; with --estimate "
+                                                 "only if it is given")
+                                  ->capture_default_str();
   const auto add = [&](CLI::Option* option) {
     tool.leave_out_of_history(option);
     return option;
   };
-  add(app.add_flag("--estimate", options.estimate,
-                   "print what the run will cost: CPU seconds and bytes of each stage, from short runs on this machine"));
+  add(app.add_flag(
+      "--estimate", options.estimate,
+      "print what the run will cost: CPU seconds and bytes of each stage, from short runs on this machine"));
   add(app.add_flag("--json", options.json, "print the estimate as JSON"));
-  tool.leave_out_of_history(tool.size_option("--size", options.run.width, options.run.height,
-                                             "size of the frames to estimate, pixels, unless the options below say it"));
-  add(app.add_option("--photon-options", options.run.photons, "options photon-trace will get, as one word"))->type_name("TEXT");
-  add(app.add_option("--point-options", options.run.points, "options irradcache-build points will get"))->type_name("TEXT");
-  add(app.add_option("--cache-options", options.run.cache, "options irradcache-build records will get"))->type_name("TEXT");
+  tool.leave_out_of_history(
+      tool.size_option("--size", options.run.width, options.run.height,
+                       "size of the frames to estimate, pixels, unless the options below say it"));
+  add(app.add_option("--photon-options", options.run.photons, "options photon-trace will get, as one word"))
+      ->type_name("TEXT");
+  add(app.add_option("--point-options", options.run.points, "options irradcache-build points will get"))
+      ->type_name("TEXT");
+  add(app.add_option("--cache-options", options.run.cache, "options irradcache-build records will get"))
+      ->type_name("TEXT");
   add(app.add_option("--frame-options", options.run.frames, "options frame-render will get"))->type_name("TEXT");
   add(app.add_option("--jobs", options.jobs, "processes at a time to estimate for, as make -j"))
       ->type_name("N")->capture_default_str()->check(tools::number_between(1, 100000));
-  add(app.add_option("--tidy", options.tidy_folder,
-                     "instead: remove unfinished files of killed runs from this folder and those in it, and from the folder "
-                     "for temporary files what killed --estimate left"))->type_name("FOLDER");
-  add(app.add_option("--tidy-hours", options.tidy_hours, "unfinished files of other hosts count as left over after so many hours"))
-      ->type_name("HOURS")->capture_default_str()->check(tools::number_between(0));
+  add(app.add_option(
+          "--tidy", options.tidy_folder,
+          "instead: remove unfinished files of killed runs from this folder and those in it, and from the folder "
+          "for temporary files what killed --estimate left"))
+      ->type_name("FOLDER");
+  add(app.add_option("--tidy-hours", options.tidy_hours,
+                     "unfinished files of other hosts count as left over after so many hours"))
+      ->type_name("HOURS")
+      ->capture_default_str()
+      ->check(tools::number_between(0));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
 
   return tool.run([&] {
-    if (options.tidy_folder.empty() && options.scene.empty()) throw InputError("scene is required; see scene-plan --help");
+    if (options.tidy_folder.empty() && options.scene.empty())
+      throw InputError("scene is required; see scene-plan --help");
     if (!options.tidy_folder.empty()) {
       if (!options.scene.empty()) throw InputError("--tidy FOLDER needs no scene; leave it out");
       remove_left_overs(tool, options);

@@ -76,7 +76,8 @@ formats::Identity identity_of(const SceneFrame& frame) {
   return {h.static_geometry, h.moving_geometry, h.materials, h.lights, h.media, frame.frame, frame.frame};
 }
 
-void check_identity(Tool& tool, const std::string& file, const formats::Identity& file_identity, const SceneFrame& frame) {
+void check_identity(Tool& tool, const std::string& file, const formats::Identity& file_identity,
+                    const SceneFrame& frame) {
   if (!file_identity.known()) {
     tool.warn(file + ": does not say which scene it was made for; used as it is");
     return;

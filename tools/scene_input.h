@@ -50,6 +50,7 @@ formats::Identity identity_of(const SceneFrame& frame);
 
 /// Refuses a file made for another state of the scene, naming the concern, the file and the frame (InputError),
 /// or warns with --allow-stale; a file without identity is accepted with one warning.
-void check_identity(Tool& tool, const std::string& file, const formats::Identity& file_identity, const SceneFrame& frame);
+void check_identity(Tool& tool, const std::string& file, const formats::Identity& file_identity,
+                    const SceneFrame& frame);
 
 }  // namespace tempolux::tools

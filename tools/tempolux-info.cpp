@@ -113,11 +113,13 @@ int answer(tools::Tool& tool, Request& request) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("tempolux-info", "Tell what is in .photons, .irradpoints, .irradcache, frames and other images, and our JSON files.",
+  tools::Tool tool("tempolux-info",
+                   "Tell what is in .photons, .irradpoints, .irradcache, frames and other images, and our JSON files.",
                    argc, argv);
   Request request;
   CLI::App& app = tool.app();
-  app.add_option("files", request.files, "files; - is one of ours on standard input: .photons, .irradpoints or .irradcache")
+  app.add_option("files", request.files,
+                 "files; - is one of ours on standard input: .photons, .irradpoints or .irradcache")
       ->type_name("FILE")
       ->required();
   CLI::Option* check =
@@ -127,9 +129,10 @@ int main(int argc, char** argv) {
   CLI::Option* diff =
       app.add_flag("--diff", request.diff, "of two files: where they differ; exit 1 if their data do");
   app.add_flag("--json", request.json, "facts as JSON instead of text");
-  CLI::Option* format = app.add_option("--export", request.format, "photons, irradiance points or records as points, with -o: ply or csv")
-                            ->type_name("FORMAT")
-                            ->check(CLI::IsMember({"ply", "csv"}));
+  CLI::Option* format =
+      app.add_option("--export", request.format, "photons, irradiance points or records as points, with -o: ply or csv")
+          ->type_name("FORMAT")
+          ->check(CLI::IsMember({"ply", "csv"}));
   CLI::Option* output = tool.output_option(request.output, "file that --export writes; - is standard output");
   CLI::Option* png = tool.output_option(request.png, "the image as a picture", "--png");
   CLI::Option* sheet =

@@ -78,7 +78,8 @@ Tidied tidy(const std::string& folder, double other_hosts_s) {
 Tidied tidy_folders(const std::string& stem) {
   Tidied tidied;
   std::error_code error;
-  for (fs::directory_iterator entries(fs::path(stem).parent_path(), error), end; !error && entries != end; entries.increment(error)) {
+  for (fs::directory_iterator entries(fs::path(stem).parent_path(), error), end; !error && entries != end;
+       entries.increment(error)) {
     const std::string path = entries->path().string();
     const std::optional<Writer> writer = writer_of(entries->path().filename().string());
     struct stat status {};

@@ -46,8 +46,8 @@ enum class InputRole {
 };
 
 enum CommonOptions : unsigned {
-  uses_scene = 1,   ///< --fps --segment --animation --light-units --environment... --state --allow-stale --allow-outside
-  uses_seed = 2,    ///< --seed --seed-mode
+  uses_scene = 1,  ///< --fps --segment --animation --light-units --environment... --state --allow-stale --allow-outside
+  uses_seed = 2,   ///< --seed --seed-mode
   uses_camera = 4,  ///< --camera
   uses_frames = 8,  ///< --frame N or --frames SPEC, into Common::frames
 };

@@ -25,7 +25,9 @@ struct Affine {
 
   friend Affine operator*(const Affine& a, const Affine& b) {
     Affine r;
-    for (int i = 0; i < 3; ++i) r.row[std::size_t(i)] = a.row[std::size_t(i)].x * b.row[0] + a.row[std::size_t(i)].y * b.row[1] + a.row[std::size_t(i)].z * b.row[2];
+    for (int i = 0; i < 3; ++i)
+      r.row[std::size_t(i)] =
+          a.row[std::size_t(i)].x * b.row[0] + a.row[std::size_t(i)].y * b.row[1] + a.row[std::size_t(i)].z * b.row[2];
     r.translation = a.point(b.translation);
     return r;
   }

@@ -90,7 +90,10 @@ class Bsdf {
   bool is_matte() const { return diffuse_ && !specular_ && !(transmission_ > 0); }
   Sample sample_matte(Vec3 wo, Vec3 cosine_direction) const {
     if (!(wo.z > 0)) return {};
-    return {.wi = cosine_direction, .weight = rho_, .pdf_solid_angle = pdf_hemisphere_cos(cosine_direction.z), .diffuse = true};
+    return {.wi = cosine_direction,
+            .weight = rho_,
+            .pdf_solid_angle = pdf_hemisphere_cos(cosine_direction.z),
+            .diffuse = true};
   }
   /// Density of sample() choosing wi by event D, by event S [1/sr], choice probability included.
   float pdf_diffuse(Vec3 wi, Vec3 wo) const;

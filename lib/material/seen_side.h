@@ -6,8 +6,8 @@
 
 namespace tempolux {
 
-/// Normals on the side of wo (unit, away from the surface) and wo in the frame in which the material scatters. Where the
-/// shading normal looks away from wo the geometric one takes its place.
+/// Normals on the side of wo (unit, away from the surface) and wo in the frame in which the material scatters. Where
+/// the shading normal looks away from wo the geometric one takes its place.
 struct SeenSide {
   Vec3 normal_geometric, normal;
   Frame frame;                     ///< z = normal

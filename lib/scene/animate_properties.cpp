@@ -47,7 +47,10 @@ void set(Material& material, ColorFactors& emission, Path path, const std::array
 }  // namespace
 
 const char* kind_of(Path path) {
-  return path <= Path::weights ? "node" : path <= Path::transmission ? "material" : path <= Path::outer_cone ? "light" : "camera";
+  return path <= Path::weights        ? "node"
+         : path <= Path::transmission ? "material"
+         : path <= Path::outer_cone   ? "light"
+                                      : "camera";
 }
 
 std::vector<Material> Animator::materials(double time_s) const {

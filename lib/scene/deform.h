@@ -19,7 +19,8 @@ struct Shape {
 
 /// The vertices of a primitive in a pose. Morph targets first: p + sum of weight x displacement, normals alike.
 /// Then, if the pose has joints and the primitive follows them, M p with M = sum of weight x world_from_mesh of
-/// the joints, normals by the inverse transpose of M, tangents by M without its translation; else world_from_node. glTF 2.0, 3.7.2.2 and 3.7.3.
+/// the joints, normals by the inverse transpose of M, tangents by M without its translation; else world_from_node. glTF
+/// 2.0, 3.7.2.2 and 3.7.3.
 ///
 /// Normals are dropped (flat shading) where a vertex has none in the pose: M is flat there, or they cancel.
 Shape deformed(const Primitive& primitive, const Pose& pose, const Affine& world_from_node, Vec3d origin);

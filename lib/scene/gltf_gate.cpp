@@ -184,7 +184,8 @@ void keep_pointer_channels(Json& document, Gated& gated) {
         continue;
       }
       const Json::json_pointer place("/extensions/KHR_animation_pointer/pointer");
-      const std::string pointer = target.contains(place) && target[place].is_string() ? target[place].get<std::string>() : "";
+      const std::string pointer =
+          target.contains(place) && target[place].is_string() ? target[place].get<std::string>() : "";
       gated.pointers.push_back({a, channel["sampler"].get<int>(), pointer});
     }
     animation["channels"] = std::move(kept);
@@ -319,7 +320,8 @@ GatedImage approve_image(const Json& image, std::size_t index, const std::string
     else
       approved.base64 = uri.substr(comma + 1);
   } else if (has_scheme(uri)) {
-    approved.refused = "\"" + uri.substr(0, 80) + "\" is not a relative path; fetch the file and name it by a relative path";
+    approved.refused =
+        "\"" + uri.substr(0, 80) + "\" is not a relative path; fetch the file and name it by a relative path";
   } else {
     approved.path = resolved(uri, path, place, options);
   }

@@ -2,8 +2,8 @@
 //
 // tinygltf is a parser, not a validator: it recurses as deep as the JSON nests, opens any path a URI names
 // and takes wrong types for missing ones. So the JSON is parsed here first, with limits, checked, and handed
-// on rewritten: images, extras (but those of nodes, kept beside) and unknown extensions gone, every buffer's URI replaced by the name of a byte
-// range that the gate has approved.
+// on rewritten: images, extras (but those of nodes, kept beside) and unknown extensions gone, every buffer's URI
+// replaced by the name of a byte range that the gate has approved.
 #pragma once
 
 #include <cstdint>

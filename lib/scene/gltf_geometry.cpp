@@ -176,7 +176,8 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
   const Material& material = import.scene.materials[primitive.material];
   if (primitive.tangents.empty() && material.textures && material.textures->normal) {
     make_tangents(primitive, material.textures->normal);
-    import.take_memory(primitive.tangents.size() * (sizeof(Vec3) * (1 + primitive.targets.size()) + sizeof(float)), place);
+    import.take_memory(primitive.tangents.size() * (sizeof(Vec3) * (1 + primitive.targets.size()) + sizeof(float)),
+                       place);
   }
   return primitive;
 }

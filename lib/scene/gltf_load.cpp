@@ -86,7 +86,8 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   check_accessors(import);
   import_nodes(import);
   for (auto& [source, extras] : gated.node_extras)
-    if (const int node = import.node_from_source[source]; node >= 0) scene.nodes[std::size_t(node)].extras = std::move(extras);
+    if (const int node = import.node_from_source[source]; node >= 0)
+      scene.nodes[std::size_t(node)].extras = std::move(extras);
   import_materials(import);
   if (!import.images.empty())
     scene.images = std::make_shared<const TextureImages>(std::move(import.images), options.textures);

@@ -149,7 +149,8 @@ Material read_material(Import& import, std::size_t index) {
   textures.base_color = read_texture(import, pbr.baseColorTexture, place + ".baseColorTexture");
   textures.metallic_roughness = read_texture(import, pbr.metallicRoughnessTexture, place + ".metallicRoughnessTexture");
   textures.normal = read_texture(import, source.normalTexture, place + ".normalTexture");
-  textures.normal_scale = limited(import, source.normalTexture.scale, -kNoUpper, kNoUpper, place + ".normalTexture.scale");
+  textures.normal_scale =
+      limited(import, source.normalTexture.scale, -kNoUpper, kNoUpper, place + ".normalTexture.scale");
   textures.emission = read_texture(import, source.emissiveTexture, place + ".emissiveTexture");
   if (source.occlusionTexture.index >= 0) import.ignore("occlusion textures (occlusion is computed)");
   if (textures.any()) material.textures = textures;

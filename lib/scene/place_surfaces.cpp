@@ -35,7 +35,8 @@ bool may_emit(const Scene& scene, std::uint32_t material) {
   if (scene.materials[material].emissive()) return true;
   for (const Animation& animation : scene.animations)
     for (const AnimationTrack& track : animation.tracks)
-      if ((track.path == AnimationTrack::Path::emissive_factor || track.path == AnimationTrack::Path::emissive_strength) &&
+      if ((track.path == AnimationTrack::Path::emissive_factor ||
+           track.path == AnimationTrack::Path::emissive_strength) &&
           std::uint32_t(track.target) == material)
         return true;
   return false;

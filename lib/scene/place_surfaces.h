@@ -18,8 +18,9 @@ std::string node_place(const Scene& scene, std::size_t node);
 
 /// Which primitives stand in the scene so often that their surfaces are better instances than copies: those of 4096
 /// triangles or more that stand twice or more, rigid, opaque and dark at all times. Each where it stands is an instance
-/// if its transform's norm times that of its inverse is at most 30 (one axis up to 21 times the others) and it is within
-/// 256 times its size of the world's origin: elsewhere rounding in the instance's space would show, and it is a copy.
+/// if its transform's norm times that of its inverse is at most 30 (one axis up to 21 times the others) and it is
+/// within 256 times its size of the world's origin: elsewhere rounding in the instance's space would show, and it is a
+/// copy.
 class Sharing {
  public:
   explicit Sharing(const Scene& scene);

@@ -62,8 +62,9 @@ void require_lights(const Scene& scene) {
   };
   for (const Animation& animation : scene.animations)  // dark at rest, lit at some time
     for (const AnimationTrack& track : animation.tracks)
-      if (track.path == AnimationTrack::Path::emissive_factor || track.path == AnimationTrack::Path::emissive_strength ||
-          track.path == AnimationTrack::Path::light_color || track.path == AnimationTrack::Path::light_intensity)
+      if (track.path == AnimationTrack::Path::emissive_factor ||
+          track.path == AnimationTrack::Path::emissive_strength || track.path == AnimationTrack::Path::light_color ||
+          track.path == AnimationTrack::Path::light_intensity)
         return;
   for (const Node& node : scene.nodes) {
     if (node.light >= 0 && max_component(scene.lights[std::size_t(node.light)].intensity) > 0) return;

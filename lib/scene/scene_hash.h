@@ -15,7 +15,8 @@ namespace tempolux {
 /// Geometry of surfaces, in their order: object, winding, material number, positions, normals, texture
 /// coordinates, triangles; and the origin they are relative to.
 std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surface> surfaces);
-/// Reflecting properties of the materials in use, as evaluated at a frame, in order of first use. Emission belongs to lights_hash.
+/// Reflecting properties of the materials in use, as evaluated at a frame, in order of first use. Emission belongs to
+/// lights_hash.
 std::string materials_hash(const Scene& scene, std::span<const Material> materials);
 /// Punctual lights where they stand, all triangles that emit, with what they emit, and the environment, if any.
 std::string lights_hash(const Scene& scene, Vec3d origin, std::span<const PlacedLight> lights,

@@ -52,7 +52,8 @@ Forest::~Forest() {
 
 bool StandingTree::Kept::holds_for(const SceneFrame& frame) const {
   const auto same = [](const Surface& a, const Surface& b) {
-    return a.primitive == b.primitive && a.positions.data() == b.positions.data() && a.scene_from_node == b.scene_from_node;
+    return a.primitive == b.primitive && a.positions.data() == b.positions.data() &&
+           a.scene_from_node == b.scene_from_node;
   };
   return !filtered && surfaces.size() == frame.static_count &&
          std::equal(surfaces.begin(), surfaces.end(), frame.surfaces.begin(), same) && !passable(frame);
@@ -167,7 +168,9 @@ Tracer::Tracer(const SceneFrame& frame) : impl_(std::make_unique<Impl>()) {
   build(frame, none);
 }
 
-Tracer::Tracer(const SceneFrame& frame, StandingTree& standing) : impl_(std::make_unique<Impl>()) { build(frame, standing); }
+Tracer::Tracer(const SceneFrame& frame, StandingTree& standing) : impl_(std::make_unique<Impl>()) {
+  build(frame, standing);
+}
 
 void Tracer::build(const SceneFrame& frame, StandingTree& standing) {
   impl_->frame = &frame;

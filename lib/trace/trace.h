@@ -15,7 +15,7 @@ struct Ray {
   Vec3 origin;                 ///< scene space
   Vec3 direction;              ///< need not be unit; t is in units of its length
   float t_min = 0, t_max = INFINITY;
-  bool all_blend = false;      ///< meets surfaces of alpha mode BLEND wherever alpha > 0: to measure them, not for light
+  bool all_blend = false;  ///< meets surfaces of alpha mode BLEND wherever alpha > 0: to measure them, not for light
 };
 
 struct Hit {
@@ -24,8 +24,8 @@ struct Hit {
   float u = 0, v = 0;                            ///< barycentrics of corners 1 and 2
 };
 
-/// The search tree of what stands still, handed from the Tracer of one frame to that of the next: built anew only where that
-/// is something else. For the frames of one Scene, one Tracer made at a time.
+/// The search tree of what stands still, handed from the Tracer of one frame to that of the next: built anew only where
+/// that is something else. For the frames of one Scene, one Tracer made at a time.
 class StandingTree {
  public:
   StandingTree();
@@ -39,8 +39,9 @@ class StandingTree {
 
 /// Two search trees, what is static over the segment and what moves; the nearer hit wins, static at a tie.
 /// Surfaces of alpha mode MASK are not there where alpha is below the cut-off; those of BLEND are met with probability
-/// alpha, drawn from the bits of ray and triangle: in the mean a share 1 - alpha of all light goes through, straight on,
-/// and no one else needs to know. Thread-safe once built. Every ray is checked: one that is not finite is a miss and counted, never an abort.
+/// alpha, drawn from the bits of ray and triangle: in the mean a share 1 - alpha of all light goes through, straight
+/// on, and no one else needs to know. Thread-safe once built. Every ray is checked: one that is not finite is a miss
+/// and counted, never an abort.
 class Tracer {
  public:
   explicit Tracer(const SceneFrame& frame);

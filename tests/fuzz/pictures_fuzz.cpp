@@ -1,5 +1,5 @@
-// tests/fuzz/pictures_fuzz.cpp -- pictures by their first bytes: PNG, JPEG (as textures are decoded), Radiance, and EXR,
-// whose header is walked before OpenEXR sees the file, then its pixels.
+// tests/fuzz/pictures_fuzz.cpp -- pictures by their first bytes: PNG, JPEG (as textures are decoded), Radiance, and
+// EXR, whose header is walked before OpenEXR sees the file, then its pixels.
 #include <algorithm>
 
 #include "lib/image/encoded_image.h"

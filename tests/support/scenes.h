@@ -136,7 +136,8 @@ struct AreaSampler {
   }
   double area() const { return cumulative.back(); }
   void sample(float u, Vec2 v, Vec3& position, Vec3& normal) const {
-    const auto at = std::size_t(std::upper_bound(cumulative.begin(), cumulative.end() - 1, double(u) * area()) - cumulative.begin());
+    const auto at = std::size_t(std::upper_bound(cumulative.begin(), cumulative.end() - 1, double(u) * area()) -
+                                cumulative.begin());
     const Triangle& t = triangles[at];
     const Vec2 b = sample_triangle(v);
     position = t.a * (1 - b.x - b.y) + t.b * b.x + t.c * b.y;

@@ -62,18 +62,21 @@ TEST(FrameErrorTest, RelativeErrorDoesNotDependOnBrightness) {
   EXPECT_NEAR(scaled(2000) / scaled(2), 1, 1e-5);
 }
 
-// x = r in truth, halves with 60 % of noise: the numerator is 0 in the mean but correlated with the denominator, so that
-// relMSE comes out above 0 by up to 2 s^4 (3 r^2 - e^2) / (r^2 + e^2)^3, s^2 = 0.18, e = 0.1, and higher terms; less
-// here, as the denominator is a mean over channels: 0.015. With the true r in the denominator: 0 within 4 sigma = 4 x 0.36 / 1.01 / sqrt(3 x 65536) = 0.0033.
+// x = r in truth, halves with 60 % of noise: the numerator is 0 in the mean but correlated with the denominator, so
+// that relMSE comes out above 0 by up to 2 s^4 (3 r^2 - e^2) / (r^2 + e^2)^3, s^2 = 0.18, e = 0.1, and higher terms;
+// less here, as the denominator is a mean over channels: 0.015. With the true r in the denominator: 0 within 4 sigma =
+// 4 x 0.36 / 1.01 / sqrt(3 x 65536) = 0.0033.
 TEST(FrameErrorTest, ASmoothDenominatorTakesTheReferencesNoiseOutOfRelMse) {
-  const Image x = constant_image(256, 256, 1), r1 = noisy_image(256, 256, 1, 0.6, 1), r2 = noisy_image(256, 256, 1, 0.6, 2);
+  const Image x = constant_image(256, 256, 1), r1 = noisy_image(256, 256, 1, 0.6, 1),
+              r2 = noisy_image(256, 256, 1, 0.6, 2);
   Compared pair = compare(x, r1, &r2);
   EXPECT_GT(figures_of(sum_errors(pair, 0), 64).relative_squared_error->value, 0.01);
   const LayerPlanes smooth = layer_planes({&x, "smooth.exr"}, "");
   pair.smooth = smooth.planes;
   EXPECT_NEAR(figures_of(sum_errors(pair, 0), 64).relative_squared_error->value, 0, 0.0033);
   // All that it changes is the denominator: 2 instead of 1 in it, x off by 1/4 everywhere, r without noise.
-  const Image r = constant_image(256, 256, 1), off = constant_image(256, 256, 1.25), twice = constant_image(256, 256, 2);
+  const Image r = constant_image(256, 256, 1), off = constant_image(256, 256, 1.25),
+              twice = constant_image(256, 256, 2);
   const ComparedInputs inputs{{&off, "x"}, {&r, "r"}, {}, {}, "", {&twice, "s"}};
   const FrameError error = figures_of(sum_errors(compare_layers(inputs), 0), 64);
   EXPECT_NEAR(error.relative_squared_error->value, 0.0625 / (4 + 0.01), 1e-12);

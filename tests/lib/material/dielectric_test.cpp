@@ -85,7 +85,8 @@ TEST(Glass, ShareOfTransmissionLeavesTheRestToTheMatteLobe) {
   double matte = 0;
   constexpr int kSamples = 1000;
   for (int i = 0; i < kSamples; ++i) {
-    const auto s = bsdf.sample(wo, (float(i) + 0.5f) / kSamples, PathRandom(1, std::uint64_t(i)).get2(0, Purpose::test));
+    const auto s =
+        bsdf.sample(wo, (float(i) + 0.5f) / kSamples, PathRandom(1, std::uint64_t(i)).get2(0, Purpose::test));
     if (s.diffuse) matte += double(s.weight.g);
   }
   EXPECT_NEAR(matte / kSamples, 0.25, 1e-3);

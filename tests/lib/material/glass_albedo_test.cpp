@@ -102,7 +102,8 @@ TEST(GlassLossTable, DISABLED_WriteTheTable) {
     for (int plane = 0; plane < kPlanes; ++plane) {
       std::fprintf(out, "    %s{", plane == 0 ? "{" : "");
       for (int row = 0; row < kRows; ++row) {
-        const GlassLoss loss(float(index_of_plane(double(plane) / (kPlanes - 1))), float(alpha_of_row(double(row) / (kRows - 1))));
+        const GlassLoss loss(float(index_of_plane(double(plane) / (kPlanes - 1))),
+                             float(alpha_of_row(double(row) / (kRows - 1))));
         print(out, mean_of(loss, side, rule), row, kRows - 1);
       }
       std::fprintf(out, "%s,\n", plane == kPlanes - 1 ? "}" : "");

@@ -51,8 +51,8 @@ TEST_P(RoughGlassTest, ReturnsAllLight) {
   }
 }
 
-// Directions counted in 16 x 12 cells of equal cos and phi over the sphere, and the mean of the weights there against the
-// integral of f cos. Chi-square: mean k - 1, variance 2 (k - 1); limit 5 sigma.
+// Directions counted in 16 x 12 cells of equal cos and phi over the sphere, and the mean of the weights there against
+// the integral of f cos. Chi-square: mean k - 1, variance 2 (k - 1); limit 5 sigma.
 TEST_P(RoughGlassTest, SamplesFallWhereThePdfSays) {
   if (roughness() < 0.35f) return;   // narrower than a cell: the mean weights above check those
   const Bsdf bsdf(glass(roughness(), thin()), front());
@@ -63,7 +63,8 @@ TEST_P(RoughGlassTest, SamplesFallWhereThePdfSays) {
     double inside = 0, lost = 0;
     for (int i = 0; i < kCos * kSub; ++i)
       for (int j = 0; j < kPhi * kSub; ++j) {
-        const Vec3 wi = direction(2 * (float(i) + 0.5f) / (kCos * kSub) - 1, 2 * kPi * (float(j) + 0.5f) / (kPhi * kSub));
+        const Vec3 wi =
+            direction(2 * (float(i) + 0.5f) / (kCos * kSub) - 1, 2 * kPi * (float(j) + 0.5f) / (kPhi * kSub));
         const double p = double(bsdf.pdf_specular(wi, wo)) * 4 * M_PI / (kCos * kSub * double(kPhi * kSub));
         expected[std::size_t(i / kSub * kPhi + j / kSub)] += p * kCount;
         inside += p;
@@ -80,7 +81,8 @@ TEST_P(RoughGlassTest, SamplesFallWhereThePdfSays) {
       ASSERT_NEAR(s.weight.g, f * std::abs(s.wi.z) / s.pdf_solid_angle, 2e-3f * s.weight.g);
       float phi = std::atan2(s.wi.y, s.wi.x);
       if (phi < 0) phi += 2 * kPi;
-      const int a = std::clamp(int((s.wi.z + 1) / 2 * kCos), 0, kCos - 1), b = std::min(kPhi - 1, int(phi / (2 * kPi) * kPhi));
+      const int a = std::clamp(int((s.wi.z + 1) / 2 * kCos), 0, kCos - 1),
+                b = std::min(kPhi - 1, int(phi / (2 * kPi) * kPhi));
       ++seen[std::size_t(a * kPhi + b)];
     }
     expected.push_back(std::max(0.0, 1 - inside) * kCount);
@@ -97,7 +99,8 @@ TEST_P(RoughGlassTest, SamplesFallWhereThePdfSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Glass, RoughGlassTest,
-                         testing::Combine(testing::Values(0.1f, 0.25f, 0.4f, 0.7f, 1.0f), testing::Bool(), testing::Bool()));
+                         testing::Combine(testing::Values(0.1f, 0.25f, 0.4f, 0.7f, 1.0f), testing::Bool(),
+                                          testing::Bool()));
 
 // n_o^2 f(wi, wo) = n_i^2 f(wo, wi), seen from either side; for reflected light and thin walls f(wi, wo) = f(wo, wi).
 TEST(RoughGlass, IsReciprocalForRadianceOverTheIndexSquared) {
@@ -154,7 +157,8 @@ TEST(RoughGlass, IsFiniteAtEveryEdge) {
                 const Vec3 wo = direction(co, 0), w = direction(ci, 2), wi{w.x, w.y, sign * w.z};
                 ASSERT_TRUE(is_finite(bsdf.eval_specular(wi, wo)) && std::isfinite(bsdf.pdf_specular(wi, wo)));
                 for (const Vec3& special : {-wo, Vec3{-wo.x, -wo.y, wo.z}})
-                  ASSERT_TRUE(is_finite(bsdf.eval_specular(special, wo)) && std::isfinite(bsdf.pdf_specular(special, wo)));
+                  ASSERT_TRUE(is_finite(bsdf.eval_specular(special, wo)) &&
+                              std::isfinite(bsdf.pdf_specular(special, wo)));
                 for (float u : {0.0f, 0.5f, kOneMinusEpsilon}) {
                   const Bsdf::Sample s = bsdf.sample(wo, u, {u, ci});
                   ASSERT_TRUE(is_finite(s.weight) && is_finite(s.wi) && std::isfinite(s.pdf_solid_angle));

@@ -33,7 +33,8 @@ TEST(GltfTexture, ImagesComeFromDataUrisBufferViewsAndFiles) {
   write_file("t/pic.png", png);
   GltfMaker view = textured({{"bufferView", 0}, {"mimeType", "image/png"}});
   view.json["images"][0]["bufferView"] =
-      view.json["accessors"][std::size_t(view.add_accessor<char>({png.begin(), png.end()}, 5121, "SCALAR", 1))]["bufferView"];
+      view.json["accessors"][std::size_t(view.add_accessor<char>({png.begin(), png.end()}, 5121, "SCALAR", 1))]
+               ["bufferView"];
   for (const GltfMaker& maker : {textured({{"uri", data_uri(png)}}), textured({{"uri", "pic.png"}}), view}) {
     const Scene scene = maker.load("t/scene.gltf");
     ASSERT_TRUE(scene.images);
@@ -106,10 +107,11 @@ TEST(GltfTexture, SamplersAndTransforms) {
   for (int i = 0; i < 6; ++i) EXPECT_NEAR(texture.transform[std::size_t(i)], expected[i], 1e-6) << i;
 }
 
-/// A square whose normal map is the same everywhere: red (tilts along its right) or green (along its top). Its coordinates
-/// put the right at x = 1 and the top at y = 1; the file's tangents say: right at y = 1.
+/// A square whose normal map is the same everywhere: red (tilts along its right) or green (along its top). Its
+/// coordinates put the right at x = 1 and the top at y = 1; the file's tangents say: right at y = 1.
 GltfMaker with_tangents(bool green, float side, const Json& transform = nullptr) {
-  const std::string png = test::png_bytes(1, 1, 3, green ? std::vector<std::uint8_t>{128, 218, 218} : std::vector<std::uint8_t>{218, 128, 218});
+  const std::string png = test::png_bytes(
+      1, 1, 3, green ? std::vector<std::uint8_t>{128, 218, 218} : std::vector<std::uint8_t>{218, 128, 218});
   GltfMaker maker = textured({{"uri", data_uri(png)}});
   Json info = {{"index", 0}};
   if (!transform.is_null()) info["extensions"]["KHR_texture_transform"] = transform;
@@ -143,7 +145,8 @@ TEST(GltfTexture, NormalMapsFollowTheTangentsOfTheFile) {
   EXPECT_NEAR_VEC(bent_normal(flat), (Vec3{s, 0, s}), kCode);
   // A map that is turned on the surface lies where its coordinates say; one that is only shifted keeps the tangents.
   EXPECT_NEAR_VEC(bent_normal(with_tangents(false, 1, {{"rotation", M_PI / 2}})), (Vec3{0, -s, s}), kCode);
-  EXPECT_NEAR_VEC(bent_normal(with_tangents(false, 1, {{"offset", {0.2, 0}}, {"scale", {2, 5}}})), (Vec3{0, s, s}), kCode);
+  EXPECT_NEAR_VEC(bent_normal(with_tangents(false, 1, {{"offset", {0.2, 0}}, {"scale", {2, 5}}})), (Vec3{0, s, s}),
+                  kCode);
 }
 
 TEST(GltfTexture, TangentsFollowMorphTargets) {

@@ -86,7 +86,8 @@ TEST(Morph, MovesOnlyWhereItsWeightsDiffer) {
   EXPECT_EQ(segment_of(scene, 72, {}).node_moves[0], 0);
   // bounds of the middle segment hold the shape at all its frames
   for (int f = middle.first; f <= middle.last; ++f)
-    for (std::uint32_t v = 0; v < 4; ++v) EXPECT_LE(double(frame_of(scene, f).surfaces[0].position(v).z), middle.world_bounds.upper.z);
+    for (std::uint32_t v = 0; v < 4; ++v)
+      EXPECT_LE(double(frame_of(scene, f).surfaces[0].position(v).z), middle.world_bounds.upper.z);
   EXPECT_NE(frame_of(scene, 30).hashes.moving_geometry, frame_of(scene, 31).hashes.moving_geometry);
 }
 
@@ -96,8 +97,9 @@ GltfMaker skin(float share, bool second_set = false) {
   GltfMaker maker;
   const int mesh = maker.add_square();
   Json& attributes = maker.json["meshes"][0]["primitives"][0]["attributes"];
-  const std::vector<std::uint16_t> joints(second_set ? std::vector<std::uint16_t>(16, 0)
-                                                     : std::vector<std::uint16_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
+  const std::vector<std::uint16_t> joints(
+      second_set ? std::vector<std::uint16_t>(16, 0)
+                 : std::vector<std::uint16_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
   const float r = 1 - share;
   attributes["JOINTS_0"] = maker.add_accessor(joints, 5123, "VEC4", 4);
   if (second_set) {
@@ -111,9 +113,9 @@ GltfMaker skin(float share, bool second_set = false) {
   const int b = maker.add_node({{"name", "B"}, {"translation", {0, 1, 0}}}, false);
   const int a = maker.add_node({{"name", "A"}, {"children", {b}}, {"translation", {0, 0, 2}}});
   // inverse bind: A was at (0,0,0), B at (0,1,0)
-  const int matrices = maker.add_accessor(
-      std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1},
-      5126, "MAT4", 16);
+  const int matrices = maker.add_accessor(std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,
+                                                             1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1},
+                                          5126, "MAT4", 16);
   maker.json["skins"] = {{{"joints", {a, b}}, {"inverseBindMatrices", matrices}}};
   return maker;
 }
@@ -131,7 +133,8 @@ TEST(Skin, VerticesFollowTheirJointsAndNotTheirNode) {
       EXPECT_NEAR_VEC(at.surfaces[0].position(0), (Vec3{0, 0, 2}), kRounding);
       // normals of corner 2: inverse transpose of M = 1/4 A + 3/4 B, B turned by a about x: M's 2x2 block in y, z is
       // [p -q; q p] with p = 1/4 + 3/4 cos a, q = 3/4 sin a: a rotation times a scale, so n = (0, -q, p) made unit
-      const double a = std::numbers::pi / 2 * std::min(frame, 24) / 24, p = 0.25 + 0.75 * std::cos(a), q = 0.75 * std::sin(a);
+      const double a = std::numbers::pi / 2 * std::min(frame, 24) / 24, p = 0.25 + 0.75 * std::cos(a),
+                   q = 0.75 * std::sin(a);
       EXPECT_NEAR_VEC(at.surfaces[0].normal(2), Vec3(normalize(Vec3d{0, -q, p})), kRounding);
     }
     EXPECT_EQ(segment_of(scene, 0, {}).node_moves[0], 1);
@@ -143,7 +146,8 @@ TEST(Skin, VerticesFollowTheirJointsAndNotTheirNode) {
 TEST(Skin, NormalsGoByTheInverseTranspose) {
   // A scales by (2,1,1) and the plane is x + z = 0 turned: normal (1,0,1) becomes (1/2,0,1).
   GltfMaker maker = skin(0);
-  maker.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = maker.add_vec3({1, 0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 1});
+  maker.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
+      maker.add_vec3({1, 0, 1, 1, 0, 1, 1, 0, 1, 1, 0, 1});
   maker.json["nodes"][2]["scale"] = {2, 1, 1};
   const SceneFrame at = frame_of(maker.load(), 0);
   EXPECT_NEAR_VEC(at.surfaces[0].normal(0), normalize(Vec3{0.5f, 0, 1}), kRounding);
@@ -180,7 +184,8 @@ TEST(Skin, WhatCannotBeRightIsRefused) {
   EXPECT_CONTAINS(load_error(write_file("s.gltf", few.text())), "names joint 1, but its skin has 1");
   outside.json["nodes"][0]["skin"] = 7;
   EXPECT_CONTAINS(load_error(write_file("s.gltf", outside.text())), "skin 7 does not exist");
-  negative.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = negative.add_vec4(std::vector<float>(16, -1));
+  negative.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] =
+      negative.add_vec4(std::vector<float>(16, -1));
   EXPECT_CONTAINS(load_error(write_file("s.gltf", negative.text())), "a weight is negative");
 }
 
@@ -188,7 +193,8 @@ TEST(Emission, TheTableIsTheMaximumOverADeformingEmitter) {
   GltfMaker maker;
   maker.add_material({{"emissiveFactor", {1, 1, 1}}});
   const int mesh = maker.add_square(0);
-  maker.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", maker.add_vec3({0, 0, 0, 3, 0, 0, 3, 0, 0, 0, 0, 0})}}};
+  maker.json["meshes"][0]["primitives"][0]["targets"] = {
+      {{"POSITION", maker.add_vec3({0, 0, 0, 3, 0, 0, 3, 0, 0, 0, 0, 0})}}};
   maker.add_node({{"mesh", mesh}});
   maker.add_node({{"mesh", maker.add_square(0)}, {"translation", {0, 9, 0}}});
   animate_weights(maker, {0, 12 / 24.0f, 1}, {0, 1, 0});  // widest, 4 m x 1 m, at frame 12
@@ -219,14 +225,15 @@ TEST(Instances, StandWhereTheirAttributesSay) {
   EXPECT_EQ(at.surfaces[1].object, 0u);
   EXPECT_EQ(at.bounds.upper, (Vec3{2, 7, 7}));
   GltfMaker unequal = maker;
-  unequal.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = unequal.add_vec3({1, 1, 1});
+  unequal.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] =
+      unequal.add_vec3({1, 1, 1});
   EXPECT_CONTAINS(load_error(write_file("i.gltf", unequal.text())), "its attributes have different counts");
 }
 
 // ---- KHR_animation_pointer ----------------------------------------------------------------------------------------
 
-void point_at(GltfMaker& maker, const std::string& pointer, const std::vector<float>& times, const std::vector<float>& values,
-              int components) {
+void point_at(GltfMaker& maker, const std::string& pointer, const std::vector<float>& times,
+              const std::vector<float>& values, int components) {
   if (!maker.json.contains("animations"))
     maker.json["animations"] = {{{"channels", Json::array()}, {"samplers", Json::array()}}};
   const int output = components == 4   ? maker.add_vec4(values)
@@ -275,13 +282,15 @@ TEST(Pointers, MaterialsLightsAndCamerasAreEvaluatedAtTheFrame) {
   EXPECT_NE(a.hashes.camera, b.hashes.camera);
   std::set<std::string> why;
   for (const PropertyChange& change : a.segment.changes) why.insert(change.why);
-  EXPECT_TRUE(why.contains("base colour of Paint") && why.contains("intensity of Lamp") && why.contains("yfov of camera 0"));
+  EXPECT_TRUE(why.contains("base colour of Paint") && why.contains("intensity of Lamp") &&
+              why.contains("yfov of camera 0"));
 }
 
 TEST(Pointers, ALampThatFlaresUpKeepsTheProbabilityOfItsMaximum) {
   GltfMaker maker = lit_square();
   maker.json["materials"][0].erase("emissiveFactor");
-  maker.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 1}}, {{"type", "point"}, {"intensity", 1}}};
+  maker.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 1}},
+                                                               {{"type", "point"}, {"intensity", 1}}};
   maker.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}});
   point_at(maker, "/extensions/KHR_lights_punctual/lights/0/intensity", {0, 0.5f, 1}, {1, 9, 1}, 1);
   const Scene scene = maker.load();
@@ -296,7 +305,8 @@ TEST(Pointers, WhatIsNotAnimatedIsNamedAndWhatDoesNotExistRefused) {
   EXPECT_TRUE(has_warning(maker.load(), "ignored: animation of /materials/0/normalTexture/scale"));
   GltfMaker missing = lit_square();
   point_at(missing, "/materials/7/alphaCutoff", {0, 1}, {0, 1}, 1);
-  EXPECT_CONTAINS(load_error(write_file("p.gltf", missing.text())), "pointer /materials/7/alphaCutoff: there is no such object");
+  EXPECT_CONTAINS(load_error(write_file("p.gltf", missing.text())),
+                  "pointer /materials/7/alphaCutoff: there is no such object");
 }
 
 TEST(Pointers, AMaterialThatIsDarkAtRestCountsAsALight) {

@@ -45,7 +45,8 @@ void expect_same_vertices(const std::string& file, int animation) {
     std::uint32_t length = std::uint32_t(bytes.size());
     if (begin) std::memcpy(&length, bytes.data() + 12, 4);
     const Json document = Json::parse(bytes.substr(begin, length));
-    options.animation = document["animations"][std::size_t(animation)].value("name", "animation " + std::to_string(animation));
+    options.animation =
+        document["animations"][std::size_t(animation)].value("name", "animation " + std::to_string(animation));
   }
   const Scene scene = load_gltf(file, options);
   std::map<int, SceneFrame> frames;
@@ -73,9 +74,12 @@ void expect_same_vertices(const std::string& file, int animation) {
 
 TEST(Vertices, OfFoundScenesAgreeWithASecondReader) {
   if (shared_scenes().empty()) GTEST_SKIP() << "../shared/scenes is not there";
-  const std::map<std::string, int> files{{"assimp/simple_skin.gltf", 0}, {"assimp/AnimatedMorphCube/AnimatedMorphCube.gltf", 0},
-                                         {"bevy/Fox.glb", 0}, {"bevy/MorphStressTest.gltf", 2},
-                                         {"wicked/CesiumMan.glb", 0}, {"renderling/box_animated.glb", 0},
+  const std::map<std::string, int> files{{"assimp/simple_skin.gltf", 0},
+                                         {"assimp/AnimatedMorphCube/AnimatedMorphCube.gltf", 0},
+                                         {"bevy/Fox.glb", 0},
+                                         {"bevy/MorphStressTest.gltf", 2},
+                                         {"wicked/CesiumMan.glb", 0},
+                                         {"renderling/box_animated.glb", 0},
                                          {"trimesh/CesiumMilkTruck.glb", 0},
                                          {"blender-io/03_all_animations/03_all_animations.gltf", 0},
                                          {"blender-io/06_parent-inverse-anim/06_parent-inverse-anim.gltf", 1},
@@ -93,7 +97,8 @@ TEST(Vertices, OfAStripWithEverythingAgreeWithASecondReader) {
   std::vector<std::uint16_t> indices;
   for (int i = 0; i <= 10; ++i)
     for (int side = 0; side < 2; ++side) {
-      positions.insert(positions.end(), {std::int16_t(3000 * i), std::int16_t(side * 9000), std::int16_t(i * i * 100), 0});
+      positions.insert(positions.end(),
+                       {std::int16_t(3000 * i), std::int16_t(side * 9000), std::int16_t(i * i * 100), 0});
       const auto far = std::uint8_t(255 * i / 10);
       joints0.insert(joints0.end(), {0, 0, 0, 0});
       weights0.insert(weights0.end(), {std::uint8_t(255 - far), 0, 0, 0});
@@ -116,10 +121,13 @@ TEST(Vertices, OfAStripWithEverythingAgreeWithASecondReader) {
   const int values = maker.add_vec3({0, 0, 0.5f, 0, 0.25f, 0, 0.125f, 0, 0});
   const int at = maker.add_accessor(std::vector<std::uint8_t>{1, 7, 20}, 5121, "SCALAR", 1);
   maker.json["accessors"].push_back(
-      {{"componentType", 5126}, {"count", 22}, {"type", "VEC3"},
-       {"sparse", {{"count", 3},
-                   {"indices", {{"bufferView", maker.json["accessors"][std::size_t(at)]["bufferView"]}, {"componentType", 5121}}},
-                   {"values", {{"bufferView", maker.json["accessors"][std::size_t(values)]["bufferView"]}}}}}});
+      {{"componentType", 5126},
+       {"count", 22},
+       {"type", "VEC3"},
+       {"sparse",
+        {{"count", 3},
+         {"indices", {{"bufferView", maker.json["accessors"][std::size_t(at)]["bufferView"]}, {"componentType", 5121}}},
+         {"values", {{"bufferView", maker.json["accessors"][std::size_t(values)]["bufferView"]}}}}}});
   const int target = int(maker.json["accessors"].size()) - 1;
   const int mesh = maker.add_mesh({{"attributes", attributes}, {"indices", maker.add_indices(indices)},
                                    {"targets", {{{"POSITION", target}}}}});
@@ -127,9 +135,9 @@ TEST(Vertices, OfAStripWithEverythingAgreeWithASecondReader) {
   maker.add_node({{"mesh", mesh}, {"skin", 0}});
   const int tip = maker.add_node({{"translation", {0.5, 0, 0}}}, false);
   const int root = maker.add_node({{"children", {tip}}, {"scale", {1, 2, -1.5}}});
-  const int bind = maker.add_accessor(
-      std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -0.5f, 0, 0, 1},
-      5126, "MAT4", 16);
+  const int bind = maker.add_accessor(std::vector<float>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,     0, 0, 1,
+                                                         1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -0.5f, 0, 0, 1},
+                                      5126, "MAT4", 16);
   maker.json["skins"] = {{{"joints", {root, tip}}, {"inverseBindMatrices", bind}}};
   const float h = std::sqrt(0.5f);
   maker.animate(tip, "rotation", {0, 1.5f, 3}, {0, 0, 0, 1, 0, 0, h, h, 0, h, 0, -h});

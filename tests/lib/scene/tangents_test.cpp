@@ -51,7 +51,8 @@ float worst(const Primitive& p, const std::function<Vec3(Vec3)>& expected, const
 }
 
 // A cylinder of 24 flat strips, u around, y up. A strip's direction of u is 7.5 degrees off the circle's tangent; laid
-// into the tangent plane it is that tangent. At the seam u jumps from 1 to 0: two vertices of one strip each, and the same.
+// into the tangent plane it is that tangent. At the seam u jumps from 1 to 0: two vertices of one strip each, and the
+// same.
 TEST(Tangents, FollowACylinder) {
   const auto around = [](float u, float v) { return Vec3{std::cos(2 * kPi * u), 1 - v, -std::sin(2 * kPi * u)}; };
   const auto outwards = [](float u, float) { return Vec3{std::cos(2 * kPi * u), 0, -std::sin(2 * kPi * u)}; };
@@ -64,8 +65,8 @@ TEST(Tangents, FollowACylinder) {
 
 // A sphere of 64 x 32 cells, u around, v from pole to pole. Every triangle has an edge along a parallel: its direction
 // of u is that chord, half a cell's turn, pi / 64, before or behind the vertex; what of it lies in the vertex' tangent
-// plane leans by pi / 64 x cos(v pi) from the parallel there. Those before and behind, of the same corners' angles, lean
-// against each other: nothing is left but at the seam, where u is 0 or 1 and only one side speaks.
+// plane leans by pi / 64 x cos(v pi) from the parallel there. Those before and behind, of the same corners' angles,
+// lean against each other: nothing is left but at the seam, where u is 0 or 1 and only one side speaks.
 TEST(Tangents, FollowASphere) {
   const auto at = [](float u, float v) {
     const float phi = 2 * kPi * u, theta = kPi * v;

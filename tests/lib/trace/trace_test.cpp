@@ -28,9 +28,11 @@ double brute_force(const SceneFrame& frame, const Ray& ray) {
   double nearest = INFINITY;
   for (const Surface& surface : frame.surfaces)
     for (const auto& t : surface.primitive->triangles) {
-      const Vec3d a(surface.positions[t[0]]), e1 = Vec3d(surface.positions[t[1]]) - a, e2 = Vec3d(surface.positions[t[2]]) - a;
+      const Vec3d a(surface.positions[t[0]]), e1 = Vec3d(surface.positions[t[1]]) - a,
+                                              e2 = Vec3d(surface.positions[t[2]]) - a;
       const Vec3d d(ray.direction), o = Vec3d(ray.origin) - a, p = cross(d, e2);
-      const double det = dot(e1, p), u = dot(o, p) / det, v = dot(d, cross(o, e1)) / det, s = dot(e2, cross(o, e1)) / det;
+      const double det = dot(e1, p), u = dot(o, p) / det, v = dot(d, cross(o, e1)) / det,
+                   s = dot(e2, cross(o, e1)) / det;
       if (det != 0 && u >= 0 && v >= 0 && u + v <= 1 && s > 0) nearest = std::min(nearest, s);
     }
   return nearest;
@@ -39,7 +41,8 @@ double brute_force(const SceneFrame& frame, const Ray& ray) {
 TEST(Tracer, NearestHitOfBothTreesAgreesWithBruteForce) {
   HandMadeScene scene;
   for (std::uint32_t i = 0; i < 60; ++i)
-    scene.add({random_point(i, 0, 4), random_point(i, 1, 4), random_point(i, 2, 4)}, {{0, 1, 2}}, matte(Rgb(0.5f)), i % 2 == 1);
+    scene.add({random_point(i, 0, 4), random_point(i, 1, 4), random_point(i, 2, 4)}, {{0, 1, 2}}, matte(Rgb(0.5f)),
+              i % 2 == 1);
   const SceneFrame& frame = scene.frame();
   const Tracer tracer(frame);
   int hits = 0, differing = 0;
@@ -63,7 +66,8 @@ TEST(Tracer, NearestHitOfBothTreesAgreesWithBruteForce) {
 TEST(Tracer, ManyRaysAtOnceMeetWhatEachMeetsAlone) {
   HandMadeScene scene;
   for (std::uint32_t i = 0; i < 60; ++i)
-    scene.add({random_point(i, 0, 4), random_point(i, 1, 4), random_point(i, 2, 4)}, {{0, 1, 2}}, matte(Rgb(0.5f)), i % 2 == 1);
+    scene.add({random_point(i, 0, 4), random_point(i, 1, 4), random_point(i, 2, 4)}, {{0, 1, 2}}, matte(Rgb(0.5f)),
+              i % 2 == 1);
   const Tracer tracer(scene.frame());
   std::vector<Ray> rays;
   for (std::uint32_t i = 0; i < 5003; ++i)  // no multiple of a packet
@@ -161,8 +165,9 @@ TEST(Tracer, RaysThatAreNotFiniteAreMissesAndCounted) {
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
   const Tracer tracer(scene.frame());
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = INFINITY;
-  const Ray bad[] = {{{nan, 0, 0}, {1, 0, 0}, 0, inf}, {{0, 0, 0}, {nan, 0, 0}, 0, inf}, {{0, 0, 0}, {inf, 0, 0}, 0, inf},
-                     {{0, 0, 0}, {1, 0, 0}, -1, inf},  {{0, 0, 0}, {1, 0, 0}, nan, inf}, {{0, 0, 0}, {1, 0, 0}, 0, nan},
+  const Ray bad[] = {{{nan, 0, 0}, {1, 0, 0}, 0, inf},   {{0, 0, 0}, {nan, 0, 0}, 0, inf},
+                     {{0, 0, 0}, {inf, 0, 0}, 0, inf},   {{0, 0, 0}, {1, 0, 0}, -1, inf},
+                     {{0, 0, 0}, {1, 0, 0}, nan, inf},   {{0, 0, 0}, {1, 0, 0}, 0, nan},
                      {{1e30f, 0, 0}, {1, 0, 0}, 0, inf}, {{0, 0, 0}, {1e30f, 0, 0}, 0, inf}};
   for (const Ray& ray : bad) {
     Hit hit;
@@ -214,12 +219,16 @@ TEST(Tracer, WhatLeavesAnEdgeStaysInTheRoom) {
     const PathRandom random(9, i);
     const Vec2 u = random.get2(0, Purpose::test);
     const float sx = i & 1 ? 5.0f : -5.0f, sy = i & 2 ? 0.5f : -0.5f;
-    const Vec3 edge = i % 3 == 0 ? Vec3{sx, sy, u.x - 0.5f} : i % 3 == 1 ? Vec3{sx, u.x - 0.5f, sy} : Vec3{10 * u.x - 5, sy, i & 1 ? 0.5f : -0.5f};
-    const Vec3 from = Vec3{9 * u.y - 4.5f, 0.9f * random.get1(1, Purpose::test) - 0.45f, 0.9f * random.get1(2, Purpose::test) - 0.45f};
+    const Vec3 edge = i % 3 == 0   ? Vec3{sx, sy, u.x - 0.5f}
+                      : i % 3 == 1 ? Vec3{sx, u.x - 0.5f, sy}
+                                   : Vec3{10 * u.x - 5, sy, i & 1 ? 0.5f : -0.5f};
+    const Vec3 from = Vec3{9 * u.y - 4.5f, 0.9f * random.get1(1, Purpose::test) - 0.45f,
+                           0.9f * random.get1(2, Purpose::test) - 0.45f};
     Hit hit;
     if (!tracer.intersect({from, edge - from, 0, INFINITY}, hit)) { ++lost; continue; }
     const SurfacePoint point = tracer.surface_point(hit);
-    const Vec3 inwards = dot(point.normal_geometric, from - point.position) < 0 ? -point.normal_geometric : point.normal_geometric;
+    const Vec3 inwards =
+        dot(point.normal_geometric, from - point.position) < 0 ? -point.normal_geometric : point.normal_geometric;
     const Vec3 travel = Frame(inwards).to_world(sample_hemisphere_cos(random.get2(3, Purpose::test)));
     lost += !tracer.intersect(spawn_ray(point, travel), hit);
   }
