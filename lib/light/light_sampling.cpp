@@ -146,15 +146,18 @@ bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const 
   return m.sample(m.tree, m.tree_slot, m.tree.start(point, normal), m.distant_irradiance(normal), point, normal, u.x, u, true, sample);
 }
 
-bool Lights::has_large() const { return !impl_->large.empty(); }
+bool Lights::has_large() const {
+  std::call_once(impl_->apart_made, [&] { impl_->choose_large(impl_->apart); });
+  return !impl_->apart.large.empty();
+}
 
 Lights::Apart Lights::apart(Vec3 point, Vec3 normal) const {
   const Impl& m = *impl_;
-  Apart at{point, normal, Rgb(0.0f), {}, 0, m.rest.start(point, normal), m.distant_irradiance(normal), 0};
-  for (std::size_t i = 0; i < m.large.size(); ++i) {
-    const float projected = float(projected_solid_angle(m.large[i], point, normal));
-    at.irradiance += m.large[i].triangle.radiance * projected;
-    at.sum_large += at.large[i] = max_component(m.large[i].triangle.radiance) * projected;
+  Apart at{point, normal, Rgb(0.0f), {}, 0, m.apart.rest.start(point, normal), m.distant_irradiance(normal), 0};
+  for (std::size_t i = 0; i < m.apart.large.size(); ++i) {
+    const float projected = float(projected_solid_angle(m.apart.large[i], point, normal));
+    at.irradiance += m.apart.large[i].triangle.radiance * projected;
+    at.sum_large += at.large[i] = max_component(m.apart.large[i].triangle.radiance) * projected;
   }
   const double all = at.distant + at.rest.sum;
   if (all > 0) at.chance = std::min(1.0, all / (kFew * (all + double(max_component(at.irradiance)))));
@@ -162,7 +165,7 @@ Lights::Apart Lights::apart(Vec3 point, Vec3 normal) const {
 }
 
 bool Lights::sample_large(const Apart& at, Vec2 u, LightSample& sample) const {
-  const std::vector<LargeLight>& large = impl_->large;
+  const std::vector<LargeLight>& large = impl_->apart.large;
   sample = {};
   if (!(at.sum_large > 0)) return false;
   float left = u.x * at.sum_large;
@@ -189,7 +192,7 @@ bool Lights::sample_rest(const Apart& at, Vec2 u, LightSample& sample) const {
   const Impl& m = *impl_;
   if (!(double(u.x) < at.chance)) return false;
   u.x = to_float(double(u.x) / at.chance);
-  if (!m.sample(m.rest, m.rest_slot, at.rest, at.distant, at.point, at.normal, u.x, u, true, sample)) return false;
+  if (!m.sample(m.apart.rest, m.apart.rest_slot, at.rest, at.distant, at.point, at.normal, u.x, u, true, sample)) return false;
   sample.radiance *= float(1 / at.chance);
   sample.pdf_solid_angle *= float(at.chance);
   return is_finite(sample.radiance);

@@ -96,55 +96,68 @@ Ball Lights::Impl::shell_of(std::uint32_t surface) const {
 }
 
 void Lights::Impl::build_tree() {
-  std::vector<LightBounds> bounds;
   tree_index.assign(slots.size(), kNone);
-  std::uint32_t of = kNone;
-  Ball shell;
   for (std::uint32_t i = 0; i < slots.size(); ++i) {
     if (i < triangles.size()) {
       if (!triangles[i].emits()) continue;
-      if (slots[i].surface != of) shell = shell_of(of = slots[i].surface);
-      bounds.push_back(bounds_of(triangles[i], shell));
     } else {
       if (slots[i].kind == EmissionSlot::Kind::environment) continue;
-      const PlacedLight& placed = frame->lights[slots[i].light];
-      if (!(max_component(placed.light.intensity) > 0)) continue;
+      if (!(max_component(frame->lights[slots[i].light].light.intensity) > 0)) continue;
       if (slots[i].kind == EmissionSlot::Kind::directional) {
         suns.push_back(slots[i].light);
         continue;
       }
-      bounds.push_back(bounds_of(placed));
     }
     tree_index[i] = std::uint32_t(tree_slot.size());
     tree_slot.push_back(i);
   }
   any_distant = environment_weight > 0 || !suns.empty();
-  tree = LightTree(bounds);
-  choose_large(bounds);
+  tree = LightTree(tree_bounds());
 }
 
-/// bounds: of the lights of `tree`.
-void Lights::Impl::choose_large(const std::vector<LightBounds>& bounds) {
+/// By light of `tree`.
+std::vector<LightBounds> Lights::Impl::tree_bounds() const {
+  std::vector<LightBounds> bounds;
+  bounds.reserve(tree_slot.size());
+  std::uint32_t of = kNone;
+  Ball shell;
+  for (const std::uint32_t slot : tree_slot) {
+    if (slot >= triangles.size()) {
+      bounds.push_back(bounds_of(frame->lights[slots[slot].light]));
+      continue;
+    }
+    if (slots[slot].surface != of) shell = shell_of(of = slots[slot].surface);
+    bounds.push_back(bounds_of(triangles[slot], shell));
+  }
+  return bounds;
+}
+
+void Lights::Impl::choose_large(Apart& made) const {
+  const auto weight = [&](std::uint32_t slot) {
+    return slot < triangles.size() ? bounds_of(triangles[slot], {}).weight : bounds_of(frame->lights[slots[slot].light]).weight;
+  };
+  std::vector<double> weights;
   double whole = 0;
-  for (const LightBounds& b : bounds) whole += b.weight;
+  for (const std::uint32_t slot : tree_slot) whole += weights.emplace_back(weight(slot));
   std::vector<std::uint32_t> order;
-  for (std::uint32_t i = 0; i < bounds.size(); ++i)
-    if (tree_slot[i] < triangles.size() && !triangles[tree_slot[i]].varies && bounds[i].weight >= kLarge * whole) order.push_back(i);
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return bounds[a].weight > bounds[b].weight; });
+  for (std::uint32_t i = 0; i < weights.size(); ++i)
+    if (tree_slot[i] < triangles.size() && !triangles[tree_slot[i]].varies && weights[i] >= kLarge * whole) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return weights[a] > weights[b]; });
   order.resize(std::min(order.size(), kMostLarge));
   if (order.empty()) return;
+  const std::vector<LightBounds> bounds = tree_bounds();
   std::vector<LightBounds> others;
   std::vector<TriangleLight> chosen;
   for (std::uint32_t i = 0; i < bounds.size(); ++i) {
     if (std::find(order.begin(), order.end(), i) != order.end()) {
       chosen.push_back(triangles[tree_slot[i]]);
     } else {
-      rest_slot.push_back(tree_slot[i]);
+      made.rest_slot.push_back(tree_slot[i]);
       others.push_back(bounds[i]);
     }
   }
-  large = join_rectangles(chosen);
-  rest = LightTree(others);
+  made.large = join_rectangles(chosen);
+  made.rest = LightTree(others);
 }
 
 Lights::Lights(const SceneFrame& frame, const EmissionTable& table)

@@ -100,7 +100,8 @@ class Lights {
   /// somewhere emit?
   bool has_large() const;
   static constexpr std::size_t kMostLarge = 4;
-  /// A point at which samples of the large lights and of the others are wanted: what all of them have in common.
+  /// A point at which samples of the large lights and of the others are wanted: what all of them have in common. Only after
+  /// has_large() has said that there are any; the first call of that chooses them.
   struct Apart {
     Vec3 point, normal;                               ///< unit
     Rgb irradiance{0.0f};                             ///< exactly, of the large lights where nothing is in the way

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <numbers>
 #include <vector>
 
@@ -34,9 +35,13 @@ struct Lights::Impl {
   double environment_weight = 0;  // irradiance by the environment, the mean over all normals; 0: none or black
   bool any_distant = false;       // an environment that is not black, or a sun
   LightTree tree{{}};
-  std::vector<LargeLight> large;          // see Lights::has_large
-  LightTree rest{{}};                     // without them; only if there are any
-  std::vector<std::uint32_t> rest_slot;   // by light of `rest`
+  struct Apart {
+    std::vector<LargeLight> large;          // see Lights::has_large
+    LightTree rest{{}};                     // without them; only if there are any
+    std::vector<std::uint32_t> rest_slot;   // by light of `rest`
+  };
+  mutable Apart apart;                    // made when has_large() first asks: most tools never do
+  mutable std::once_flag apart_made;
 
   static constexpr double kLarge = 0.05;  // of the weight of all lights in the tree
 
@@ -46,7 +51,8 @@ struct Lights::Impl {
   Ball shell_of(std::uint32_t surface) const;
 
   Rgbd slot_flux(std::size_t slot) const;   ///< W
-  void choose_large(const std::vector<LightBounds>& bounds);
+  std::vector<LightBounds> tree_bounds() const;
+  void choose_large(Apart& made) const;
   double sum_distant(Vec3 normal) const;
   double distant_irradiance(Vec3 normal) const { return any_distant ? sum_distant(normal) : 0; }
   double distant_share(Vec3 point, Vec3 normal, double& total) const;
