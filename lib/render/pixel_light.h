@@ -19,6 +19,7 @@ class SparseCaustics {
  public:
   /// Light known for this place; nullptr: none.
   const Rgb* find(const SurfacePoint& surface, Vec3 geometric) const {
+    if (next_ == 0) return nullptr;   // no photons, or none are sparse
     for (const Kept& kept : kept_)
       if (kept.surface == surface.surface && length2(kept.position - surface.position) < kept.reach2 &&
           dot(kept.normal, geometric) > kSameNormal)
