@@ -70,8 +70,8 @@ struct LightSample {
 
 struct PhotonEmission {
   Vec3 origin{}, travel{};  ///< travel: unit direction of flight
-  float origin_offset = 0;  ///< start this far along `normal`
-  Vec3 normal{};            ///< of the emitting side; a point or spot light: travel; zero if from infinitely far
+  float origin_offset = 0;  ///< start this far along the emitting side's normal
+  Vec3 normal{};            ///< of the emitting side; zero for punctual lights
   Rgb flux{0.0f};           ///< W, of one photon if `photon_count` are emitted: divide by the count yourself
   std::uint32_t slot = 0;
 };

@@ -10,10 +10,6 @@
 namespace tempolux {
 namespace {
 
-/// A photon of a light without extent starts this far along its way, of the radius of the scene: a surface that the light is
-/// in gets next to nothing from it, as light sampling has it (the cosine is 0), instead of half of its flux in one place.
-constexpr float kBeyondLight = 0x1p-18f;
-
 [[noreturn]] void refuse_flux(const Scene* scene, double flux) {
   std::ostringstream text;
   text << (scene ? scene->path + ": " : "") << "a light of " << flux
@@ -66,8 +62,7 @@ void Lights::Impl::emit_punctual(const PlacedLight& placed, double u0, const std
   if (placed.light.kind != PunctualLight::Kind::directional) {
     // No position to choose: its two numbers are the direction's.
     e.origin = placed.position;
-    e.travel = e.normal = sample_punctual_direction(placed, u0, u[1]);
-    e.origin_offset = kBeyondLight * float(sphere_radius);
+    e.travel = sample_punctual_direction(placed, u0, u[1]);
     return;
   }
   const Vec2 disc = sample_disc_concentric({to_float(u0), to_float(u[1])});

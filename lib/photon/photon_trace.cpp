@@ -17,6 +17,9 @@ namespace {
 
 using formats::PathKind;
 
+/// A light this near to a surface's plane is in it, of the offset of rays that leave the surface: a few steps of a float.
+constexpr float kInPlane = 0.25f;
+constexpr int kMostPlanes = 8;               ///< that a light may be in, one upon the other
 constexpr float kLargestSurvival = 0.9995f;  ///< in a lossless box paths end after 2000 bounces in the mean
 
 /// Kind of a photon by the events so far (architecture.md 3).
@@ -118,6 +121,8 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
   members_ = (options.photon_count + group_count_ - 1) / group_count_;
   batches_per_group_ = (members_ + kBatch - 1) / kBatch;
   stores_ = {options.store_direct, options.store_caustic, options.store_indirect};
+  for (const PlacedLight& placed : tracer.frame().lights)
+    has_point_lights_ |= placed.light.kind != PunctualLight::Kind::directional;
   for (const Material& material : tracer.frame().materials) {
     solid_.push_back(is_solid_glass(material));
     varies_.push_back(material.textures || lets_rays_pass(material));
@@ -186,6 +191,7 @@ void PhotonTracer::follow(std::uint64_t first, std::size_t count, PhotonBatch& b
       else batch.escaped += Rgbd(path.flux);
     }
     tracer_.surface_points({hits, arrived}, points);
+    if (bounce == 0 && has_point_lights_) arrived = leave_planes_of_lights(emissions, arrived, paths, alive, hits, points, batch);
     for (std::size_t i = 0; i < arrived; ++i) numbers[i] = paths[alive[i]].random.get2(bounce, Purpose::scatter);
     sample_hemisphere_cos({numbers, arrived}, directions);
     count = 0;
@@ -195,6 +201,34 @@ void PhotonTracer::follow(std::uint64_t first, std::size_t count, PhotonBatch& b
       count += scatter(paths[alive[i]], points[i], hits[i].t, draw, batch);
     }
   }
+}
+
+/// A surface gets nothing from a point light in its plane, the cosine is 0: light sampling has it so, and rounding, which starts
+/// half of the photons behind it, must not give it half of the flux in one place. They go on as if it were not there. Returns
+/// how many still arrive.
+std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths, std::uint32_t* alive,
+                                                 Hit* hits, SurfacePoint* points, PhotonBatch& batch) const {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < arrived; ++i) {
+    const PhotonEmission& e = emissions[alive[i]];
+    Path& path = paths[alive[i]];
+    const auto in_plane = [&](const SurfacePoint& point) {
+      return e.normal == Vec3{} && std::abs(dot(point.position - e.origin, point.normal_geometric)) <= kInPlane * point.offset;
+    };
+    bool meets = true;
+    for (int plane = 0; meets && plane < kMostPlanes && in_plane(points[i]); ++plane) {
+      path.ray = spawn_ray(points[i], path.ray.direction);
+      ++batch.ray_count;
+      meets = tracer_.intersect(path.ray, hits[i]);
+      if (meets) points[i] = tracer_.surface_point(hits[i]);
+      else batch.escaped += Rgbd(path.flux);
+    }
+    if (!meets) continue;
+    alive[kept] = alive[i];
+    hits[kept] = hits[i];
+    points[kept++] = points[i];
+  }
+  return kept;
 }
 
 /// The photon arrives at a surface; false if it ends there.

@@ -74,6 +74,8 @@ class PhotonTracer {
 
   /// Photons first, first + group_count, ... to their ends; count <= kWave.
   void follow(std::uint64_t first, std::size_t count, PhotonBatch& batch) const;
+  std::size_t leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths, std::uint32_t* alive,
+                                     Hit* hits, SurfacePoint* points, PhotonBatch& batch) const;
   bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
   bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
                   const Draw& draw, PhotonBatch& batch) const;
@@ -83,6 +85,7 @@ class PhotonTracer {
   PhotonOptions options_;
   PhotonHalton halton_;
   std::array<bool, 3> stores_{};   ///< by formats::PathKind
+  bool has_point_lights_ = false;   ///< or spots
   std::vector<char> solid_;   ///< by material: boundary of a solid of glass
   std::vector<std::array<Bsdf, 2>> bsdfs_;   ///< by material: seen from the back, from the front
   std::vector<std::uint8_t> varies_;         ///< by material: textures decide at each hit
