@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Scenes made by others, path-traced and by the photon chain: does each render, and do the layers agree?
 
-    python3 tests/bench/found.py                        all of ../shared/scenes/found/gltf: below 15 minutes on two idle cores
+    python3 tests/bench/found.py                        all of ../shared/scenes/found/gltf
     python3 tests/bench/found.py --only 'Fox|17_ior'    some of them
 
 A file without a camera is copied to a temporary folder and gets one that sees all of it, and a ground below; a file without
-a light gets a lamp and a dim sky; in one with lights without extent no surface is smoother than a roughness of 0.3: the path
-tracer cannot find those in a mirror, and hardly in smoother gloss or glass (the variance of their light goes with roughness^-4).
-Where things stand (skins, morphs, instances) is learnt from a few photons of a sun. Prints a table;
-writes found.json and sheet.png (path tracer left, photon chain right, each pair at its own exposure) to --out.
+a light gets a lamp and a dim sky; in one with lights without extent no surface is smoother than a roughness of 0.1: the path
+tracer cannot find those in a mirror, and hardly in gloss or glass as smooth as that (the variance of their light goes with
+roughness^-4), so such layers may stay undecided. Where things stand (skins, morphs, instances) is learnt from a few photons of a
+sun. Prints a table; writes found.json and sheet.png (path tracer left, photon chain right, each pair at its own exposure) to --out.
 A first run of either way tells the variance and the cost of every layer; then as many samples per pixel of the one and seeds of
 the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows. An error bar
 is that of 95 %, by Student's t for the few seeds. A layer agrees if the means differ by at most 1.5 % and the bar is no wider

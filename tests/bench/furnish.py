@@ -6,7 +6,7 @@ import shutil
 import struct
 
 
-LEAST_ROUGHNESS = 0.3
+LEAST_ROUGHNESS = 0.1
 
 
 class Asset:
