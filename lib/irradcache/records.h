@@ -27,9 +27,9 @@ struct IrradianceRecord {
 };
 
 struct InterpolationOptions {
-  /// Records whose normal is farther off (10 degrees) do not count. On curved surfaces a bright spot rises over
-  /// the horizon faster than gradients tell: a ball lit from the side came out 4 % dark there with 20 degrees, 2 % with 10.
-  float max_angle_cos = 0.985f;
+  /// Records whose normal is farther off (20 degrees) do not count. On curved surfaces a bright spot rises over
+  /// the horizon faster than gradients tell: with 37 degrees a sphere lit from the side came out 3 % dark there.
+  float max_angle_cos = 0.94f;
 };
 
 /// Records found by place: each is listed in the cells its validity sphere meets, on the level of a hierarchy of
