@@ -158,8 +158,8 @@ void PhotonIndex::build_leaves(std::span<const formats::Photon> photons, std::sp
   leaves_ = room_for<Leaf>(leaf_count_);
   filters_ = room_for<LeafFilter>(leaf_count_);
   flux_ = room_for<Rgb>(size_);
-  source_ = std::make_unique_for_overwrite<std::uint32_t[]>(size_);
-  object_ = std::make_unique_for_overwrite<std::uint16_t[]>(size_);
+  source_ = room_for<std::uint32_t>(size_);
+  object_ = room_for<std::uint16_t>(size_);
   parallel_chunks(leaf_count_ * kLeafSize, kChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       Leaf& leaf = leaves_[i / kLeafSize];
