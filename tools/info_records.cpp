@@ -61,6 +61,7 @@ Facts header_facts(const IrradcacheHeader& header) {
           {"origin_m", header.origin},
           {"rays", header.rays},
           {"error_bound", header.error_bound},
+          {"least_cosine", header.least_cosine},
           {"radius_limits_m", {header.min_radius, header.max_radius}},
           {"placed_frames", header.placed_frames}};
 }

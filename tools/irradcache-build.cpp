@@ -71,6 +71,7 @@ formats::IrradcacheHeader cache_header(const Options& options, const SceneFrame&
   header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
   header.rays = std::uint32_t(options.gather.rays);
   header.error_bound = double(options.placement.error_bound);
+  header.least_cosine = double(store.least_cosine());
   for (const IrradianceRecord& record : store.records()) {
     header.min_radius =
         header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
@@ -108,7 +109,7 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   }
   const PointLookup lookup(points.points, first.bounds, points.spacing, point_reach(tracer));
   const FinalGather gather(tracer, lights, lookup, options.gather);
-  RecordStore store(first.bounds);
+  RecordStore store(first.bounds, {.least_cosine = least_cosine_of(options.placement.error_bound)});
   std::string history = points.history;
   if (!options.records.empty())
     history = tools::read_records(tool, options.records, tools::InputRole::replaceable, first, store);

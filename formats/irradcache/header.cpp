@@ -7,12 +7,15 @@
 namespace tempolux::formats::irradcache {
 namespace {
 
+constexpr std::uint16_t kLeastCosineSince = 1;  ///< minor version
+
 constexpr std::array<std::string_view, 4> kColumnsNames{"none", "influence", "update", "influence,update"};
 
 /// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
 std::string_view fault_of(const IrradcacheHeader& h) {
   if (h.columns >= kColumnsNames.size()) return "columns are not known";
   if (!std::isfinite(h.error_bound) || h.error_bound < 0) return "error-bound is not finite or is negative";
+  if (!(h.least_cosine >= 0 && h.least_cosine < 1)) return "least-cosine is not from 0 to below 1";
   if (!std::isfinite(h.max_radius) || !(h.min_radius >= 0 && h.min_radius <= h.max_radius))
     return "radii are not two lengths, the smaller first";
   for (std::size_t i = 0; i < h.placed_frames.size(); ++i) {
@@ -33,7 +36,7 @@ bool parse_ranges(std::string_view text, std::vector<std::array<std::int32_t, 2>
   return true;
 }
 
-Line take_line(std::string_view key, std::string_view value, IrradcacheHeader& h) {
+Line take_line(std::string_view key, std::string_view value, std::uint16_t minor, IrradcacheHeader& h) {
   const auto result = [](bool good) { return good ? Line::good : Line::bad_value; };
   if (key == "columns") {
     h.columns =
@@ -42,6 +45,7 @@ Line take_line(std::string_view key, std::string_view value, IrradcacheHeader& h
   }
   if (key == "rays") return result(parse_numbers(value, &h.rays, 1) && h.rays > 0);
   if (key == "error-bound") return result(parse_numbers(value, &h.error_bound, 1) && h.error_bound > 0);
+  if (key == "least-cosine" && minor >= kLeastCosineSince) return result(parse_numbers(value, &h.least_cosine, 1));
   if (key == "radii") {
     std::array<double, 2> radii{};
     if (!parse_numbers(value, radii.data(), 2) || !(radii[1] > 0)) return Line::bad_value;
@@ -60,7 +64,15 @@ std::string ranges_text(const std::vector<std::array<std::int32_t, 2>>& ranges) 
   return text;
 }
 
+bool has_least_cosine(const IrradcacheHeader& h) { return h.least_cosine != kLeastCosine; }
+
 }  // namespace
+
+Format format_of(const IrradcacheHeader& h) {
+  Format format = kFormat;
+  format.minor = has_least_cosine(h) ? kLeastCosineSince : 0;
+  return format;
+}
 
 std::string header_text(const IrradcacheHeader& h) {
   HeaderText text("irradcache");
@@ -69,6 +81,7 @@ std::string header_text(const IrradcacheHeader& h) {
   text.origin(h.origin);
   if (h.rays > 0) text.line("rays", text_of(h.rays));
   if (h.error_bound > 0) text.line("error-bound", text_of(h.error_bound));
+  if (has_least_cosine(h)) text.line("least-cosine", text_of(h.least_cosine));
   if (h.max_radius > 0) text.line("radii", text_of(h.min_radius) + " " + text_of(h.max_radius));
   if (!h.placed_frames.empty()) text.line("placed", ranges_text(h.placed_frames));
   text.identity(h.identity);
@@ -76,11 +89,11 @@ std::string header_text(const IrradcacheHeader& h) {
   return text.finish();
 }
 
-std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown, IrradcacheHeader& h) {
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, IrradcacheHeader& h) {
   h = IrradcacheHeader();
   constexpr std::array<std::string_view, 2> required{"columns", "origin"};
-  const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, h); };
-  if (auto error = parse_lines(text, allow_unknown, required, take)) return error;
+  const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, minor, h); };
+  if (auto error = parse_lines(text, minor > kFormat.minor, required, take)) return error;
   if (const std::string_view fault = fault_of(h); !fault.empty())
     return HeaderError{0, "header: " + std::string(fault)};
   return std::nullopt;

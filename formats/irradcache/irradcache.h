@@ -44,6 +44,9 @@ struct IrradianceCacheRecord {
 };
 static_assert(sizeof(IrradianceCacheRecord) == 136);
 
+/// IrradcacheHeader::least_cosine of files that do not say.
+inline constexpr double kLeastCosine = 0.94;
+
 /// What the header says.
 struct IrradcacheHeader {
   std::string history;             ///< one line per tool, each ending in LF
@@ -53,6 +56,8 @@ struct IrradcacheHeader {
   // How it was gathered, for whoever extends it. 0: not known.
   std::uint32_t rays = 0;                 ///< gather rays per record
   double error_bound = 0;                 ///< accuracy that set the radii; its meaning is the maker's
+  /// n . n_i above which a record counts, [0, 1): what it was placed for, and what to interpolate with.
+  double least_cosine = kLeastCosine;
   double min_radius = 0, max_radius = 0;  ///< m: limits that radii were clamped to; max 0: not known
   /// Ranges {first, last} of the frames whose cameras it was placed for, ascending and apart; empty: not
   /// known.

@@ -14,7 +14,7 @@
 
 namespace tempolux::formats::irradcache {
 
-inline constexpr Format kFormat{{"\x89TIRRC\r\n", 8}, ".irradcache", "irradcache-build"};
+inline constexpr Format kFormat{{"\x89TIRRC\r\n", 8}, ".irradcache", "irradcache-build", 1, 1};
 inline constexpr std::string_view kBlockMark = "IRRC";
 inline constexpr std::size_t kRecordSize = 120, kInfluenceSize = 4, kUpdateSize = 12, kEndBodySize = 32;
 
@@ -24,12 +24,15 @@ constexpr std::size_t record_size(std::uint32_t columns) {
          (columns & column_update ? kUpdateSize : 0);
 }
 
+/// The format with the earliest minor version that has all keys of such a header.
+Format format_of(const IrradcacheHeader& header);
+
 /// The text of a header. std::invalid_argument if a value is out of range.
 std::string header_text(const IrradcacheHeader& header);
 
-/// Parses a text; unknown keys pass if `allow_unknown`. Nothing if the header is good.
-std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown,
-                                             IrradcacheHeader& header);
+/// Parses the text of a file of version 1.minor; keys that we do not know pass if it is later than ours. Nothing if the
+/// header is good.
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, IrradcacheHeader& header);
 
 /// Why a record is refused (irradcache.md, sections 3 and 4); "" if it is good. The predicate of the format.
 std::string_view fault_of(const IrradianceCacheRecord& record, std::uint32_t columns);

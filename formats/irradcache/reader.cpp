@@ -43,7 +43,7 @@ IrradcacheTotals read_totals(ContainerReader& in, const IrradcacheTotals& sums) 
 IrradcacheFile load_irradcache(const std::string& path) {
   ContainerReader in(path, kFormat);
   IrradcacheFile file;
-  in.expect_good(parse_header_text(in.text(), in.later_minor(), file.header));
+  in.expect_good(parse_header_text(in.text(), in.minor(), file.header));
   const std::uint32_t columns = file.header.columns;
   file.records.reserve(in.bytes().size() / record_size(columns));
   RecordSums sums;

@@ -15,7 +15,7 @@ struct IrradcacheWriter::State {
   std::uint64_t count = 0;
 
   State(ContainerWriter::Sink sink, const IrradcacheHeader& header)
-      : out(std::move(sink), kFormat, header_text(header)), columns(header.columns) {}
+      : out(std::move(sink), format_of(header), header_text(header)), columns(header.columns) {}
   void write_block(std::span<const IrradianceCacheRecord> records);
 };
 

@@ -61,6 +61,10 @@ bool is_usable(const IrradianceRecord& r) {
 
 }  // namespace
 
+float least_cosine_of(float error_bound) {
+  return 1 - std::clamp(0.375f * error_bound * error_bound, 0.00375f, 0.06f);
+}
+
 RecordStore::RecordStore(const Box3& bounds, const InterpolationOptions& options)
     : lower_(bounds.empty() ? Vec3{} : bounds.lower), largest_cell_(std::max(double(bounds.diagonal()), 1e-30)), options_(options) {}
 
@@ -168,16 +172,16 @@ inline bool RecordStore::any_near(Vec3 position, Vec3 normal, const Found& found
   const Vec3d local = Vec3d(position) - lower_;
   for (const Level& level : levels_)
     if (level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())].any_near(position, normal,
-                                                                                                   options_.max_angle_cos, found))
+                                                                                                   options_.least_cosine, found))
       return true;
-  return everywhere_.any_near(position, normal, options_.max_angle_cos, found);
+  return everywhere_.any_near(position, normal, options_.least_cosine, found);
 }
 
 void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first) {
   std::vector<std::pair<std::uint32_t, float>> near;
   any_near(record.position, record.normal, [&](const Entry& entry) {
     if (const float d = length(entry.position - record.position);
-        d < entry.radius && dot(entry.normal, record.normal) > options_.max_angle_cos)
+        d < entry.radius && dot(entry.normal, record.normal) > options_.least_cosine)
       near.emplace_back(entry.record, d);
     return false;
   });
@@ -194,9 +198,9 @@ inline float RecordStore::weight_of(const Entry& entry, float scale, Vec3 positi
   const float d2 = length2(d);
   if (d2 >= radius * radius) return 0;
   const float cosine = dot(normal, entry.normal);
-  if (cosine <= options_.max_angle_cos) return 0;
+  if (cosine <= options_.least_cosine) return 0;
   if (std::abs(dot(d, normal + entry.normal)) > 2 * kOffPlane * entry.radius) return 0;
-  const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - options_.max_angle_cos));
+  const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - options_.least_cosine));
   return std::max(0.0f, (1 - std::sqrt(d2) / radius) * (1 - angle));
 }
 

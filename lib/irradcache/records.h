@@ -1,6 +1,7 @@
 // lib/irradcache/records.h -- irradiance records: gathered with gradients, interpolated between.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -27,10 +28,16 @@ struct IrradianceRecord {
 };
 
 struct InterpolationOptions {
-  /// Records whose normal is farther off (20 degrees) do not count. On curved surfaces a bright spot rises over
-  /// the horizon faster than gradients tell: with 37 degrees a sphere lit from the side came out 3 % dark there.
-  float max_angle_cos = 0.94f;
+  /// Records whose normal is farther off do not count: n n_i > least_cosine, in [0, 1).
+  float least_cosine = 0.94f;
 };
+
+/// least_cosine of records placed with this error bound (lib/gather/place_records.h): on curved surfaces a bright spot rises
+/// over the horizon faster than gradients tell, and a ball lit from the side came out 4 % dark there with 20 degrees, 1 %
+/// with 10. As radii do, the angle follows the bound,
+///     1 - least_cosine = 0.375 error_bound^2,   50 degrees x error_bound,
+/// but stays from 5 to 20 degrees: normals of fine meshes turn more than that within a pixel, and wider it is wrong.
+float least_cosine_of(float error_bound);
 
 /// Records found by place: each is listed in the cells its validity sphere meets, on the level of a hierarchy of
 /// hashed grids whose cells are between one and two radii wide. What a look-up costs does not grow with the number
@@ -38,6 +45,11 @@ struct InterpolationOptions {
 class RecordStore {
  public:
   explicit RecordStore(const Box3& bounds, const InterpolationOptions& options = {});
+
+  /// From now on records count in this angle only, if it is the narrower one.
+  void narrow(float least_cosine) { options_.least_cosine = std::max(options_.least_cosine, least_cosine); }
+  /// n n_i of records that count is above.
+  float least_cosine() const { return options_.least_cosine; }
 
   /// False, and the record is left out and counted, if one of its numbers is not finite or its radius not above 0.
   bool add(const IrradianceRecord& record);
@@ -59,7 +71,7 @@ class RecordStore {
   /// Weighted mean of the valid records' extrapolations by their gradients:
   ///
   ///     E = sum w_i (E_i + (n_i x n) . g_r,i + (x - x_i) . g_t,i) / sum w_i
-  ///     w_i = (1 - |x - x_i| / r_i) (1 - sqrt((1 - n n_i) / (1 - cos_max)))      where both are positive
+  ///     w_i = (1 - |x - x_i| / r_i) (1 - sqrt((1 - n n_i) / (1 - least_cosine)))      where both are positive
   ///
   /// the hat weights of Tabellion & Lamorlette 2004 and Krivanek, which go to zero at the border of validity, so
   /// that no record is seen to begin. Every extrapolation is clamped at 0. A record is left out if the point is not on one

@@ -11,7 +11,7 @@ refuses() {   # exit 2 and these words in one line; nothing is written
   [ -e refused ] && bad "left an output: $*" && rm -f refused
 }
 scenes=$HERE/../../pipelines/scenes
-still=$scenes/S1_cornell.glb moving=$scenes/S2_cornell_moving.glb
+still=$scenes/S1_cornell.glb moving=$scenes/S2_cornell_moving.glb round=$scenes/S3_indirect_room.glb
 small="--size 48x27 --rays 64"
 photon-trace "$still" --photons 20k -o p.photons -q || bad 'photons'
 
@@ -44,11 +44,34 @@ added = finer["results"]["records_added.0"]
 assert added > 0 and finer["counts"]["records"] == two["counts"]["records"] + added, (two, finer)
 END
 
+# The angle in which records count follows the error bound, the file says it, an extended file keeps the narrower one.
+says() { tempolux-info --json "$1" | grep -q "\"least_cosine\": $2" || bad "$1 does not say least_cosine $2"; }
+irradcache-build records "$still" --points p.irradpoints $small --error-bound 0.5 -o coarse.irradcache -q || bad 'coarse'
+irradcache-build records "$still" --points p.irradpoints $small --error-bound 0.5 --records two.irradcache -o kept.irradcache -q
+says two.irradcache 0.98
+says coarse.irradcache '0.9[34]'
+says kept.irradcache 0.98
+
 # A frame from the cache, and the same one however the cache came to be.
 for cache in one two; do
   frame-render "$still" --size 48x27 --spp 2 --pixel-error 0 --irradcache $cache.irradcache --channels layers -o $cache.exr -q || bad "frame from $cache"
 done
 tempolux-info --diff one.exr two.exr >/dev/null || bad 'frames of equal caches differ'
+
+# frame-render interpolates in the angle the file says: in one of 2.6 degrees a ball and a head miss many more.
+photon-trace "$round" --frame 1 --photons 20k -o round.photons -q
+irradcache-build "$round" --frame 1 --photons round.photons --point-count 1k $small -o round.irradcache -q || bad 'round'
+PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$HERE/../formats "${PYTHON:-python3}" - <<'END' || bad 'narrower'
+from read_irradcache import read_irradcache, write_irradcache
+cache = read_irradcache("round.irradcache")
+cache.header["least-cosine"] = "0.999"
+write_irradcache("narrow.irradcache", cache)
+END
+missing() { sed -n 's/.*"gathered_on_the_spot": \([0-9]*\).*/\1/p' $1.json; }
+for cache in round narrow; do
+  frame-render "$round" --frame 1 --size 48x27 --spp 2 --pixel-error 0 --irradcache $cache.irradcache --photons round.photons -o $cache.exr -q --stats $cache.json
+done
+[ "$(missing narrow)" -gt $((2 * $(missing round) + 10)) ] || bad "missing records: $(missing round), narrow $(missing narrow)"
 
 # Frames that are lit alike are one cache; frames that are not are refused.
 irradcache-build "$still" --photons p.photons --point-count 1k $small --frames 0-2 -o frames.irradcache --stats frames.json -q || bad '--frames'

@@ -64,14 +64,14 @@ def parse_text(text, later, required, rules):
     return header, history
 
 
-def read_container(path, magic, mark, required, rules, record_sizes, end_format):
-    """(header, history, blocks, totals). record_sizes(header): bytes of a record, then of an entry of each column. Blocks:
+def read_container(path, magic, mark, required, rules, record_sizes, end_format, since={}):
+    """(header, history, blocks, totals). since: the minor version of keys that came later than 1.0. record_sizes(header): bytes of a record, then of an entry of each column. Blocks:
     a list of (offset of the body, n, [bytes of all records, bytes of each column]); totals: end_format unpacked."""
     with open(path, "rb") as stream:
-        return parse_container(stream, magic, mark, required, rules, record_sizes, end_format)
+        return parse_container(stream, magic, mark, required, rules, record_sizes, end_format, since)
 
 
-def parse_container(stream, magic, mark, required, rules, record_sizes, end_format):
+def parse_container(stream, magic, mark, required, rules, record_sizes, end_format, since):
     offset = 0
 
     def take(size):
@@ -90,7 +90,8 @@ def parse_container(stream, magic, mark, required, rules, record_sizes, end_form
     chain = take(4)
     if struct.unpack("<I", chain)[0] != zlib.crc32(fixed + text):
         refuse(offset - 4, "wrong checksum of the header")
-    header, history = parse_text(text, minor > 0, required, rules)
+    known = {key: rule for key, rule in rules.items() if since.get(key, 0) <= minor}
+    header, history = parse_text(text, minor > max(since.values(), default=0), required, known)
     sizes = record_sizes(header)
 
     blocks = []

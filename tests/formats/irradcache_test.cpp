@@ -61,6 +61,7 @@ IrradcacheHeader rich_header() {
   header.columns = kAllColumns;
   header.rays = 900;
   header.error_bound = 0.15;
+  header.least_cosine = 0.985;
   header.min_radius = 0.001;
   header.max_radius = 2.5;
   header.placed_frames = {{-3, 0}, {2, 2}, {5, 20}};
@@ -115,6 +116,7 @@ TEST(Irradcache, EverythingComesBack) {
   EXPECT_EQ(file.header.columns, expected.columns);
   EXPECT_EQ(file.header.rays, expected.rays);
   EXPECT_EQ(file.header.error_bound, expected.error_bound);
+  EXPECT_EQ(file.header.least_cosine, expected.least_cosine);
   EXPECT_EQ(file.header.min_radius, expected.min_radius);
   EXPECT_EQ(file.header.max_radius, expected.max_radius);
   EXPECT_EQ(file.header.placed_frames, expected.placed_frames);
@@ -128,6 +130,7 @@ TEST(Irradcache, WhatIsNotKnownOfTheGatheringComesBackAsNotKnown) {
   const IrradcacheFile file = load_irradcache(folder / "a");
   EXPECT_EQ(file.header.rays, 0u);
   EXPECT_EQ(file.header.error_bound, 0);
+  EXPECT_EQ(file.header.least_cosine, kLeastCosine);
   EXPECT_EQ(file.header.max_radius, 0);
   EXPECT_TRUE(file.header.placed_frames.empty());
   EXPECT_FALSE(file.header.identity.known());

@@ -200,7 +200,13 @@ def make_cache():
     for key in ("rays", "error-bound", "radii", "placed"):
         del unknown.header[key]
     m.save("accept/gathering-not-known", unknown)
+    m.save("accept/least-cosine", m.with_header(least_cosine="0.985"))
+    m.save("accept/least-cosine-zero", m.with_header(least_cosine="0"))
+    m.headers({f"least-cosine-{name}": {"least-cosine": value}
+               for name, value in {"one": "1", "negative": "-0.5", "nan": "nan", "empty": "", "two": "0.9 0.9"}.items()})
     text = m.pieces(m.bytes)[0][16:-4]
+    m.save("refuse/header-key-of-a-later-version", m.with_text(text + b"least-cosine: 0.985\n"))
+    m.save("refuse/header-key-unknown-1.1", m.with_text(text + b"colour-of-ink: blue\n", minor=1))
     for key, old, cases in (
             ("columns", "none", {"unknown": "albedo", "empty": "", "in-other-order": "update,influence"}),
             ("rays", "512", {"zero": "0", "above-32-bits": "4294967296"}),

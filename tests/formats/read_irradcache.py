@@ -25,7 +25,8 @@ INFLUENCE, UPDATE = struct.Struct("<f"), struct.Struct("<3f")      # section 4
 END = "<Q3d"                                                       # section 5, without mark and chain
 COLUMNS = {"none": [], "influence": ["influence"], "update": ["update"], "influence,update": ["influence", "update"]}
 SIZES = {"influence": INFLUENCE.size, "update": UPDATE.size}
-KEYS = ["columns", "origin", "rays", "error-bound", "radii", "placed"]
+KEYS = ["columns", "origin", "rays", "error-bound", "least-cosine", "radii", "placed"]
+SINCE = {"least-cosine": 1}                                         # section 9
 
 
 def good_radii(text):
@@ -45,6 +46,7 @@ RULES = {
     "columns": lambda v: v in COLUMNS,
     "rays": lambda v: integers(v, 1, 1, 2**32 - 1),
     "error-bound": lambda v: (reals(v, 1) or [0])[0] > 0,
+    "least-cosine": lambda v: 0 <= (reals(v, 1) or [-1])[0] < 1,
     "radii": good_radii,
     "placed": good_ranges,
 }
@@ -81,7 +83,7 @@ def is_good(r):
 def read_irradcache(path):
     header, history, blocks, end = read_container(
         path, MAGIC, MARK, ["columns"], RULES,
-        lambda h: [RECORD.size] + [SIZES[c] for c in COLUMNS[h["columns"]]], END)
+        lambda h: [RECORD.size] + [SIZES[c] for c in COLUMNS[h["columns"]]], END, SINCE)
     records = []
     for offset, _, parts in blocks:
         columns = dict(zip(COLUMNS[header["columns"]], parts[1:]))
@@ -117,7 +119,8 @@ def encode_irradcache(c):
         if "update" in columns:
             parts.append(b"".join(UPDATE.pack(*r.update) for r in records))
         blocks.append((len(records), parts))
-    return encode_container(MAGIC, MARK, KEYS, c.header, c.history, blocks, struct.pack(END, *totals(c)))
+    return encode_container(MAGIC, MARK, KEYS, c.header, c.history, blocks, struct.pack(END, *totals(c)),
+                            int("least-cosine" in c.header))
 
 
 def write_irradcache(path, c):

@@ -176,6 +176,30 @@ TEST(RecordStore, WeightIsAHat) {
   EXPECT_EQ(store.interpolate({}, {0.7f, 0.7f, 0}).count, 0);
 }
 
+/// 50 degrees times the bound, 1 - cos = angle^2 / 2, from 5 to 20 degrees.
+TEST(RecordStore, TheAngleInWhichRecordsCountFollowsTheErrorBound) {
+  EXPECT_NEAR(least_cosine_of(0.2f), std::cos(0.2 * 50 * kPi / 180), 3e-4);
+  EXPECT_FLOAT_EQ(least_cosine_of(0.2f), 0.985f);
+  EXPECT_FLOAT_EQ(least_cosine_of(0.4f), 0.94f);
+  EXPECT_FLOAT_EQ(least_cosine_of(2), 0.94f);
+  EXPECT_FLOAT_EQ(least_cosine_of(1e-3f), 0.99625f);
+}
+
+/// The narrower angle of all that were asked for.
+TEST(RecordStore, CanBeNarrowed) {
+  RecordStore store(box({-1, -1, -1}, {1, 1, 1}), {.least_cosine = 0});
+  store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
+  const auto count_at = [&](float cosine) {
+    return store.interpolate({}, {std::sqrt(1 - cosine * cosine), cosine, 0}).count;
+  };
+  EXPECT_EQ(count_at(0.1f), 1);
+  store.narrow(0.9f);
+  store.narrow(0.5f);
+  EXPECT_EQ(store.least_cosine(), 0.9f);
+  EXPECT_EQ(count_at(0.89f), 0);
+  EXPECT_EQ(count_at(0.91f), 1);
+}
+
 TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {
   RecordStore store(box({-1, -1, -1}, {1, 1, 1}));
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
