@@ -322,6 +322,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   record.position = from.position;
   record.normal = normal;
   record.object = from.object;
+  record.expected_share = expected_share;
   sky.translational_gradient(shots.frame, record);
   record.lit_cells = sky.lit_cells();
   record.lit_share = record.lit_cells / float(order.size());

@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kBatch = 256;
 constexpr int kCoarsest = 16;
 constexpr float kFewCells = 8, kEnoughCells = 32;   ///< lit cells: gradients are left out; count in full
+constexpr float kWideLight = 0.6f;   ///< share of the hemisphere
 
 /// Pixels of the lattice of `stride` that are on no coarser one (of 1: all), row by row.
 std::vector<std::size_t> lattice(int width, int height, int stride) {
@@ -144,6 +145,7 @@ void limit_radius(IrradianceRecord& record, float footprint, float max_radius, c
   const float trust = std::clamp((record.lit_cells - kFewCells) / (kEnoughCells - kFewCells), 0.0f, 1.0f);
   for (Vec3& g : record.translational) g *= trust;
   for (Vec3& g : record.rotational) g *= trust;
+  if (record.expected_share > 0) record.radius_unclamped *= std::min(1.0f, std::sqrt(record.expected_share / kWideLight));
   double reach = double(record.radius_unclamped), slope = 0;
   for (Vec3 g : record.translational) slope += length(Vec3d(g));
   if (!options.by_curvature && slope * reach > e && slope > 0) reach = e / slope;

@@ -47,9 +47,12 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
 /// The gradients of a record that fewer than 32 of its rays make out (lit_cells) are reduced, to nothing at 8: they are
 /// noise, and a radius that follows from them would depend on the light that happened to be found.
 ///
-///     r = min(error_bound x min(R, |E| / |dE/dx|), nearest surface along the tangent plane, max_radius),
+///     r = min(error_bound x min(R sqrt(min(1, s / 0.6)), |E| / |dE/dx|), nearest surface along the tangent plane, max_radius),
 ///
-/// and at least min_radius_px footprints. radius_unclamped keeps error_bound x R. By curvature R = sqrt(2 |E| /
+/// s: expected_share, if it is known. An edge in front of light that fills a share s of the hemisphere throws a shadow whose border
+/// is as wide as the edge is far times sqrt(s), or so; and of a bright thing narrower than the cells of a record its
+/// gradient finds a part only (each of its borders moves as far as in full, but is met as rarely as it is narrow): such
+/// borders came out blurred, up to 10 % bright. s comes from others' rays, so that radii do not follow E's noise. And at least min_radius_px footprints. radius_unclamped keeps error_bound x R sqrt(..). By curvature R = sqrt(2 |E| /
 /// curvature) takes the place of both: the distance at which the second order, which gradients leave out, is as large
 /// as the irradiance itself [after Schwarzhaupt, Jensen & Jarosz 2012, one radius for all directions].
 void limit_radius(IrradianceRecord& record, float footprint, float max_radius, const PlacementOptions& options);

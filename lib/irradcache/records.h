@@ -23,6 +23,7 @@ struct IrradianceRecord {
   float radius_unclamped = 0;           ///< m: before it was limited by pixels, scene and neighbours
   float lit_cells = INFINITY;           ///< how many gather rays carry the irradiance (hemisphere.h); not in files
   float lit_share = 1;                  ///< lit_cells / all cells; not in files
+  float expected_share = 1;             ///< what was thought of lit_share before its own rays; not in files
   float curvature = 0;                  ///< W/m^4: size of the second derivatives (hemisphere.h); not in files
   std::uint32_t object = 0;             ///< the object it rides on
 };

@@ -256,6 +256,20 @@ TEST(LimitRadius, EachLimitDecidesWhereItIsTheSmallest) {
   EXPECT_FLOAT_EQ(limited(gathered(1, {}, 1, INFINITY), 1e-3f).radius_unclamped, 0.2f);
 }
 
+/// From light that fills .15 of the hemisphere, sqrt(.15 / .6) = 1/2 of what distances tell, of neighbours' reach too;
+/// from .6 on, or where nothing is known, all of it.
+TEST(LimitRadius, NarrowLightHasNarrowShadows) {
+  PlacementOptions options;
+  options.error_bound = 0.2f;
+  for (const auto& [share, kept] : {std::pair{0.15f, 0.5f}, {0.6f, 1.0f}, {1.0f, 1.0f}, {0.0f, 1.0f}}) {
+    IrradianceRecord r = gathered(1, {}, 1, INFINITY);
+    r.expected_share = share;
+    limit_radius(r, 1e-3f, 0.5f, options);
+    EXPECT_FLOAT_EQ(r.radius, 0.2f * kept) << share;
+    EXPECT_FLOAT_EQ(r.radius_unclamped, 0.2f * kept) << share;
+  }
+}
+
 /// --radii hessian: R = sqrt(2 E / |E''|), whatever lies how far and whatever the gradient.
 TEST(LimitRadius, CurvatureDecidesWhereItIsAskedFor) {
   PlacementOptions options;
