@@ -6,6 +6,7 @@
 
 #include "formats/large_pages.h"
 #include "lib/core/parallel.h"
+#include "lib/density/parallel_select.h"
 
 namespace tempolux {
 
@@ -32,11 +33,11 @@ std::unique_ptr<T[]> room_for(std::size_t count) {
   return room;
 }
 
-/// Orders [first, last) around `mid` by coordinate, equal ones by source: the two halves as sets do not
-/// depend on how the library selects.
+/// Orders items around the n-th by coordinate, equal ones by source: the two halves as sets do not depend on how it
+/// is found.
 template <int axis, class Item>
-void select(Item* first, Item* mid, Item* last) {
-  std::nth_element(first, mid, last, [](const Item& a, const Item& b) {
+void select(std::span<Item> items, std::size_t n) {
+  parallel_nth_element(items, n, [](const Item& a, const Item& b) {
     return a.position[axis] < b.position[axis] ||
            (a.position[axis] == b.position[axis] && a.source < b.source);
   });
@@ -75,10 +76,10 @@ bool split(std::span<Item> items, std::size_t leaf_size, Range range, Range& lef
   const Box3 box = std::size_t(last - first) > kBoxChunk ? box_of_many(first, last) : box_of(first, last);
   const Vec3 extent = box.upper - box.lower;
   const std::size_t mid = range.first + std::bit_ceil(leaves) / 2 * leaf_size;
-  Item* const middle = items.data() + mid;
-  if (extent.x >= extent.y && extent.x >= extent.z) select<0>(first, middle, last);
-  else if (extent.y >= extent.z) select<1>(first, middle, last);
-  else select<2>(first, middle, last);
+  const std::span<Item> cut = items.subspan(range.first, range.last - range.first);
+  if (extent.x >= extent.y && extent.x >= extent.z) select<0>(cut, mid - range.first);
+  else if (extent.y >= extent.z) select<1>(cut, mid - range.first);
+  else select<2>(cut, mid - range.first);
   left = {range.first, mid};
   right = {mid, range.last};
   return true;
