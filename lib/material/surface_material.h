@@ -11,14 +11,15 @@ namespace tempolux {
 /// Width of what a ray stands for, for choosing the level of textures: it grows by `spread` metres per metre.
 ///
 /// A camera ray starts with a pixel's angle and keeps it through mirrors and smooth glass (curved ones are not
-/// accounted for). After any other scattering, and from lights, a ray stands for a cone of kBounceSpread: about what
-/// one of 500 rays over a half sphere covers. The mean over a surface is kept by coarse levels, so this blurs what
-/// lies between a texture and the light it throws on others, no more.
+/// accounted for). After any other scattering, and from lights, a ray stands for a cone of kBounceSpread, which a Lambert
+/// lobe begins anew: it spares the finest levels of what is far away. Coarse levels keep the mean of an image, but not of
+/// the charts in it that a surface shows: beside them may be anything, which a wide cone mixes in. With a tenth the ground
+/// about a fox got 4.5 % less light from it than without textures' levels, with this 0.2 %.
 struct RayCone {
   float width = 0, spread = 0;   ///< m; m/m
   void advance(float distance) { width += spread * distance; }
 };
-inline constexpr float kBounceSpread = 0.1f;
+inline constexpr float kBounceSpread = 0.02f;
 
 /// The material at a hit. A material without textures is its factors: that costs one test.
 class SurfaceMaterial {
