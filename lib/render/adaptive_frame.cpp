@@ -26,7 +26,8 @@ struct PixelState {
   }
 };
 
-constexpr int kNear = 2;   // pixels: a pixel is judged by the 24 around it
+// Pixels: one is judged by the 24 around it; by 8 for what has edges, which are narrow: all that see one pay for it.
+constexpr int kNear = 2, kNearSharp = 1;
 // Samples that are stratified err as n^(-5/6) or so. The least error for a number of samples has n ~ sigma^(2 / (1 + 10/6)).
 constexpr int kLightsTogether = 4;     // samples of the lights at a place where only they are uncertain
 constexpr double kStratified = 0.75, kTypical = 12;
@@ -102,11 +103,11 @@ class AdaptiveFrame {
     body(&light);
   }
 
-  /// body(pixel) for the neighbours of a pixel that are rendered.
+  /// body(pixel) for the neighbours of a pixel, at most `near` away, that are rendered.
   template <class Body>
-  void for_each_neighbour(int x, int y, const Body& body) const {
-    for (int j = std::max(0, y - kNear); j <= std::min(view_.height() - 1, y + kNear); ++j)
-      for (int i = std::max(0, x - kNear); i <= std::min(view_.width() - 1, x + kNear); ++i) {
+  void for_each_neighbour(int x, int y, int near, const Body& body) const {
+    for (int j = std::max(0, y - near); j <= std::min(view_.height() - 1, y + near); ++j)
+      for (int i = std::max(0, x - near); i <= std::min(view_.width() - 1, x + near); ++i) {
         const std::size_t at = std::size_t(j) * std::size_t(view_.width()) + std::size_t(i);
         if ((i != x || j != y) && (options_.mask.empty() || options_.mask[at])) body(at);
       }
@@ -115,7 +116,7 @@ class AdaptiveFrame {
   /// Share of the large lights' light that shadows leave.
   float seen_around(int x, int y) const {
     float sampled = 0, seen = 0;
-    for_each_neighbour(x, y, [&](std::size_t at) {
+    for_each_neighbour(x, y, kNear, [&](std::size_t at) {
       sampled += pixels_[at].sampled;
       seen += pixels_[at].seen;
     });
@@ -131,14 +132,14 @@ class AdaptiveFrame {
     take_out(image_.pixels[pixel][Layer::specular], pixels_[pixel].specular_noise);
   }
 
-  /// Variance of a sample: what has edges may agree in a few samples and be wrong, it counts in full; all else as far as
-  /// stratification leaves it, by the difference of a pixel's halves.
-  double variance(std::size_t pixel, int x, int y) const {
+  /// Variance of a sample, of all but what has edges, as far as stratification leaves it: by the difference of a pixel's halves.
+  /// What has edges may agree in a few samples and be wrong: PixelState::sharp_variance counts in full.
+  double smooth_variance(std::size_t pixel, int x, int y) const {
     const PixelState& state = pixels_[pixel];
     const double a = first_half_, b = options_.samples - first_half_;
     double difference = double(state.difference);
     if (controlled_) difference -= double(seen_around(x, y) * state.noise_difference);
-    return state.sharp_variance + difference * difference * a * b / (a + b);
+    return difference * difference * a * b / (a + b);
   }
 
   /// Do the pixel and the eight around it see one matte surface each? Then it is its light that is uncertain, not which place of
@@ -156,22 +157,27 @@ class AdaptiveFrame {
     double all = 0;
     for (const PixelState& state : pixels_) all += double(state.mean);
     const double picture = all / double(std::max<std::size_t>(1, pixels_.size()));
-    std::vector<double> variances(pixels_.size());
+    std::vector<double> smooth(pixels_.size());
     RayCounts none;
     for_each_pixel(view_, options_, none, {},
-                   [&](std::size_t pixel, int x, int y, RayCounts&) { variances[pixel] = variance(pixel, x, y); });
+                   [&](std::size_t pixel, int x, int y, RayCounts&) { smooth[pixel] = smooth_variance(pixel, x, y); });
     std::vector<int> missing(pixels_.size());
     for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) {
-      double pooled = 0, level = 0;
-      int n = 0;
-      for_each_neighbour(x, y, [&](std::size_t at) {
+      double pooled = 0, sharp = 0, level = 0;
+      int n = 0, n_sharp = 0;
+      for_each_neighbour(x, y, kNear, [&](std::size_t at) {
         ++n;
-        pooled += variances[at];
+        pooled += smooth[at];
         level += double(pixels_[at].mean);
       });
+      for_each_neighbour(x, y, kNearSharp, [&](std::size_t at) {
+        ++n_sharp;
+        sharp += pixels_[at].sharp_variance;
+      });
       if (n == 0) return;   // a picture of one pixel
+      const double sigma = std::sqrt(pooled / n + sharp / std::max(1, n_sharp));
       const double error = options_.pixel_error * (std::min(level / n, picture) + 0.1 * picture);
-      const double wanted = error > 0 ? kTypical * std::pow(std::sqrt(pooled / n) / (kTypical * error), kStratified) : 0;
+      const double wanted = error > 0 ? kTypical * std::pow(sigma / (kTypical * error), kStratified) : 0;
       const int more = std::clamp(int(std::min(wanted, double(options_.adaptive_limit))) - options_.samples, 0, options_.adaptive_limit);
       const int lights = pixels_[pixel].lights = is_plain(x, y) ? kLightsTogether : 1;
       missing[pixel] = more > 0 ? std::max(1, (more + lights / 2) / lights) * lights : 0;
