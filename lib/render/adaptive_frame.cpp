@@ -17,6 +17,9 @@ struct PixelState {
   float sampled = 0, seen = 0;          ///< of the first
   bool plain = false;                   ///< the first met one matte surface, controlled
   int lights = 1;                       ///< samples of the lights to a further camera ray
+  int own = 0;                          ///< further samples for its own sake
+  float heirs = 0;                      ///< neighbours that share what those change
+  Rgb change{0.0f};                     ///< ... of the direct layer, W/m^2/sr
   double sharp_variance = 0;            ///< of one of the first: PixelSum::sharp; a square of light may be beyond float
   float difference = 0, noise_difference = 0;     ///< of all else: mean over half of the first samples less that over the others
 
@@ -31,6 +34,7 @@ constexpr int kNear = 2, kNearSharp = 1;
 // Samples that are stratified err as n^(-5/6) or so. The least error for a number of samples has n ~ sigma^(2 / (1 + 10/6)).
 constexpr int kLightsTogether = 4;     // samples of the lights at a place where only they are uncertain
 constexpr double kStratified = 0.75, kTypical = 12;
+constexpr double kOwn = 4;             // pixel errors by which one sample of a dot may change it
 
 class AdaptiveFrame {
  public:
@@ -49,22 +53,20 @@ class AdaptiveFrame {
     const std::vector<int> missing = missing_samples();
     for_each_tile(view_, options_, rays, options_.progress, [&](RayCounts& counts) {
       return [&, sparse = SparseCaustics()](std::size_t pixel, int x, int y) mutable {
-        const int count = missing[pixel], lights = pixels_[pixel].lights;
-        if (count > 0) {
-          LightControl control;
-          with_light(pixel, sparse, [&](const DiffuseLight* light) {
-            PixelSum sum = sample_pixel(scene_, view_, options_.seed, light, pixel, x, y, options_.samples, count / lights, lights,
-                                        counts, controlled_ ? &control : nullptr);
-            sum.stand_for(lights);
-            join(sum, options_.samples, count, image_.pixels[pixel]);
-          });
-          pixels_[pixel].add_noise(control);
-        }
-        if (controlled_) take_noise_out(pixel, x, y, options_.samples + count);
+        const int count = missing[pixel], own = pixels_[pixel].own, wanted = options_.samples + count;
+        if (count > 0) join_further(pixel, x, y, options_.samples, count, sparse, counts);
+        if (!controlled_) return;
+        const float seen = seen_around(x, y);
+        if (own == 0) return take_noise_out(pixel, seen, wanted);
+        const Rgb unchanged = without_noise(image_.pixels[pixel][Layer::direct], pixels_[pixel].direct_noise, seen, wanted);
+        join_further(pixel, x, y, wanted, own, sparse, counts);
+        take_noise_out(pixel, seen, wanted + own);
+        pixels_[pixel].change = unchanged - image_.pixels[pixel][Layer::direct];
       };
     });
     double sum = 0;
-    for (const int count : missing) sum += count;
+    for (std::size_t pixel = 0; pixel < missing.size(); ++pixel) sum += missing[pixel] + pixels_[pixel].own;
+    if (controlled_) share_changes();
     return sum;
   }
 
@@ -123,13 +125,60 @@ class AdaptiveFrame {
     return sampled > 0 ? seen / sampled : 0;
   }
 
-  void take_noise_out(std::size_t pixel, int x, int y, int count) {
-    const float share = -seen_around(x, y) / float(count);
-    const auto take_out = [&](Rgb& radiance, const Rgb& noise) {
-      for (int c = 0; c < 3; ++c) radiance[c] = std::max(0.0f, radiance[c] + noise[c] * share);
-    };
-    take_out(image_.pixels[pixel][Layer::direct], pixels_[pixel].direct_noise);
-    take_out(image_.pixels[pixel][Layer::specular], pixels_[pixel].specular_noise);
+  /// `count` samples more, from the one of number `first` on.
+  void join_further(std::size_t pixel, int x, int y, int first, int count, SparseCaustics& sparse, RayCounts& counts) {
+    const int lights = pixels_[pixel].lights;
+    LightControl control;
+    with_light(pixel, sparse, [&](const DiffuseLight* light) {
+      PixelSum sum = sample_pixel(scene_, view_, options_.seed, light, pixel, x, y, first, count / lights, lights, counts,
+                                  controlled_ ? &control : nullptr);
+      sum.stand_for(lights);
+      join(sum, first, count, image_.pixels[pixel]);
+    });
+    pixels_[pixel].add_noise(control);
+  }
+
+  static Rgb without_noise(const Rgb& radiance, const Rgb& noise, float seen, int count) {
+    Rgb rest;
+    for (int c = 0; c < 3; ++c) rest[c] = std::max(0.0f, radiance[c] - noise[c] * seen / float(count));
+    return rest;
+  }
+
+  void take_noise_out(std::size_t pixel, float seen, int count) {
+    Layers& layers = image_.pixels[pixel];
+    layers[Layer::direct] = without_noise(layers[Layer::direct], pixels_[pixel].direct_noise, seen, count);
+    layers[Layer::specular] = without_noise(layers[Layer::specular], pixels_[pixel].specular_noise, seen, count);
+  }
+
+  /// Of the light that large lights send to a plain pixel: did its first samples see some and miss some, where
+  /// its neighbours call for few more? Then it would stand out as a dot. Its own further samples would take light from the
+  /// edges of shadows, or give them some: that is shared out again among its neighbours on the same surface.
+  void ask_for_own(std::size_t pixel, int x, int y, int samples) {
+    PixelState& state = pixels_[pixel];
+    const int wanted = int(std::min(double(options_.adaptive_limit), 1 / (kOwn * options_.pixel_error)));
+    if (state.lights == 1 || samples >= wanted || !(state.seen > 0 && state.seen < state.sampled)) return;
+    for_each_heir(pixel, x, y, [&](std::size_t) { ++state.heirs; });
+    if (state.heirs > 0) state.own = (wanted - samples + state.lights - 1) / state.lights * state.lights;
+  }
+
+  template <class Body>
+  void for_each_heir(std::size_t pixel, int x, int y, const Body& body) const {
+    for_each_neighbour(x, y, kNear, [&](std::size_t at) {
+      if (pixels_[at].plain && pixels_[at].memory[0].surface == pixels_[pixel].memory[0].surface) body(at);
+    });
+  }
+
+  void share_changes() {
+    RayCounts none;
+    for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) {
+      if (!pixels_[pixel].plain) return;
+      Rgb& direct = image_.pixels[pixel][Layer::direct];
+      Rgb share{0.0f};
+      for_each_heir(pixel, x, y, [&](std::size_t at) {
+        if (pixels_[at].own > 0) share += pixels_[at].change * (1 / pixels_[at].heirs);
+      });
+      for (int c = 0; c < 3; ++c) direct[c] = std::max(0.0f, direct[c] + share[c]);
+    });
   }
 
   /// Variance of a sample, of all but what has edges, as far as stratification leaves it: by the difference of a pixel's halves.
@@ -181,6 +230,7 @@ class AdaptiveFrame {
       const int more = std::clamp(int(std::min(wanted, double(options_.adaptive_limit))) - options_.samples, 0, options_.adaptive_limit);
       const int lights = pixels_[pixel].lights = is_plain(x, y) ? kLightsTogether : 1;
       missing[pixel] = more > 0 ? std::max(1, (more + lights / 2) / lights) * lights : 0;
+      if (controlled_) ask_for_own(pixel, x, y, options_.samples + missing[pixel]);
     });
     return missing;
   }
