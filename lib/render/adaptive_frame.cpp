@@ -20,7 +20,7 @@ struct PixelState {
   int own = 0;                          ///< further samples for its own sake
   float heirs = 0;                      ///< neighbours that share what those change
   Rgb change{0.0f};                     ///< ... of the direct layer, W/m^2/sr
-  double sharp_variance = 0;            ///< of one of the first: PixelSum::sharp; a square of light may be beyond float
+  double sharp = 0, sharp_variance = 0; ///< of one of the first: PixelSum::sharp; a square of light may be beyond float
   float difference = 0, noise_difference = 0;     ///< of all else: mean over half of the first samples less that over the others
 
   void add_noise(const LightControl& more) {
@@ -31,6 +31,7 @@ struct PixelState {
 
 // Pixels: one is judged by the 24 around it; by 8 for what has edges, which are narrow: all that see one pay for it.
 constexpr int kNear = 2, kNearSharp = 1;
+constexpr double kBetween = 0.1;
 // Samples that are stratified err as n^(-5/6) or so. The least error for a number of samples has n ~ sigma^(2 / (1 + 10/6)).
 constexpr int kLightsTogether = 4;     // samples of the lights at a place where only they are uncertain
 constexpr double kStratified = 0.75, kTypical = 12;
@@ -92,6 +93,7 @@ class AdaptiveFrame {
     state.plain = control[0].seen_matte + control[1].seen_matte == n && state.memory[1].surface == kNone;
     const double sharp = first.sharp + second.sharp;
     state.sharp_variance = std::max(0.0, first.sharp_square + second.sharp_square - sharp * sharp / n) / std::max(1, n - 1);
+    state.sharp = sharp / n;
     if (b == 0) return;
     const auto noise = [](const LightControl& c) { return double(channel_mean(c.direct)); };
     state.difference = float((first.value() - first.sharp) / a - (second.value() - second.sharp) / b);
@@ -191,6 +193,26 @@ class AdaptiveFrame {
     return difference * difference * a * b / (a + b);
   }
 
+  /// Of what has edges: that of the neighbours' samples, and a share of the variance between neighbours beyond what their samples
+  /// leave. Where these are all of one piece and differ, an edge may run through this pixel alone: the rim of a lamp that just
+  /// reaches into a row of dark pixels, of which first samples meet nothing, or four times as much as there is.
+  double sharp_variance(int x, int y) const {
+    double within = 0, sum = 0, square = 0;
+    int n = 0;
+    for_each_neighbour(x, y, kNearSharp, [&](std::size_t at) {
+      const PixelState& state = pixels_[at];
+      ++n;
+      within += state.sharp_variance;
+      sum += state.sharp;
+      square += state.sharp * state.sharp;
+    });
+    if (n == 0) return 0;
+    within /= n;
+    if (n == 1) return within;
+    const double between = (square - sum * sum / n) / (n - 1) - within / options_.samples;
+    return within + kBetween * std::max(0.0, between);
+  }
+
   /// Do the pixel and the eight around it see one matte surface each? Then it is its light that is uncertain, not which place of
   /// it is seen.
   bool is_plain(int x, int y) const {
@@ -212,19 +234,15 @@ class AdaptiveFrame {
                    [&](std::size_t pixel, int x, int y, RayCounts&) { smooth[pixel] = smooth_variance(pixel, x, y); });
     std::vector<int> missing(pixels_.size());
     for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) {
-      double pooled = 0, sharp = 0, level = 0;
-      int n = 0, n_sharp = 0;
+      double pooled = 0, level = 0;
+      int n = 0;
       for_each_neighbour(x, y, kNear, [&](std::size_t at) {
         ++n;
         pooled += smooth[at];
         level += double(pixels_[at].mean);
       });
-      for_each_neighbour(x, y, kNearSharp, [&](std::size_t at) {
-        ++n_sharp;
-        sharp += pixels_[at].sharp_variance;
-      });
       if (n == 0) return;   // a picture of one pixel
-      const double sigma = std::sqrt(pooled / n + sharp / std::max(1, n_sharp));
+      const double sigma = std::sqrt(pooled / n + sharp_variance(x, y));
       const double error = options_.pixel_error * (std::min(level / n, picture) + 0.1 * picture);
       const double wanted = error > 0 ? kTypical * std::pow(sigma / (kTypical * error), kStratified) : 0;
       const int more = std::clamp(int(std::min(wanted, double(options_.adaptive_limit))) - options_.samples, 0, options_.adaptive_limit);

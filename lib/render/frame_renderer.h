@@ -20,8 +20,8 @@ struct FrameOptions {
   /// > 0: after `samples` everywhere, more where pixels are uncertain: n = 12 (sigma / (12 pixel_error (L + 0.1 mean)))^(3/4),
   /// sigma the standard deviation of a sample as far as stratification leaves it, L the radiance, both around the pixel, L at
   /// most the picture's mean. So spread they give the least error for their number. sigma and L are those
-  /// of the neighbouring pixels, whose samples are independent: no bias. Of edges it is that of the 8 around it, of all else of
-  /// 24. See adaptive_frame.h.
+  /// of the neighbouring pixels, whose samples are independent: no bias. Of edges it is that of the 8 around it and
+  /// between them, of all else of 24. See adaptive_frame.h.
   double pixel_error = 0;
   int adaptive_limit = 1024;
   const DiffuseLight* diffuse_light = nullptr;

@@ -218,24 +218,27 @@ TEST(FrameRenderer, SparseCausticLightIsTakenFromNearbyOnly) {
 
 /// A bright sheet and a black one that meet in the middle of a column of pixels: of four samples, stratified, two are on either.
 /// Asked for more than it may have, a pixel that has an edge or is beside one takes all: that column and one on either side.
+/// Where they meet between two columns no pixel's samples differ, but those of its neighbours do: both columns take all.
 TEST(FrameRenderer, EdgesArePaidForByThePixelsBesideThemAlone) {
-  constexpr float kMiddle = 20.5f / 32;
-  test::HandMadeScene made;
-  made.add_quad({-2, -2, 0}, {kMiddle, -2, 0}, {kMiddle, 2, 0}, {-2, 2, 0}, test::matte(Rgb(0.0f), Rgb(1.0f)));
-  made.add_quad({kMiddle, -2, 0}, {2, -2, 0}, {2, 2, 0}, {kMiddle, 2, 0}, test::matte(Rgb(0.0f)));
-  const SceneFrame& frame = made.frame();
-  const Tracer tracer(frame);
-  const Lights lights(frame, build_emission_table({&frame, 1}));
-  PlacedCamera camera;
-  camera.camera.kind = Camera::Kind::orthographic;
-  camera.camera.ymag_m = 0.5625f;
-  camera.scene_from_camera.translation = {0, 0, 1};
-  const CameraView view(camera, {}, 64, 36);
-  FrameOptions options;
-  options.samples = 4;
-  options.pixel_error = 1e-6;
-  options.adaptive_limit = 16;
-  EXPECT_DOUBLE_EQ(render_frame({tracer, lights}, view, options).samples_per_pixel, 4 + 12 * 3 / 64.0);
+  for (const auto& [column, taken] : {std::pair{20.5f, 3.0}, std::pair{20.0f, 2.0}}) {
+    const float edge = column / 32;
+    test::HandMadeScene made;
+    made.add_quad({-2, -2, 0}, {edge, -2, 0}, {edge, 2, 0}, {-2, 2, 0}, test::matte(Rgb(0.0f), Rgb(1.0f)));
+    made.add_quad({edge, -2, 0}, {2, -2, 0}, {2, 2, 0}, {edge, 2, 0}, test::matte(Rgb(0.0f)));
+    const SceneFrame& frame = made.frame();
+    const Tracer tracer(frame);
+    const Lights lights(frame, build_emission_table({&frame, 1}));
+    PlacedCamera camera;
+    camera.camera.kind = Camera::Kind::orthographic;
+    camera.camera.ymag_m = 0.5625f;
+    camera.scene_from_camera.translation = {0, 0, 1};
+    const CameraView view(camera, {}, 64, 36);
+    FrameOptions options;
+    options.samples = 4;
+    options.pixel_error = 1e-6;
+    options.adaptive_limit = 16;
+    EXPECT_DOUBLE_EQ(render_frame({tracer, lights}, view, options).samples_per_pixel, 4 + 12 * taken / 64) << column;
+  }
 }
 
 /// Where all of a large light is seen its noise is taken out. Four samples of the lamp by solid angle leave a pixel of the box
