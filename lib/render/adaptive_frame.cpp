@@ -170,17 +170,17 @@ class AdaptiveFrame {
     });
   }
 
+  /// Few pixels have some: one after the other.
   void share_changes() {
-    RayCounts none;
-    for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) {
-      if (!pixels_[pixel].plain) return;
-      Rgb& direct = image_.pixels[pixel][Layer::direct];
-      Rgb share{0.0f};
-      for_each_heir(pixel, x, y, [&](std::size_t at) {
-        if (pixels_[at].own > 0) share += pixels_[at].change * (1 / pixels_[at].heirs);
+    const auto width = std::size_t(view_.width());
+    for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {
+      const PixelState& state = pixels_[pixel];
+      if (state.own == 0) continue;
+      for_each_heir(pixel, int(pixel % width), int(pixel / width), [&](std::size_t at) {
+        Rgb& direct = image_.pixels[at][Layer::direct];
+        for (int c = 0; c < 3; ++c) direct[c] = std::max(0.0f, direct[c] + state.change[c] / state.heirs);
       });
-      for (int c = 0; c < 3; ++c) direct[c] = std::max(0.0f, direct[c] + share[c]);
-    });
+    }
   }
 
   /// Variance of a sample, of all but what has edges, as far as stratification leaves it: by the difference of a pixel's halves.
