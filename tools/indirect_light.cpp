@@ -28,7 +28,7 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
               ": mirrors, glass and gloss throw caustic light, which a cache does not hold: it is left out; "
               "give --photons FILE");
   tool.stats().phase("read cache");
-  records_ = std::make_unique<RecordStore>(frame.bounds, InterpolationOptions{.least_cosine = 0});
+  records_ = std::make_unique<RecordStore>(frame.bounds, InterpolationOptions{.least_cosine = 0, .only_read = true});
   history_ = read_records(tool, frame_name(options.irradcache, number), InputRole::file, frame, *records_);
   cache_ = std::make_unique<CacheLight>(*records_, [this, number] { return make_gather(number); }, photons_.get());
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "lib/core/check.h"
 #include "lib/core/random.h"
 
 namespace tempolux {
@@ -14,6 +15,7 @@ namespace {
 constexpr int kFinest = 40;               ///< smallest cells: largest / 2^kFinest, below float spacing
 constexpr std::size_t kFirstBuckets = 256;
 constexpr float kOffPlane = 0.05f;        ///< of the radius: how far off the plane between the normals a point may be
+constexpr double kOffPlaneSlack = 1e-4;
 constexpr double kRounding = 1e-6;        ///< distances are of float: a sphere may reach this much farther
 
 struct Cell {
@@ -79,11 +81,7 @@ void RecordStore::Bucket::add(const Entry& entry) {
   last.normal_x[lane] = entry.normal.x;
   last.normal_y[lane] = entry.normal.y;
   last.normal_z[lane] = entry.normal.z;
-  last.record[lane] = entry.record;
-}
-
-bool RecordStore::Bucket::ends_with(std::uint32_t record) const {
-  return count_ > 0 && eights_.back().record[(count_ - 1) % kLanes] == record;
+  last.record[lane] = last_ = entry.record;
 }
 
 void RecordStore::Bucket::set_radius(std::uint32_t record, float radius) {
@@ -118,16 +116,30 @@ RecordStore::Level& RecordStore::level_of(float radius) {
   level.exponent = exponent;
   level.inverse_cell = std::ldexp(1 / largest_cell_, exponent);
   level.buckets.resize(kFirstBuckets);
+  if (!options_.only_read) level.around.resize(kFirstBuckets);
   return level;
 }
 
+/// Valid are points next to the plane between the normals: with t across n_i, n = n_i cos a + t sin a,
+///     |d . (n + n_i)| <= 2 kOffPlane r   and   |d| < r   give   |d . n_i| <= r (2 kOffPlane / (1 + cos a) + tan(a / 2)),
+/// the more the larger the angle. Cells beyond that need not know the record.
 void RecordStore::list(Level& level, std::uint32_t record) const {
   const IrradianceRecord& r = records_[record];
-  for_each_cell(Vec3d(r.position) - lower_, r.radius, level.inverse_cell, [&](Cell cell) {
-    Bucket& bucket = level.buckets[bucket_of(cell, level.buckets.size())];
-    if (bucket.ends_with(record)) return;   // two cells of one hash: once
-    bucket.add({r.position, r.radius, r.normal, record});
-    ++level.listed;
+  const Vec3d local = Vec3d(r.position) - lower_, normal(r.normal);
+  const double c = std::min(1.0, double(options_.least_cosine)), width = 1 / level.inverse_cell;
+  const double off = double(r.radius) * (2 * double(kOffPlane) / (1 + c) + std::sqrt((1 - c) / (1 + c)) + kOffPlaneSlack);
+  const double reach = off + width / 2 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+  const Entry entry{r.position, r.radius, r.normal, record};
+  for_each_cell(local, r.radius, level.inverse_cell, [&](Cell cell) {
+    const Vec3d middle{(double(cell.x) + 0.5) * width, (double(cell.y) + 0.5) * width, (double(cell.z) + 0.5) * width};
+    const std::size_t at = bucket_of(cell, level.buckets.size());
+    const auto put = [&](Bucket& bucket) {
+      if (bucket.ends_with(record)) return false;   // two cells of one hash: once
+      bucket.add(entry);
+      return true;
+    };
+    if (!options_.only_read) put(level.around[at]);
+    if (std::abs(dot(middle - local, normal)) <= reach) level.listed += put(level.buckets[at]);
   });
 }
 
@@ -149,6 +161,7 @@ bool RecordStore::add(const IrradianceRecord& record) {
     return true;
   }
   level.buckets.assign(4 * level.buckets.size(), {});
+  if (!options_.only_read) level.around.assign(level.buckets.size(), {});
   level.listed = 0;
   for (std::uint32_t member : level.members) list(level, member);
   return true;
@@ -162,24 +175,30 @@ void RecordStore::shrink(std::uint32_t record, float radius) {
     if (!std::binary_search(level.members.begin(), level.members.end(), record)) continue;
     const Vec3d local = Vec3d(records_[record].position) - lower_;
     for_each_cell(local, before, level.inverse_cell,
-                  [&](Cell c) { level.buckets[bucket_of(c, level.buckets.size())].set_radius(record, radius); });
+                  [&](Cell c) {
+                    const std::size_t at = bucket_of(c, level.buckets.size());
+                    level.buckets[at].set_radius(record, radius);
+                    level.around[at].set_radius(record, radius);
+                  });
   }
   records_[record].radius = radius;
 }
 
 template <class Found>
-inline bool RecordStore::any_near(Vec3 position, Vec3 normal, const Found& found) const {
+inline bool RecordStore::any_near(std::vector<Bucket> Level::*listed, Vec3 position, Vec3 normal, const Found& found) const {
   const Vec3d local = Vec3d(position) - lower_;
-  for (const Level& level : levels_)
-    if (level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())].any_near(position, normal,
-                                                                                                   options_.least_cosine, found))
+  for (const Level& level : levels_) {
+    const std::vector<Bucket>& buckets = level.*listed;
+    if (buckets[bucket_of(cell_at(local, level.inverse_cell), buckets.size())].any_near(position, normal, options_.least_cosine, found))
       return true;
+  }
   return everywhere_.any_near(position, normal, options_.least_cosine, found);
 }
 
 void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first) {
   std::vector<std::pair<std::uint32_t, float>> near;
-  any_near(record.position, record.normal, [&](const Entry& entry) {
+  TEMPOLUX_CHECK(!options_.only_read);
+  any_near(&Level::around, record.position, record.normal, [&](const Entry& entry) {
     if (const float d = length(entry.position - record.position);
         d < entry.radius && dot(entry.normal, record.normal) > options_.least_cosine)
       near.emplace_back(entry.record, d);
@@ -222,7 +241,7 @@ inline void RecordStore::accumulate(const Entry& entry, float scale, Vec3 positi
 RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) const {
   Interpolated result;
   Rgb sum{0.0f};
-  any_near(position, normal, [&](const Entry& entry) {
+  any_near(&Level::buckets, position, normal, [&](const Entry& entry) {
     accumulate(entry, 1, position, normal, sum, result);
     return false;
   });
@@ -232,7 +251,7 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) c
 
 float RecordStore::lit_share(Vec3 position, Vec3 normal) const {
   float weights = 0, sum = 0;
-  any_near(position, normal, [&](const Entry& entry) {
+  any_near(&Level::buckets, position, normal, [&](const Entry& entry) {
     const float weight = weight_of(entry, 1, position, normal);
     weights += weight;
     sum += weight * records_[entry.record].lit_share;
@@ -243,7 +262,7 @@ float RecordStore::lit_share(Vec3 position, Vec3 normal) const {
 
 bool RecordStore::covers(Vec3 position, Vec3 normal, float weight) const {
   float sum = 0;
-  return any_near(position, normal, [&](const Entry& entry) { return (sum += weight_of(entry, 1, position, normal)) >= weight; });
+  return any_near(&Level::buckets, position, normal, [&](const Entry& entry) { return (sum += weight_of(entry, 1, position, normal)) >= weight; });
 }
 
 RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {

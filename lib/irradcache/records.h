@@ -31,6 +31,7 @@ struct IrradianceRecord {
 struct InterpolationOptions {
   /// Records whose normal is farther off do not count: n n_i > least_cosine, in [0, 1).
   float least_cosine = 0.94f;
+  bool only_read = false;               ///< clamp_with_neighbours() is not asked for: half of the lists are not made
 };
 
 /// least_cosine of records placed with this error bound (lib/gather/place_records.h): on curved surfaces a bright spot rises
@@ -40,8 +41,8 @@ struct InterpolationOptions {
 /// but stays from 5 to 20 degrees: normals of fine meshes turn more than that within a pixel, and wider it is wrong.
 float least_cosine_of(float error_bound);
 
-/// Records found by place: each is listed in the cells its validity sphere meets, on the level of a hierarchy of
-/// hashed grids whose cells are between one and two radii wide. What a look-up costs does not grow with the number
+/// Records found by place: each is listed in the cells its validity sphere meets near its tangent plane, on the level of a hierarchy
+/// of hashed grids whose cells are between one and two radii wide. What a look-up costs does not grow with the number
 /// of records, only with how many overlap there. Look-ups are thread-safe while nothing is added.
 class RecordStore {
  public:
@@ -101,7 +102,7 @@ class RecordStore {
   class Bucket {
    public:
     void add(const Entry& entry);
-    bool ends_with(std::uint32_t record) const;
+    bool ends_with(std::uint32_t record) const { return count_ > 0 && last_ == record; }
     void set_radius(std::uint32_t record, float radius);
     /// found(entry) of those that are near and face about the same way (a little more than valid ones), in order, until true.
     template <class Found> bool any_near(Vec3 position, Vec3 normal, float least_cosine, const Found& found) const;
@@ -113,20 +114,22 @@ class RecordStore {
       std::uint32_t record[kLanes];
     };
     std::vector<Eight> eights_;
-    std::uint32_t count_ = 0;
+    std::uint32_t count_ = 0, last_ = 0;   ///< last_: the record that came last
   };
   struct Level {
     int exponent = 0;                   ///< cells are largest_cell / 2^exponent wide
     double inverse_cell = 0;
     std::size_t listed = 0;             ///< entries in all buckets
     std::vector<std::uint32_t> members;
-    std::vector<Bucket> buckets;          ///< by the hash of the cell; a power of two of them
+    std::vector<Bucket> buckets;        ///< by the hash of the cell, a power of two of them: what may be valid in it
+    std::vector<Bucket> around;         ///< likewise: all of which the sphere meets it; empty if only read
   };
   Level& level_of(float radius);
   void list(Level& level, std::uint32_t record) const;
   void shrink(std::uint32_t record, float radius);
   /// Is found(entry) true of a record that may be valid at the point? Each is asked once, until one is.
-  template <class Found> bool any_near(Vec3 position, Vec3 normal, const Found& found) const;
+  template <class Found>
+  bool any_near(std::vector<Bucket> Level::*listed, Vec3 position, Vec3 normal, const Found& found) const;
   /// Of a record at a point, its radius scaled; 0 where it is not valid.
   float weight_of(const Entry& entry, float scale, Vec3 position, Vec3 normal) const;
   void accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
