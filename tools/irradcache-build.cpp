@@ -126,10 +126,10 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
     const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
     PlacementOptions placement = options.placement;
     if (number != frames.front()) placement.min_weight *= kLaterWeight;
-    const PixelView seen = [&](float x, float y, const PathRandom* random) {
-      return seen_through(tracer, view, x, y, random);
+    const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+      seen_through(tracer, view, looks, seen);
     };
-    const std::size_t added = place_records(gather, seen, options.width, options.height, first.bounds, placement,
+    const std::size_t added = place_records(gather, views, options.width, options.height, first.bounds, placement,
                                             store, counts, [&](double done) { tool.progress(done); });
     tool.stats().set("records_added." + std::to_string(number), double(added));
   }

@@ -1,6 +1,7 @@
 #include "lib/gather/place_records.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 
@@ -61,8 +62,9 @@ std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int w
 /// Adds records at points that none covers yet.
 class Placement {
  public:
-  Placement(const FinalGather& gather, const Box3& bounds, const PlacementOptions& options, RecordStore& store, GatherCounts& counts)
+  Placement(const FinalGather& gather, const PixelViews& views, const Box3& bounds, const PlacementOptions& options, RecordStore& store, GatherCounts& counts)
       : gather_(gather),
+        views_(views),
         options_(options),
         max_radius_(options.max_radius > 0 ? options.max_radius : 0.1f * bounds.diagonal()),
         store_(store),
@@ -72,16 +74,34 @@ class Placement {
   /// From now on a new record leaves its neighbours as they are: what is covered stays so.
   void fix_radii() { first_ = kFixed; }
 
-  /// Points of pixels, in a fixed shuffled order; view(pixel) may say that there is nothing to cover.
-  template <class View>
-  void cover(const std::vector<std::size_t>& pixels, const View& view) {
+  /// Points of pixels, in a fixed shuffled order. look(pixel): where to look, if anywhere; note(pixel, seen): what was seen.
+  template <class LookAt, class Note>
+  void cover(const std::vector<std::size_t>& pixels, const LookAt& look, const Note& note) {
     // What is covered now stays covered: only the rest is put into order and looked at again, batch by batch.
     constexpr std::size_t kChunk = 1024;
     std::vector<std::vector<Open>> found((pixels.size() + kChunk - 1) / kChunk);
     parallel_chunks(pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i)
-        if (const std::optional<SeenPoint> seen = view(pixels[i]); seen && !is_covered(*seen))
-          found[first / kChunk].push_back({mix64(pixels[i]), pixels[i], *seen});
+      std::array<Look, kLooksTogether> looks;
+      std::array<std::size_t, kLooksTogether> of;
+      std::array<std::optional<SeenPoint>, kLooksTogether> seen;
+      std::size_t count = 0;
+      const auto see = [&] {
+        views_(std::span(looks).first(count), std::span(seen).first(count));
+        for (std::size_t k = 0; k < count; ++k) {
+          if (!seen[k]) continue;
+          note(of[k], *seen[k]);
+          if (!is_covered(*seen[k])) found[first / kChunk].push_back({mix64(of[k]), of[k], *seen[k]});
+        }
+        count = 0;
+      };
+      for (std::size_t i = first; i < last; ++i) {
+        const std::optional<Look> at = look(pixels[i]);
+        if (!at) continue;
+        looks[count] = *at;
+        of[count] = pixels[i];
+        if (++count == kLooksTogether) see();
+      }
+      if (count > 0) see();
     });
     std::vector<Open> open;
     for (const auto& some : found) open.insert(open.end(), some.begin(), some.end());
@@ -126,6 +146,7 @@ class Placement {
   }
 
   const FinalGather& gather_;
+  const PixelViews& views_;
   const PlacementOptions& options_;
   float max_radius_;
   RecordStore& store_;
@@ -162,11 +183,11 @@ void limit_radius(IrradianceRecord& record, float footprint, float max_radius, c
     for (Vec3& g : record.translational) g *= float(e / over);
 }
 
-std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height, const Box3& bounds,
+std::size_t place_records(const FinalGather& gather, const PixelViews& views, int width, int height, const Box3& bounds,
                           const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
                           const std::function<void(double)>& progress) {
   const std::size_t before = store.records().size();
-  Placement placement(gather, bounds, options, store, counts);
+  Placement placement(gather, views, bounds, options, store, counts);
   std::vector<Glimpse> glimpses(std::size_t(width) * std::size_t(height));
   std::size_t done = 0;
   const auto advance = [&](std::size_t pixels) {
@@ -176,28 +197,36 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
   for (int stride = kCoarsest; stride >= 1; stride /= 2) {
     if (stride == 1) placement.fix_radii();   // and look again at what was covered before
     const std::vector<std::size_t> pixels = lattice(width, height, stride);
-    placement.cover(pixels, [&](std::size_t pixel) {
-      const std::size_t x = pixel % std::size_t(width), y = pixel / std::size_t(width);
-      Glimpse& glimpse = glimpses[pixel];
-      if (glimpse.any && placement.is_covered(glimpse.position, glimpse.normal)) return std::optional<SeenPoint>();
-      const std::optional<SeenPoint> seen = view(float(x) + 0.5f, float(y) + 0.5f, nullptr);
-      if (seen)
-        glimpse = {seen->surface.position, seen->normal, seen->footprint, seen->surface.object, true, seen->by_choice};
-      return seen;
+    const auto look = [&](std::size_t pixel) -> std::optional<Look> {
+      const Glimpse& known = glimpses[pixel];
+      if (known.any && placement.is_covered(known.position, known.normal)) return std::nullopt;
+      return Look{float(pixel % std::size_t(width)) + 0.5f, float(pixel / std::size_t(width)) + 0.5f, {}};
+    };
+    placement.cover(pixels, look, [&](std::size_t pixel, const SeenPoint& seen) {
+      glimpses[pixel] = {seen.surface.position, seen.normal, seen.footprint, seen.surface.object, true, seen.by_choice};
     });
     advance(pixels.size());
   }
   const std::vector<std::size_t> edges = edge_pixels(glimpses, width, height);
   constexpr Vec2 kWithin[4] = {{0.125f, 0.625f}, {0.375f, 0.125f}, {0.625f, 0.875f}, {0.875f, 0.375f}};
   for (std::uint32_t k = 0; k < 4; ++k) {
-    placement.cover(edges, [&](std::size_t pixel) {
-      const std::size_t x = pixel % std::size_t(width), y = pixel / std::size_t(width);
-      const PathRandom random(mix64(pixel), k);
-      return view(float(x) + kWithin[k].x, float(y) + kWithin[k].y, &random);
-    });
+    const auto look = [&](std::size_t pixel) -> std::optional<Look> {
+      return Look{float(pixel % std::size_t(width)) + kWithin[k].x, float(pixel / std::size_t(width)) + kWithin[k].y,
+                  PathRandom(mix64(pixel), k)};
+    };
+    placement.cover(edges, look, [](std::size_t, const SeenPoint&) {});
     advance(std::size_t(width) * std::size_t(height) / 16);
   }
   return store.records().size() - before;
+}
+
+std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height, const Box3& bounds,
+                          const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
+                          const std::function<void(double)>& progress) {
+  const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+    for (std::size_t i = 0; i < looks.size(); ++i) seen[i] = view(looks[i].x, looks[i].y, looks[i].random ? &*looks[i].random : nullptr);
+  };
+  return place_records(gather, views, width, height, bounds, options, store, counts, progress);
 }
 
 }  // namespace tempolux

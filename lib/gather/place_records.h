@@ -32,12 +32,23 @@ struct SeenPoint {
 /// (glass, gloss) it is drawn from `random`, or the likelier one without.
 using PixelView = std::function<std::optional<SeenPoint>(float x, float y, const PathRandom* random)>;
 
+/// The same of up to kLooksTogether positions, near to each other as a rule: one packet of rays.
+struct Look {
+  float x = 0, y = 0;
+  std::optional<PathRandom> random;
+};
+inline constexpr std::size_t kLooksTogether = 8;
+using PixelViews = std::function<void(std::span<const Look>, std::span<std::optional<SeenPoint>> seen)>;
+
 /// Adds records until every pixel's point is covered: the points through the centres of lattices of 16, 8, 4, 2 and
 /// 1 pixels one after the other, each in a fixed shuffled order and in batches of fixed size: a batch is tested and
 /// gathered in parallel, its records are added in order. Up to the lattice of 2 new records may narrow those added before
 /// (clamp_with_neighbours), but not those that were in the store; at the last all pixels are looked at again. Then four more points in each pixel at an edge or behind
 /// glass, so that a frame's samples find records there too. The same records for any number of threads.
 /// Returns how many were added.
+std::size_t place_records(const FinalGather& gather, const PixelViews& views, int width, int height,
+                          const Box3& bounds, const PlacementOptions& options, RecordStore& store,
+                          GatherCounts& counts, const std::function<void(double)>& progress = {});
 std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,
                           const Box3& bounds, const PlacementOptions& options, RecordStore& store,
                           GatherCounts& counts, const std::function<void(double)>& progress = {});

@@ -1,5 +1,7 @@
 #include "lib/render/cache_light.h"
 
+#include <array>
+
 #include "lib/core/parallel.h"
 #include "lib/render/shading.h"
 
@@ -28,12 +30,11 @@ DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geomet
   return result;
 }
 
-std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, float x, float y, const PathRandom* random) {
-  Ray ray = view.ray(x, y);
+namespace {
+
+std::optional<SeenPoint> follow(const Tracer& tracer, const CameraView& view, const Look& look, Ray ray, Hit hit) {
   float distance = 0;
-  for (std::uint32_t mirrors = 0; mirrors < kMirrorsInARow; ++mirrors) {
-    Hit hit;
-    if (!tracer.intersect(ray, hit)) return std::nullopt;
+  for (std::uint32_t mirrors = 0; hit.surface != kNone; ++mirrors) {
     SurfacePoint point = tracer.surface_point(hit);
     distance += hit.t;
     const SurfaceMaterial material(tracer.frame(), point, view.pixel_size(distance));
@@ -43,14 +44,28 @@ std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& vi
       const float step = view.pixel_size(distance);
       return SeenPoint{point, shading.normal, step, mirrors > 0};
     }
+    if (mirrors + 1 == kMirrorsInARow) break;
     // u = 0.5 follows what is more than half of the light.
-    const float lobe = random ? random->get1(mirrors, Purpose::lobe) : 0.5f;
-    const Vec2 within = random ? random->get2(mirrors, Purpose::scatter) : Vec2{0.5f, 0.5f};
+    const float lobe = look.random ? look.random->get1(mirrors, Purpose::lobe) : 0.5f;
+    const Vec2 within = look.random ? look.random->get2(mirrors, Purpose::scatter) : Vec2{0.5f, 0.5f};
     const Bsdf::Sample next = shading.bsdf.sample(shading.wo_local, lobe, within);
-    if (is_black(next.weight)) return std::nullopt;
+    if (is_black(next.weight)) break;
     ray = spawn_ray(point, shading.frame.to_world(next.wi));
+    hit = {};
+    tracer.intersect(ray, hit);
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+void seen_through(const Tracer& tracer, const CameraView& view, std::span<const Look> looks,
+                  std::span<std::optional<SeenPoint>> seen) {
+  std::array<Ray, kLooksTogether> rays;
+  std::array<Hit, kLooksTogether> hits;
+  for (std::size_t i = 0; i < looks.size(); ++i) rays[i] = view.ray(looks[i].x, looks[i].y);
+  tracer.intersect(std::span(rays).first(looks.size()), std::span(hits).first(looks.size()));
+  for (std::size_t i = 0; i < looks.size(); ++i) seen[i] = follow(tracer, view, looks[i], rays[i], hits[i]);
 }
 
 }  // namespace tempolux

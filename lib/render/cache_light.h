@@ -35,8 +35,9 @@ class CacheLight : public DiffuseLight {
   mutable std::atomic<std::uint64_t> missing_{0};
 };
 
-/// What raster position (x, y) sees: the first surface with a Lambert lobe, through mirrors and glass by the
-/// likelier of reflection and transmission, or by one drawn from `random`.
-std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, float x, float y, const PathRandom* random);
+/// What up to kLooksTogether raster positions see: the first surface with a Lambert lobe, through mirrors and glass by the
+/// likelier of reflection and transmission, or by one drawn from Look::random.
+void seen_through(const Tracer& tracer, const CameraView& view, std::span<const Look> looks,
+                  std::span<std::optional<SeenPoint>> seen);
 
 }  // namespace tempolux
