@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <map>
+#include <span>
 
 #include "formats/error.h"
 #include "lib/core/parallel.h"
@@ -90,11 +92,23 @@ void add_data_channels(const RenderScene& scene, const CameraView& view, const s
   const RayCone cone = view.cone();
 
   parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
+    constexpr std::size_t kTogether = 8;   // a packet
+    std::array<Ray, kTogether> rays;
+    std::array<Hit, kTogether> hits;
+    const auto centre = [&](std::size_t i) {
+      return Vec2{float(int(i % std::size_t(view.width()))) + 0.5f, float(int(i / std::size_t(view.width()))) + 0.5f};
+    };
     for (std::size_t i = first; i < last; ++i) {
-      const float x = float(int(i % std::size_t(view.width()))) + 0.5f, y = float(int(i / std::size_t(view.width()))) + 0.5f;
-      const Ray ray = view.ray(x, y);
-      Hit hit;
-      if (!scene.tracer.intersect(ray, hit)) {
+      const std::size_t k = (i - first) % kTogether;
+      if (k == 0) {
+        const std::size_t count = std::min(kTogether, last - i);
+        for (std::size_t j = 0; j < count; ++j) rays[j] = view.ray(centre(i + j).x, centre(i + j).y);
+        scene.tracer.intersect(std::span(rays).first(count), std::span(hits).first(count));
+      }
+      const auto [x, y] = centre(i);
+      const Ray& ray = rays[k];
+      const Hit& hit = hits[k];
+      if (hit.surface == kNone) {
         if (Z) Z[i] = INFINITY;
         if (ID) ID[i] = kNone;
         continue;
