@@ -116,12 +116,28 @@ struct FinalGather::Met {
   std::optional<Bsdf> textured;   ///< what bsdf points to where the material has textures
 };
 
-/// A ray that goes on from a near hit, and what is to become of the radiance along it. All of a call follow together.
+/// Rays that go on from near hits, and what is to become of the radiance along them. All of a call follow together.
 struct FinalGather::Further {
-  Ray ray;
-  std::uint64_t key = 0;
-  Rgb weight{0.0f};
-  std::size_t of = 0;   ///< the gather ray
+  struct Onward {
+    Ray ray;
+    std::uint64_t key = 0;
+    Rgb weight{0.0f};
+    std::size_t of = 0;   ///< the gather ray
+  };
+  std::vector<Onward> rays;
+  Vec2 next;   ///< where in the unit square its direction is drawn
+
+  void begin(Vec2 shift) {
+    rays.clear();
+    next = shift;
+  }
+  /// Near hits one after the other lie side by side: their directions are spread, not each by itself, or in a corner, where
+  /// most hits are near, records would differ by as much as few random rays do.
+  Vec2 draw() {
+    const Vec2 drawn = next;
+    next = {frac(next.x + kStep.x), frac(next.y + kStep.y)};
+    return drawn;
+  }
 };
 
 /// Fills in the rest where met.hit is known. A material with textures is made for this hit; a normal map bends its normal.
@@ -167,21 +183,22 @@ void FinalGather::follow(std::span<const Ray> rays, bool alike, GatherCounts& co
 
 void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint64_t> keys,
                            std::span<Rgb> radiance, std::span<float> distance, GatherCounts& counts) const {
-  thread_local std::vector<Further> further;
+  thread_local Further further;
   thread_local std::vector<Ray> further_rays;
-  further.clear();
+  further.begin(keys.empty() ? Vec2{} : PathRandom(keys[0], keys.size()).get2(1, Purpose::gather));
   further_rays.clear();
   std::fill(radiance.begin(), radiance.end(), Rgb(0.0f));
   std::fill(distance.begin(), distance.end(), INFINITY);
   follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
     distance[i] = met.distance;
-    const std::size_t before = further.size();
+    const std::size_t before = further.rays.size();
     radiance[i] = reflected(met, point, keys[i], 0, counts, &further);
-    if (further.size() > before) further.back().of = i;
+    if (further.rays.size() > before) further.rays.back().of = i;
   });
-  for (const Further& f : further) further_rays.push_back(f.ray);
+  for (const Further::Onward& onward : further.rays) further_rays.push_back(onward.ray);
   follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
-    radiance[further[i].of] += further[i].weight * reflected(met, point, further[i].key, 1, counts, nullptr);
+    const Further::Onward& onward = further.rays[i];
+    radiance[onward.of] += onward.weight * reflected(met, point, onward.key, 1, counts, nullptr);
   });
 }
 
@@ -189,7 +206,7 @@ void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint6
 /// read there (or one more bounce if the hit is near: `further` receives its ray), its other lobes by following one of
 /// them.
 Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts,
-                           std::vector<Further>* further) const {
+                           Further* further) const {
   const Bsdf& bsdf = *met.bsdf;
   const bool specular = bsdf.has_specular();
   std::optional<SeenSide> side;
@@ -251,15 +268,15 @@ bool FinalGather::is_near(const Met& met, const PointLight& point, const PathRan
 /// of the points instead of an estimate's radius, or if the hit is nearer than about that, or at the edge of a hot spot,
 /// by light sampling; the rest by one ray more, which `further` receives: `weight` (1/sr) is for its irradiance.
 Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key,
-                                 Rgb weight, GatherCounts& counts, std::vector<Further>& further) const {
+                                 Rgb weight, GatherCounts& counts, Further& further) const {
   ++counts.near_hits;
   const SeenSide side(met.hit, met.wo);
   const bool nearer = met.distance < points_.spacing() * threshold(random) || std::isinf(point.radius);
   const Rgb irradiance =
       nearer || point.shadow_edge ? points_.point(point).caustic + sampled_light(met, side, random, counts) : point.first;
-  const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
+  const Vec3 drawn = sample_hemisphere_cos(further.draw()), travel = side.frame.to_world(drawn);
   if (dot(travel, met.geometric) > 0)
-    further.push_back({spawn_ray(met.hit, travel), mix64(key + 1), weight * (kPi * met.bsdf->arrival_weight(drawn.z)), 0});
+    further.rays.push_back({spawn_ray(met.hit, travel), mix64(key + 1), weight * (kPi * met.bsdf->arrival_weight(drawn.z)), 0});
   return irradiance;
 }
 
