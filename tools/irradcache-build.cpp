@@ -196,7 +196,8 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 20));
   app.add_option("--error-bound", options.placement.error_bound,
-                 "radius of a record / harmonic mean distance to what it sees: smaller is finer")
+                 "radius of a record / harmonic mean distance to what it sees: smaller is finer; records count where normals "
+                 "differ by less than 50 degrees times this, from 5 to 20")
       ->capture_default_str()->check(tools::number_between(1e-3, 2.0));
   app.add_option(
          "--radii", options.radii,
