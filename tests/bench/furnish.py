@@ -120,12 +120,12 @@ def with_sun(asset, folder):
     return copy.save()
 
 
-def roughened(asset, folder):
+def roughened(asset, folder, least):
     """A copy whose surfaces are rough enough for a path tracer to find lights without extent in them."""
     copy = asset.copied(folder)
     for material in copy.gltf["materials"]:
         values = material.setdefault("pbrMetallicRoughness", {})
-        values["roughnessFactor"] = max(LEAST_ROUGHNESS, values.get("roughnessFactor", 1))
+        values["roughnessFactor"] = max(least, values.get("roughnessFactor", 1))
     for animation in copy.gltf.get("animations", []):
         animation["channels"] = [c for c in animation["channels"] if "roughnessFactor" not in json.dumps(c["target"])]
     return copy.save()
