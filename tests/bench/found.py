@@ -8,8 +8,9 @@ A file without a camera is copied to a temporary folder and gets one that sees a
 a light gets a lamp and a dim sky; in one with lights without extent no surface is smoother than a roughness of 0.1: the path
 tracer cannot find those in a mirror, and hardly in gloss or glass as smooth as that (the variance of their light goes with
 roughness^-4), so such layers may stay undecided; one scene is made rougher still (ROUGHER). Where things stand (skins, morphs,
-instances) is learnt from a few photons of a sun. The photon chain takes 12 million photons and 16 shadow rays per point, not its
-defaults: between seeds both make most of the difference, and cost less than more seeds. Records are the default's. Prints a table; writes found-layers.json and found.png
+instances) is learnt from a few photons of a sun. The photon chain takes 12 million photons (4, if those cost 8 CPU s or
+more: in closed rooms each is stored many times) and 16 shadow rays per point, not its defaults: between seeds both make most of the
+difference, and cost less than more seeds. Records are the default's. Prints a table; writes found-layers.json and found.png
 (path tracer left, photon chain right, each pair at its own exposure) to --out.
 A first run of either way tells the variance and the cost of every layer; then as many samples per pixel of the one and seeds of
 the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows. An error bar
@@ -40,6 +41,7 @@ WANTED_BAR = 0.01       # of a judged layer's mean
 PILOT, PILOT_SEEDS = 32, 3   # samples per pixel and seeds that tell how many are needed
 MOST_SEEDS = 16
 ROUGHER = {"24_animation_pointer": 0.7}   # black but for spots of lights without extent: at 0.1 one path in 10^5 brings half of a layer
+SLOW_SEED = 8           # CPU s with a third of the photons: then that is enough
 LIGHT_SAMPLES = 16      # shadow rays per irradiance point
 
 
@@ -112,11 +114,11 @@ class Found:
                           photon_map, "--channels", "RGBA,layers", "--compression", "none", "-o", image)]
         return image, sum(stats["cpu_s"] for stats, _ in runs)
 
-    def chains(self, scene, seeds):
+    def chains(self, scene, seeds, photons):
         """Pictures by the photon chain, CPU seconds of all."""
         images, sum_cpu = [], 0
         for seed in seeds:
-            image, cpu = self.by_photons(scene, self.size, self.photons, seed)
+            image, cpu = self.by_photons(scene, self.size, photons, seed)
             images.append(exr.read(image))
             sum_cpu += cpu
         return images, sum_cpu
@@ -127,14 +129,18 @@ class Found:
         try:
             scene, row["given"] = self.usable(file)
             path, halves, row["path_cpu_s"], row["warnings"] = self.reference(scene, PILOT)
-            chain, row["chain_cpu_s"] = self.chains(scene, range(1, PILOT_SEEDS + 1))
+            photons = self.photons // 3
+            _, cpu = self.chains(scene, [1], photons)
+            if cpu < SLOW_SEED:
+                photons = self.photons
+            chain, row["chain_cpu_s"] = self.chains(scene, range(1, PILOT_SEEDS + 1), photons)
             spp, seeds = samples_wanted(path, halves, row["path_cpu_s"], chain, row["chain_cpu_s"], self.cpu)
             if spp > PILOT:
                 path, halves, row["path_cpu_s"], _ = self.reference(scene, spp)
             if seeds > PILOT_SEEDS:
-                more, cpu = self.chains(scene, range(PILOT_SEEDS + 1, seeds + 1))
+                more, cpu = self.chains(scene, range(PILOT_SEEDS + 1, seeds + 1), photons)
                 chain, row["chain_cpu_s"] = chain + more, row["chain_cpu_s"] + cpu
-            row |= {"spp": spp, "seeds": seeds}
+            row |= {"spp": spp, "seeds": seeds, "photons": photons}
         except Refused as refusal:
             row["exit"], row["message"] = refusal.args
             return row
@@ -246,7 +252,7 @@ def table_rows(name, row):
     """Strings: the file's line, one for each layer that is not black."""
     if row["exit"] != 0:
         return [[name, f"exit {row['exit']}: {row['message']}", "", "", "", ""]]
-    cpu = f"{row['path_cpu_s']:.1f} ({row['spp']} samples), {row['chain_cpu_s']:.1f} ({row['seeds']} seeds)"
+    cpu = f"{row['path_cpu_s']:.1f} ({row['spp']} samples), {row['chain_cpu_s']:.1f} ({row['seeds']} seeds, {row['photons'] / 1e6:g} M photons)"
     lines = [[name, "rendered" + (f" ({row['given']})" if row["given"] else ""), "", "", "", cpu]]
     for layer, r in row["layers"].items():
         if r["path"] or r["chain"]:
@@ -269,13 +275,13 @@ def summary(rows):
     return notes + ([f"Undecided: {', '.join(names['undecided'])}."] if names["undecided"] else [])
 
 
-def found(bench, _=None, only="", size="320x180", cpu=120, photons="12M"):
+def found(bench, _=None, only="", size="320x180", cpu=120, photons=12_000_000):
     """The figure: every found scene, by both ways."""
     folder = bench.project / ".." / "shared" / "scenes" / "found" / "gltf"
     if not folder.is_dir():
         raise Missing("../shared/scenes/found/gltf is absent")
     if bench.quick:
-        only, size, cpu, photons = only or "CornellBox|BoxDraco", bench.size, 0, "10k"
+        only, size, cpu, photons = only or "CornellBox|BoxDraco", bench.size, 0, 10_000
     files = sorted(p for p in folder.rglob("*.gl*") if p.suffix in (".gltf", ".glb") and re.search(only, str(p)))
     rows, lines, notes, good, pictures, rendered = {}, [], [], True, [], []
     with tempfile.TemporaryDirectory(dir=bench.out) as temporary:
@@ -297,7 +303,7 @@ def found(bench, _=None, only="", size="320x180", cpu=120, photons="12M"):
             same = work.same_for_threads(file)
             good = good and same
             notes.append(f"{file.name}: {'the same' if same else 'OTHER'} bytes with 1, 2, 3 and 7 threads.")
-    notes += [f"Photon chain: {photons} photons, {LIGHT_SAMPLES} shadow rays per irradiance point, else its defaults. Where a least roughness is "
+    notes += [f"Photon chain: {LIGHT_SAMPLES} shadow rays per irradiance point, else its defaults. Where a least roughness is "
               "named (lights without extent beside smooth surfaces), both ways render surfaces so rough."]
     notes += summary(rows)
     (bench.out / "found-layers.json").write_text(json.dumps(rows, indent=1))
@@ -317,7 +323,7 @@ def main():
     parser.add_argument("--only", default="", help="regular expression: files whose path it is found in")
     parser.add_argument("--size", default="320x180", help="[320x180]")
     parser.add_argument("--cpu", type=float, default=120, help="CPU s for a scene, about: beyond, a layer stays undecided [120]")
-    parser.add_argument("--photons", default="12M", help="[12M]")
+    parser.add_argument("--photons", type=int, default=12_000_000, help="a third where that takes 8 CPU s [12000000]")
     args = parser.parse_args()
     bench = Bench(args.build.resolve(), args.out.resolve(), project, False, 0)
     try:
