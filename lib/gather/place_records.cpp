@@ -62,7 +62,8 @@ std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int w
 /// Adds records at points that none covers yet.
 class Placement {
  public:
-  Placement(const FinalGather& gather, const PixelViews& views, const Box3& bounds, const PlacementOptions& options, RecordStore& store, GatherCounts& counts)
+  Placement(const FinalGather& gather, const PixelViews& views, const Box3& bounds, const PlacementOptions& options,
+            RecordStore& store, GatherCounts& counts)
       : gather_(gather),
         views_(views),
         options_(options),
@@ -74,7 +75,8 @@ class Placement {
   /// From now on a new record leaves its neighbours as they are: what is covered stays so.
   void fix_radii() { first_ = kFixed; }
 
-  /// Points of pixels, in a fixed shuffled order. look(pixel): where to look, if anywhere; note(pixel, seen): what was seen.
+  /// Points of pixels, in a fixed shuffled order. look(pixel): where to look, if anywhere; note(pixel, seen): what was
+  /// seen.
   template <class LookAt, class Note>
   void cover(const std::vector<std::size_t>& pixels, const LookAt& look, const Note& note) {
     // What is covered now stays covered: only the rest is put into order and looked at again, batch by batch.
@@ -224,7 +226,8 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
                           const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
                           const std::function<void(double)>& progress) {
   const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-    for (std::size_t i = 0; i < looks.size(); ++i) seen[i] = view(looks[i].x, looks[i].y, looks[i].random ? &*looks[i].random : nullptr);
+    for (std::size_t i = 0; i < looks.size(); ++i)
+      seen[i] = view(looks[i].x, looks[i].y, looks[i].random ? &*looks[i].random : nullptr);
   };
   return place_records(gather, views, width, height, bounds, options, store, counts, progress);
 }

@@ -121,13 +121,16 @@ RecordStore::Level& RecordStore::level_of(float radius) {
 }
 
 /// Valid are points next to the plane between the normals: with t across n_i, n = n_i cos a + t sin a,
-///     |d . (n + n_i)| <= 2 kOffPlane r   and   |d| < r   give   |d . n_i| <= r (2 kOffPlane / (1 + cos a) + tan(a / 2)),
+///     |d . (n + n_i)| <= 2 kOffPlane r   and   |d| < r
+/// give
+///     |d . n_i| <= r (2 kOffPlane / (1 + cos a) + tan(a / 2)),
 /// the more the larger the angle. Cells beyond that need not know the record.
 void RecordStore::list(Level& level, std::uint32_t record) const {
   const IrradianceRecord& r = records_[record];
   const Vec3d local = Vec3d(r.position) - lower_, normal(r.normal);
   const double c = std::min(1.0, double(options_.least_cosine)), width = 1 / level.inverse_cell;
-  const double off = double(r.radius) * (2 * double(kOffPlane) / (1 + c) + std::sqrt((1 - c) / (1 + c)) + kOffPlaneSlack);
+  const double off =
+      double(r.radius) * (2 * double(kOffPlane) / (1 + c) + std::sqrt((1 - c) / (1 + c)) + kOffPlaneSlack);
   const double reach = off + width / 2 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
   const Entry entry{r.position, r.radius, r.normal, record};
   for_each_cell(local, r.radius, level.inverse_cell, [&](Cell cell) {
@@ -185,12 +188,13 @@ void RecordStore::shrink(std::uint32_t record, float radius) {
 }
 
 template <class Found>
-inline bool RecordStore::any_near(std::vector<Bucket> Level::*listed, Vec3 position, Vec3 normal, const Found& found) const {
+inline bool RecordStore::any_near(std::vector<Bucket> Level::*listed, Vec3 position, Vec3 normal,
+                                  const Found& found) const {
   const Vec3d local = Vec3d(position) - lower_;
   for (const Level& level : levels_) {
     const std::vector<Bucket>& buckets = level.*listed;
-    if (buckets[bucket_of(cell_at(local, level.inverse_cell), buckets.size())].any_near(position, normal, options_.least_cosine, found))
-      return true;
+    const Bucket& bucket = buckets[bucket_of(cell_at(local, level.inverse_cell), buckets.size())];
+    if (bucket.any_near(position, normal, options_.least_cosine, found)) return true;
   }
   return everywhere_.any_near(position, normal, options_.least_cosine, found);
 }

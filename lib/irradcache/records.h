@@ -41,8 +41,8 @@ struct InterpolationOptions {
 /// but stays from 5 to 20 degrees: normals of fine meshes turn more than that within a pixel, and wider it is wrong.
 float least_cosine_of(float error_bound);
 
-/// Records found by place: each is listed in the cells its validity sphere meets near its tangent plane, on the level of a hierarchy
-/// of hashed grids whose cells are between one and two radii wide. What a look-up costs does not grow with the number
+/// Records found by place: each is listed in the cells its validity sphere meets near its tangent plane, on the level of
+/// a hierarchy of hashed grids whose cells are between one and two radii wide. What a look-up costs does not grow with the number
 /// of records, only with how many overlap there. Look-ups are thread-safe while nothing is added.
 class RecordStore {
  public:

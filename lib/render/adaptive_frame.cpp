@@ -183,8 +183,8 @@ class AdaptiveFrame {
     }
   }
 
-  /// Variance of a sample, of all but what has edges, as far as stratification leaves it: by the difference of a pixel's halves.
-  /// What has edges may agree in a few samples and be wrong: PixelState::sharp_variance counts in full.
+  /// Variance of a sample, of all but what has edges, as far as stratification leaves it: by the difference of a pixel's
+  /// halves. What has edges may agree in a few samples and be wrong: PixelState::sharp_variance counts in full.
   double smooth_variance(std::size_t pixel, int x, int y) const {
     const PixelState& state = pixels_[pixel];
     const double a = first_half_, b = options_.samples - first_half_;
@@ -193,9 +193,9 @@ class AdaptiveFrame {
     return difference * difference * a * b / (a + b);
   }
 
-  /// Of what has edges: that of the neighbours' samples, and a share of the variance between neighbours beyond what their samples
-  /// leave. Where these are all of one piece and differ, an edge may run through this pixel alone: the rim of a lamp that just
-  /// reaches into a row of dark pixels, of which first samples meet nothing, or four times as much as there is.
+  /// Of what has edges: that of the neighbours' samples, and a share of the variance between neighbours beyond what their
+  /// samples leave. Where these are all of one piece and differ, an edge may run through this pixel alone: the rim of a
+  /// lamp that just reaches into a row of dark pixels, of which first samples meet nothing, or many times what there is.
   double sharp_variance(int x, int y) const {
     double within = 0, sum = 0, square = 0;
     int n = 0;
