@@ -112,7 +112,9 @@ class Placement {
       add_batch(std::span(open).subspan(start, std::min(kBatch, open.size() - start)));
   }
 
-  bool is_covered(Vec3 position, Vec3 normal) const { return store_.covers(position, normal, options_.min_weight); }
+  bool is_covered(Vec3 position, Vec3 normal, float footprint) const {
+    return store_.covers(position, normal, options_.min_weight, options_.min_radius_px * footprint);
+  }
 
  private:
   static constexpr std::size_t kFixed = ~std::size_t(0);
@@ -122,7 +124,7 @@ class Placement {
     SeenPoint seen;
   };
 
-  bool is_covered(const SeenPoint& seen) const { return is_covered(seen.surface.position, seen.normal); }
+  bool is_covered(const SeenPoint& seen) const { return is_covered(seen.surface.position, seen.normal, seen.footprint); }
 
   void add_batch(std::span<const Open> points) {
     std::vector<std::optional<IrradianceRecord>> records(points.size());
@@ -201,7 +203,7 @@ std::size_t place_records(const FinalGather& gather, const PixelViews& views, in
     const std::vector<std::size_t> pixels = lattice(width, height, stride);
     const auto look = [&](std::size_t pixel) -> std::optional<Look> {
       const Glimpse& known = glimpses[pixel];
-      if (known.any && placement.is_covered(known.position, known.normal)) return std::nullopt;
+      if (known.any && placement.is_covered(known.position, known.normal, known.footprint)) return std::nullopt;
       return Look{float(pixel % std::size_t(width)) + 0.5f, float(pixel / std::size_t(width)) + 0.5f, {}};
     };
     placement.cover(pixels, look, [&](std::size_t pixel, const SeenPoint& seen) {

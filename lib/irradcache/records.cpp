@@ -64,7 +64,7 @@ bool is_usable(const IrradianceRecord& r) {
 }  // namespace
 
 float least_cosine_of(float error_bound) {
-  return 1 - std::clamp(0.375f * error_bound * error_bound, 0.00375f, 0.06f);
+  return 1 - std::clamp(0.375f * error_bound * error_bound, 0.00375f, 1 - kWideCosine);
 }
 
 RecordStore::RecordStore(const Box3& bounds, const InterpolationOptions& options)
@@ -128,7 +128,7 @@ RecordStore::Level& RecordStore::level_of(float radius) {
 void RecordStore::list(Level& level, std::uint32_t record) const {
   const IrradianceRecord& r = records_[record];
   const Vec3d local = Vec3d(r.position) - lower_, normal(r.normal);
-  const double c = std::min(1.0, double(options_.least_cosine)), width = 1 / level.inverse_cell;
+  const double c = double(std::min(options_.least_cosine, kWideCosine)), width = 1 / level.inverse_cell;
   const double off =
       double(r.radius) * (2 * double(kOffPlane) / (1 + c) + std::sqrt((1 - c) / (1 + c)) + kOffPlaneSlack);
   const double reach = off + width / 2 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
@@ -188,21 +188,21 @@ void RecordStore::shrink(std::uint32_t record, float radius) {
 }
 
 template <class Found>
-inline bool RecordStore::any_near(std::vector<Bucket> Level::*listed, Vec3 position, Vec3 normal,
+inline bool RecordStore::any_near(std::vector<Bucket> Level::*listed, float least_cosine, Vec3 position, Vec3 normal,
                                   const Found& found) const {
   const Vec3d local = Vec3d(position) - lower_;
   for (const Level& level : levels_) {
     const std::vector<Bucket>& buckets = level.*listed;
     const Bucket& bucket = buckets[bucket_of(cell_at(local, level.inverse_cell), buckets.size())];
-    if (bucket.any_near(position, normal, options_.least_cosine, found)) return true;
+    if (bucket.any_near(position, normal, least_cosine, found)) return true;
   }
-  return everywhere_.any_near(position, normal, options_.least_cosine, found);
+  return everywhere_.any_near(position, normal, least_cosine, found);
 }
 
 void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first) {
   std::vector<std::pair<std::uint32_t, float>> near;
   TEMPOLUX_CHECK(!options_.only_read);
-  any_near(&Level::around, record.position, record.normal, [&](const Entry& entry) {
+  any_near(&Level::around, options_.least_cosine, record.position, record.normal, [&](const Entry& entry) {
     if (const float d = length(entry.position - record.position);
         d < entry.radius && dot(entry.normal, record.normal) > options_.least_cosine)
       near.emplace_back(entry.record, d);
@@ -215,21 +215,20 @@ void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, s
     if (i >= first && own + slope * d < records_[i].radius) shrink(i, own + slope * d);
 }
 
-inline float RecordStore::weight_of(const Entry& entry, float scale, Vec3 position, Vec3 normal) const {
-  const float radius = entry.radius * scale;
+inline float RecordStore::weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal) {
   const Vec3 d = position - entry.position;
   const float d2 = length2(d);
   if (d2 >= radius * radius) return 0;
   const float cosine = dot(normal, entry.normal);
-  if (cosine <= options_.least_cosine) return 0;
+  if (cosine <= least_cosine) return 0;
   if (std::abs(dot(d, normal + entry.normal)) > 2 * kOffPlane * entry.radius) return 0;
-  const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - options_.least_cosine));
+  const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - least_cosine));
   return std::max(0.0f, (1 - std::sqrt(d2) / radius) * (1 - angle));
 }
 
-inline void RecordStore::accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum,
-                                    Interpolated& result) const {
-  const float w = weight_of(entry, scale, position, normal);
+inline void RecordStore::accumulate(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal,
+                                    Rgb& sum, Interpolated& result) const {
+  const float w = weight_of(entry, radius, least_cosine, position, normal);
   if (!(w > 0)) return;
   const IrradianceRecord& r = records_[entry.record];
   const Vec3 d = position - entry.position;
@@ -243,10 +242,16 @@ inline void RecordStore::accumulate(const Entry& entry, float scale, Vec3 positi
 }
 
 RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) const {
+  Interpolated result = interpolate(position, normal, options_.least_cosine);
+  if (!(result.weight > 0) && options_.least_cosine > kWideCosine) result = interpolate(position, normal, kWideCosine);
+  return result;
+}
+
+RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal, float least_cosine) const {
   Interpolated result;
   Rgb sum{0.0f};
-  any_near(&Level::buckets, position, normal, [&](const Entry& entry) {
-    accumulate(entry, 1, position, normal, sum, result);
+  any_near(&Level::buckets, least_cosine, position, normal, [&](const Entry& entry) {
+    accumulate(entry, entry.radius, least_cosine, position, normal, sum, result);
     return false;
   });
   if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
@@ -255,8 +260,8 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) c
 
 float RecordStore::lit_share(Vec3 position, Vec3 normal) const {
   float weights = 0, sum = 0;
-  any_near(&Level::buckets, position, normal, [&](const Entry& entry) {
-    const float weight = weight_of(entry, 1, position, normal);
+  any_near(&Level::buckets, options_.least_cosine, position, normal, [&](const Entry& entry) {
+    const float weight = weight_of(entry, entry.radius, options_.least_cosine, position, normal);
     weights += weight;
     sum += weight * records_[entry.record].lit_share;
     return false;
@@ -264,16 +269,23 @@ float RecordStore::lit_share(Vec3 position, Vec3 normal) const {
   return weights > 0 ? sum / weights : -1;
 }
 
-bool RecordStore::covers(Vec3 position, Vec3 normal, float weight) const {
-  float sum = 0;
-  return any_near(&Level::buckets, position, normal, [&](const Entry& entry) { return (sum += weight_of(entry, 1, position, normal)) >= weight; });
+bool RecordStore::covers(Vec3 position, Vec3 normal, float weight, float least_reach) const {
+  const auto covered = [&](float least_cosine, float reach) {
+    float sum = 0;
+    return any_near(&Level::buckets, least_cosine, position, normal, [&](const Entry& entry) {
+      return (sum += weight_of(entry, std::min(entry.radius, reach), least_cosine, position, normal)) >= weight;
+    });
+  };
+  if (covered(options_.least_cosine, INFINITY)) return true;
+  return least_reach > 0 && options_.least_cosine > kWideCosine && covered(kWideCosine, least_reach);
 }
 
 RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {
   Interpolated result;
   Rgb sum{0.0f};
   for (std::uint32_t i = 0; i < records_.size(); ++i)
-    accumulate({records_[i].position, records_[i].radius, records_[i].normal, i}, kRelaxed, position, normal, sum, result);
+    accumulate({records_[i].position, records_[i].radius, records_[i].normal, i}, kRelaxed * records_[i].radius,
+               options_.least_cosine, position, normal, sum, result);
   if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
   return result;
 }

@@ -40,6 +40,8 @@ struct InterpolationOptions {
 ///     1 - least_cosine = 0.375 error_bound^2,   50 degrees x error_bound,
 /// but stays from 5 to 20 degrees: normals of fine meshes turn more than that within a pixel, and wider it is wrong.
 float least_cosine_of(float error_bound);
+/// Cosine of 20 degrees, about.
+inline constexpr float kWideCosine = 0.94f;
 
 /// Records found by place: each is listed in the cells its validity sphere meets near its tangent plane, on the level of
 /// a hierarchy of hashed grids whose cells are between one and two radii wide. What a look-up costs does not grow with the number
@@ -78,12 +80,14 @@ class RecordStore {
   /// the hat weights of Tabellion & Lamorlette 2004 and Krivanek, which go to zero at the border of validity, so
   /// that no record is seen to begin. Every extrapolation is clamped at 0. A record is left out if the point is not on one
   /// surface with it: |(x - x_i) . (n + n_i)/2| > 0.05 r_i, which is 0 along circles. Behind it as Ward 1988; in front as
-  /// well, or the bright ground below the rim of a plate shines on top of the plate.
+  /// well, or the bright ground below the rim of a plate shines on top of the plate. Where no record counts those in the
+  /// angle of kWideCosine do.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// Mean lit_share of the records that are valid there, so weighted; below 0 if none is.
   float lit_share(Vec3 position, Vec3 normal) const;
-  /// Is the sum of the weights there at least `weight`? Looks no farther once it is.
-  bool covers(Vec3 position, Vec3 normal, float weight) const;
+  /// Is the sum of the weights there at least `weight`? Looks no farther once it is. Or is it, were no radius larger than
+  /// least_reach, in the angle of kWideCosine? Where normals turn faster than records may be fine, they need not be finer.
+  bool covers(Vec3 position, Vec3 normal, float weight, float least_reach = 0) const;
   /// The same with every record's radius kRelaxed times as large: for the few points, fractions of a pixel beyond
   /// an edge, that no record quite reaches. Looks at all records: slow.
   Interpolated interpolate_relaxed(Vec3 position, Vec3 normal) const;
@@ -129,10 +133,13 @@ class RecordStore {
   void shrink(std::uint32_t record, float radius);
   /// Is found(entry) true of a record that may be valid at the point? Each is asked once, until one is.
   template <class Found>
-  bool any_near(std::vector<Bucket> Level::*listed, Vec3 position, Vec3 normal, const Found& found) const;
-  /// Of a record at a point, its radius scaled; 0 where it is not valid.
-  float weight_of(const Entry& entry, float scale, Vec3 position, Vec3 normal) const;
-  void accumulate(const Entry& entry, float scale, Vec3 position, Vec3 normal, Rgb& sum, Interpolated& result) const;
+  bool any_near(std::vector<Bucket> Level::*listed, float least_cosine, Vec3 position, Vec3 normal,
+                const Found& found) const;
+  Interpolated interpolate(Vec3 position, Vec3 normal, float least_cosine) const;
+  /// Of a record at a point, were its radius another one; 0 where it is not valid.
+  static float weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal);
+  void accumulate(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal, Rgb& sum,
+                  Interpolated& result) const;
 
   Vec3d lower_;
   double largest_cell_;

@@ -185,7 +185,22 @@ TEST(RecordStore, TheAngleInWhichRecordsCountFollowsTheErrorBound) {
   EXPECT_FLOAT_EQ(least_cosine_of(1e-3f), 0.99625f);
 }
 
-/// The narrower angle of all that were asked for.
+/// A normal 16 degrees off is beyond 10: covered only as far as a record that close is as fine as they may be, by the weight it has
+/// in 20 degrees with that radius, and interpolated there with its own.
+TEST(RecordStore, WhereNormalsTurnFastRecordsNeedNotBeFiner) {
+  RecordStore store(box({-1, -1, -1}, {1, 1, 1}), {.least_cosine = 0.985f});
+  store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
+  const float c = 0.96f, turn = 1 - std::sqrt(0.04f / 0.06f);
+  const Vec3 beside{0.05f, 0, 0}, normal{0, c, std::sqrt(1 - c * c)};
+  EXPECT_FALSE(store.covers(beside, normal, 0.01f));
+  EXPECT_FALSE(store.covers(beside, normal, 0.01f, 0.04f));
+  EXPECT_TRUE(store.covers(beside, normal, 0.99f * 0.75f * turn, 0.2f));
+  EXPECT_FALSE(store.covers(beside, normal, 1.01f * 0.75f * turn, 0.2f));
+  EXPECT_FALSE(store.covers(beside, normal, 1.01f * 0.9f * turn, 10.0f));   // never more than its own radius
+  EXPECT_NEAR(store.interpolate(beside, normal).weight, 0.9f * turn, 1e-4f);
+}
+
+/// The narrower angle of all that were asked for, but where nothing is in it.
 TEST(RecordStore, CanBeNarrowed) {
   RecordStore store(box({-1, -1, -1}, {1, 1, 1}), {.least_cosine = 0});
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
@@ -198,6 +213,10 @@ TEST(RecordStore, CanBeNarrowed) {
   EXPECT_EQ(store.least_cosine(), 0.9f);
   EXPECT_EQ(count_at(0.89f), 0);
   EXPECT_EQ(count_at(0.91f), 1);
+  store.narrow(0.985f);
+  store.add(record_at({}, {0, 0.96f, 0.28f}, 0.5f, Rgb(1.0f)));
+  EXPECT_EQ(count_at(0.999f), 1);
+  EXPECT_EQ(count_at(0.95f), 1);   // the first; the second is 0.91 off
 }
 
 TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {
