@@ -202,6 +202,17 @@ void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint6
   });
 }
 
+/// From 1/2 to 1 1/2, for all that depends on how near a hit is: no seam where that begins.
+inline float FinalGather::threshold(const PathRandom& random) { return 0.5f + random.get1(0, Purpose::gather); }
+
+/// Is the hit too near for its point to be read: within about near_factor radii of the estimate behind it?
+inline bool FinalGather::is_near(const Met& met, const PointLight& point, const PathRandom& random) const {
+  // Most hits are far from the seam: they need no random number.
+  const float reach = options_.near_factor * point.radius;
+  if (!(met.distance < 1.5f * reach)) return false;
+  return met.distance < 0.5f * reach || met.distance < reach * threshold(random);
+}
+
 /// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to
 /// read there (or one more bounce if the hit is near: `further` receives its ray), its other lobes by following one of
 /// them.
@@ -254,14 +265,6 @@ Rgb FinalGather::reflected_beyond(const SurfacePoint& from, Vec3 travel, float d
       met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric, met.hit.object) : nullptr;
   const Rgb radiance = reflected(met, point, key, depth, counts, nullptr);
   return inside ? radiance * transmittance(*inside, further) : radiance;
-}
-
-/// From 1/2 to 1 1/2, for all that depends on how near a hit is: no seam where that begins.
-float FinalGather::threshold(const PathRandom& random) { return 0.5f + random.get1(0, Purpose::gather); }
-
-/// Is the hit too near for its point to be read: within about near_factor radii of the estimate behind it?
-bool FinalGather::is_near(const Met& met, const PointLight& point, const PathRandom& random) const {
-  return met.distance < options_.near_factor * point.radius * threshold(random);
 }
 
 /// Irradiance at such a hit: caustic light is the point's all the same; direct light too, which is known to the spacing
