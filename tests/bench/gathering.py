@@ -257,7 +257,7 @@ def growth(bench, _):
         return len(steps) > 0 and worst <= 2.1
     base = Settings(200000)
     for name in ["S2"] if bench.quick else ["S2", "S3"]:
-        finer = [Settings(base.photons, (), ("--error-bound", bound)) for bound in (0.2, 0.14, 0.1)]
+        finer = [Settings(base.photons, (), ("--error-bound", bound)) for bound in (0.4, 0.2, 0.1)]
         met = row("records (whole chain)", name, finer, [bench.size] * 3, lambda s, size, counts: counts["records"], None) and met
         sizes = ["48x28", "68x40"] if bench.quick else ["320x180", "452x255", "640x360", "905x509"]
         met = row("pixels (whole chain)", name, [base] * len(sizes), sizes, lambda s, size, c: math.prod(map(int, size.split("x"))),
