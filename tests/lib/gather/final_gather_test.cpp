@@ -253,48 +253,5 @@ TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
   EXPECT_NEAR(mean / exact, 1, 0.02);
 }
 
-/// The foot of a white wall, and a far bright plate (radiance 1) that fills the other half of what the floor sees, E = pi/2 of it, and the
-/// upper half of what the wall sees: of it another pi/4. All hits on the wall are near, each goes on in one direction and meets the
-/// plate or nothing. 250 hits that draw by themselves scatter by 2 %, 1.6 % with the further rays that such cells get; spread, by
-/// .4 %: the mean of 400 to .02 %, and what the plate and the wall leave out is less than that.
-TEST(FinalGather, NearHitsSideBySideGoDifferentWays) {
-  constexpr float far = 1e3f, wide = 1e7f;
-  HandMadeScene scene;
-  const std::uint32_t wall = scene.add_quad({0, 0, -1}, {0, 1, -1}, {0, 1, 1}, {0, 0, 1}, matte(Rgb(1.0f)));
-  scene.add_quad({far, 0, -wide}, {far, 0, wide}, {far, wide, wide}, {far, wide, -wide}, matte(Rgb(1.0f)));
-  const SceneFrame& frame = scene.frame();
-  std::vector<IrradiancePoint> points(2);
-  points[0].position = {0, 1, 0};
-  points[0].normal = {1, 0, 0};
-  points[0].object = frame.surfaces[wall].object;
-  points[0].radius = 1e3f;
-  points[1].position = {far, 1, 0};
-  points[1].normal = {-1, 0, 0};
-  points[1].object = frame.surfaces[1].object;
-  points[1].indirect = Rgb(kPi);
-  const Tracer tracer(frame);
-  const Lights lights(frame, EmissionTable{});
-  const PointLookup lookup(points, frame.bounds, 1);
-  SurfacePoint from;
-  from.position = {1e-4f, 0, 0};
-  from.normal = from.normal_geometric = {0, 1, 0};
-  from.offset = 1e-6f;
-  constexpr std::uint64_t kGathers = 400;
-  std::uint64_t near_hits = 0;
-  double sum = 0, square = 0;
-  for (std::uint64_t seed = 0; seed < kGathers; ++seed) {
-    GatherCounts counts;
-    const auto record = FinalGather(tracer, lights, lookup, {.seed = seed}).gather(from, {0, 1, 0}, counts);
-    const double e = double(record.irradiance.g) / (0.75 * M_PI) - 1;
-    sum += e;
-    square += e * e;
-    near_hits += counts.near_hits;
-  }
-  const double scatter = std::sqrt((square - sum * sum / kGathers) / (kGathers - 1));
-  EXPECT_GT(near_hits, 200u * kGathers);
-  EXPECT_NEAR(sum / kGathers, 0, 0.0015);
-  EXPECT_LT(scatter, 0.007);
-}
-
 }  // namespace
 }  // namespace tempolux
