@@ -116,15 +116,12 @@ struct FinalGather::Met {
   std::optional<Bsdf> textured;   ///< what bsdf points to where the material has textures
 };
 
-/// Rays that go on from near hits, and what is to become of the radiance along them. All of a call follow together.
+/// A ray that goes on from a near hit, and what is to become of the radiance along it. All of a call follow together.
 struct FinalGather::Further {
-  struct Onward {
-    Ray ray;
-    std::uint64_t key = 0;
-    Rgb weight{0.0f};
-    std::size_t of = 0;   ///< the gather ray
-  };
-  std::vector<Onward> rays;
+  Ray ray;
+  std::uint64_t key = 0;
+  Rgb weight{0.0f};
+  std::size_t of = 0;   ///< the gather ray
 };
 
 /// Fills in the rest where met.hit is known. A material with textures is made for this hit; a normal map bends its normal.
@@ -170,22 +167,21 @@ void FinalGather::follow(std::span<const Ray> rays, bool alike, GatherCounts& co
 
 void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint64_t> keys,
                            std::span<Rgb> radiance, std::span<float> distance, GatherCounts& counts) const {
-  thread_local Further further;
+  thread_local std::vector<Further> further;
   thread_local std::vector<Ray> further_rays;
-  further.rays.clear();
+  further.clear();
   further_rays.clear();
   std::fill(radiance.begin(), radiance.end(), Rgb(0.0f));
   std::fill(distance.begin(), distance.end(), INFINITY);
   follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
     distance[i] = met.distance;
-    const std::size_t before = further.rays.size();
+    const std::size_t before = further.size();
     radiance[i] = reflected(met, point, keys[i], 0, counts, &further);
-    if (further.rays.size() > before) further.rays.back().of = i;
+    if (further.size() > before) further.back().of = i;
   });
-  for (const Further::Onward& onward : further.rays) further_rays.push_back(onward.ray);
+  for (const Further& f : further) further_rays.push_back(f.ray);
   follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
-    const Further::Onward& onward = further.rays[i];
-    radiance[onward.of] += onward.weight * reflected(met, point, onward.key, 1, counts, nullptr);
+    radiance[further[i].of] += further[i].weight * reflected(met, point, further[i].key, 1, counts, nullptr);
   });
 }
 
@@ -204,7 +200,7 @@ inline bool FinalGather::is_near(const Met& met, const PointLight& point, const 
 /// read there (or one more bounce if the hit is near: `further` receives its ray), its other lobes by following one of
 /// them.
 Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts,
-                           Further* further) const {
+                           std::vector<Further>* further) const {
   const Bsdf& bsdf = *met.bsdf;
   const bool specular = bsdf.has_specular();
   std::optional<SeenSide> side;
@@ -258,17 +254,17 @@ Rgb FinalGather::reflected_beyond(const SurfacePoint& from, Vec3 travel, float d
 /// of the points instead of an estimate's radius, or if the hit is nearer than about that, or at the edge of a hot spot,
 /// by light sampling; the rest by one ray more, which `further` receives: `weight` (1/sr) is for its irradiance.
 Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key,
-                                 Rgb weight, GatherCounts& counts, Further& further) const {
+                                 Rgb weight, GatherCounts& counts, std::vector<Further>& further) const {
   ++counts.near_hits;
   const SeenSide side(met.hit, met.wo);
   const bool nearer = met.distance < points_.spacing() * threshold(random) || std::isinf(point.radius);
   const Rgb irradiance =
       nearer || point.shadow_edge ? points_.point(point).caustic + sampled_light(met, side, random, counts) : point.first;
   // Each by itself. Spread over near hits side by side (a sequence), records in corners had half the noise, but came out 5 %
-  // bright: cells get further rays by what their neighbours saw, which their own value must not depend on.
+  // bright: it seems since cells get further rays by what neighbours saw, on which their own value must not depend.
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
   if (dot(travel, met.geometric) > 0)
-    further.rays.push_back({spawn_ray(met.hit, travel), mix64(key + 1), weight * (kPi * met.bsdf->arrival_weight(drawn.z)), 0});
+    further.push_back({spawn_ray(met.hit, travel), mix64(key + 1), weight * (kPi * met.bsdf->arrival_weight(drawn.z)), 0});
   return irradiance;
 }
 

@@ -72,7 +72,7 @@ class FinalGather {
   void meet(Vec3 wo, float distance, Met& met) const;
   template <class Take> void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take) const;
   Rgb reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts,
-                Further* further) const;
+                std::vector<Further>* further) const;
   Rgb reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key, int depth,
                        GatherCounts& counts, const MaterialValues* inside = nullptr) const;
   static float threshold(const PathRandom& random);
@@ -80,7 +80,7 @@ class FinalGather {
   Rgb sampled_light(const Met& met, const struct SeenSide& side, const PathRandom& random, GatherCounts& counts) const;
   Rgb beside_shadow(const Met& met, const PointLight& point, const PathRandom& random, GatherCounts& counts) const;
   Rgb near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key, Rgb weight,
-                      GatherCounts& counts, Further& further) const;
+                      GatherCounts& counts, std::vector<Further>& further) const;
 
   const Tracer& tracer_;
   const Lights& lights_;

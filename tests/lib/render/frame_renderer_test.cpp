@@ -35,6 +35,15 @@ struct Cornell {
   RenderScene render_scene() const { return {tracer, lights}; }
 };
 
+/// 64 x 36 pixels of 1/32 m, seen from z = 1, the middle at the origin.
+CameraView from_above() {
+  PlacedCamera camera;
+  camera.camera.kind = Camera::Kind::orthographic;
+  camera.camera.ymag_m = 0.5625f;
+  camera.scene_from_camera.translation = {0, 0, 1};
+  return CameraView(camera, {}, 64, 36);
+}
+
 Rgb total(const Layers& layers) {
   Rgb sum = layers.value[0];
   for (std::size_t l = 1; l < kLayerCount; ++l) sum += layers.value[l];
@@ -193,11 +202,7 @@ TEST(FrameRenderer, SparseCausticLightIsTakenFromNearbyOnly) {
       return {Rgb(std::abs(surface.position.x)), Rgb(0.0f), sparse_radius};
     }
   } light;
-  PlacedCamera camera;
-  camera.camera.kind = Camera::Kind::orthographic;
-  camera.camera.ymag_m = 0.5625f;
-  camera.scene_from_camera.translation = {0, 0, 1};
-  const CameraView view(camera, {}, 64, 36);
+  const CameraView view = from_above();
   FrameOptions options;
   options.diffuse_light = &light;
   options.samples = 2;
@@ -228,11 +233,7 @@ TEST(FrameRenderer, EdgesArePaidForByThePixelsBesideThemAlone) {
     const SceneFrame& frame = made.frame();
     const Tracer tracer(frame);
     const Lights lights(frame, build_emission_table({&frame, 1}));
-    PlacedCamera camera;
-    camera.camera.kind = Camera::Kind::orthographic;
-    camera.camera.ymag_m = 0.5625f;
-    camera.scene_from_camera.translation = {0, 0, 1};
-    const CameraView view(camera, {}, 64, 36);
+    const CameraView view = from_above();
     FrameOptions options;
     options.samples = 4;
     options.pixel_error = 1e-6;
@@ -279,11 +280,7 @@ TEST(FrameRenderer, BordersOfShadowsHaveNoDots) {
   const Tracer tracer(frame);
   const Lights lights(frame, build_emission_table({&frame, 1}));
   ASSERT_TRUE(lights.has_large());
-  PlacedCamera camera;
-  camera.camera.kind = Camera::Kind::orthographic;
-  camera.camera.ymag_m = 0.5625f;
-  camera.scene_from_camera.translation = {0, 0, 1};
-  const CameraView view(camera, {}, 64, 36);
+  const CameraView view = from_above();
   const NoLight none;
   FrameOptions options;
   options.diffuse_light = &none;
