@@ -86,7 +86,7 @@ std::string read_records(Tool& tool, const std::string& file, InputRole role, co
   const formats::IrradcacheFile in = formats::load_irradcache(file);
   check_identity(tool, file, in.header.identity, frame);
   store.narrow(float(in.header.least_cosine));
-  for (const IrradianceRecord& record : from_file(in.records, shift_of(in.header.origin, frame))) store.add(record);
+  store.add(from_file(in.records, shift_of(in.header.origin, frame)));
   return in.header.history;
 }
 

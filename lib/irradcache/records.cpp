@@ -7,53 +7,12 @@
 #include <cmath>
 
 #include "lib/core/check.h"
-#include "lib/core/random.h"
+#include "lib/irradcache/record_cells.h"
 
 namespace tempolux {
 namespace {
 
 constexpr int kFinest = 40;               ///< smallest cells: largest / 2^kFinest, below float spacing
-constexpr std::size_t kFirstBuckets = 256;
-constexpr float kOffPlane = 0.05f;        ///< of the radius: how far off the plane between the normals a point may be
-constexpr double kOffPlaneSlack = 1e-4;
-constexpr double kRounding = 1e-6;        ///< distances are of float: a sphere may reach this much farther
-
-struct Cell {
-  std::int64_t x, y, z;
-};
-
-Cell cell_at(Vec3d local, double inverse) {
-  // Beyond 2^60 cells (records far outside the scene) all is one cell.
-  const auto index = [&](double x) { return std::int64_t(std::floor(std::clamp(x * inverse, -0x1p60, 0x1p60))); };
-  return {index(local.x), index(local.y), index(local.z)};
-}
-
-/// The cells that a validity sphere meets.
-template <class Body>
-void for_each_cell(Vec3d local, float radius, double inverse_cell, const Body& body) {
-  const double reach = double(radius) * (1 + kRounding);
-  const Cell low = cell_at(local - Vec3d{1, 1, 1} * reach, inverse_cell);
-  const Cell high = cell_at(local + Vec3d{1, 1, 1} * reach, inverse_cell);
-  const double width = 1 / inverse_cell;
-  // Squared distance to a cell along one axis, if there are several.
-  const auto beyond2 = [&](double centre, std::int64_t cell, std::int64_t first, std::int64_t last) {
-    if (first == last) return 0.0;
-    const double d = std::max({0.0, double(cell) * width - centre, centre - double(cell + 1) * width});
-    return d * d;
-  };
-  for (std::int64_t x = low.x; x <= high.x; ++x)
-    for (std::int64_t y = low.y; y <= high.y; ++y) {
-      const double aside2 = beyond2(local.x, x, low.x, high.x) + beyond2(local.y, y, low.y, high.y);
-      for (std::int64_t z = low.z; z <= high.z; ++z)
-        if (aside2 + beyond2(local.z, z, low.z, high.z) <= reach * reach) body(Cell{x, y, z});
-    }
-}
-
-std::size_t bucket_of(Cell c, std::size_t count) {
-  const std::uint64_t h = std::uint64_t(c.x) * 0x9e3779b97f4a7c15ull + std::uint64_t(c.y) * 0xc2b2ae3d27d4eb4full +
-                          std::uint64_t(c.z) * 0x165667b19e3779f9ull;
-  return std::size_t(mix64(h)) & (count - 1);
-}
 
 bool is_usable(const IrradianceRecord& r) {
   bool finite = is_finite(r.position) && is_finite(r.normal) && std::isfinite(channel_sum(r.irradiance));
@@ -70,31 +29,12 @@ float least_cosine_of(float error_bound) {
 RecordStore::RecordStore(const Box3& bounds, const InterpolationOptions& options)
     : lower_(bounds.empty() ? Vec3{} : bounds.lower), largest_cell_(std::max(double(bounds.diagonal()), 1e-30)), options_(options) {}
 
-void RecordStore::Bucket::add(const Entry& entry) {
-  const std::size_t lane = count_++ % kLanes;
-  if (lane == 0) eights_.emplace_back();
-  Eight& last = eights_.back();
-  last.x[lane] = entry.position.x;
-  last.y[lane] = entry.position.y;
-  last.z[lane] = entry.position.z;
-  last.radius[lane] = entry.radius;
-  last.normal_x[lane] = entry.normal.x;
-  last.normal_y[lane] = entry.normal.y;
-  last.normal_z[lane] = entry.normal.z;
-  last.record[lane] = last_ = entry.record;
-}
-
-void RecordStore::Bucket::set_radius(std::uint32_t record, float radius) {
-  for (std::size_t i = 0; i < count_; ++i)
-    if (Eight& eight = eights_[i / kLanes]; eight.record[i % kLanes] == record) eight.radius[i % kLanes] = radius;
-}
-
 template <class Found>
-inline bool RecordStore::Bucket::any_near(Vec3 position, Vec3 normal, float least_cosine, const Found& found) const {
+inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine, const Found& found) {
   constexpr float kSlack = 1e-5f;   // rounding differs between lanes and one by one: that decides
   const auto all = [](float x) { return _mm256_set1_ps(x); };
   const __m256 least = all(least_cosine - kSlack), reach = all(1 + kSlack);
-  for (const Eight& e : eights_) {
+  for (const Eight& e : eights) {
     const auto of = [](const float* lanes) { return _mm256_load_ps(lanes); };
     const __m256 dx = all(position.x) - of(e.x), dy = all(position.y) - of(e.y), dz = all(position.z) - of(e.z), r = of(e.radius);
     const __m256 cosine = all(normal.x) * of(e.normal_x) + all(normal.y) * of(e.normal_y) + all(normal.z) * of(e.normal_z);
@@ -115,38 +55,43 @@ RecordStore::Level& RecordStore::level_of(float radius) {
   Level& level = levels_.emplace_back();
   level.exponent = exponent;
   level.inverse_cell = std::ldexp(1 / largest_cell_, exponent);
+  if (options_.only_read) return level;
   level.buckets.resize(kFirstBuckets);
-  if (!options_.only_read) level.around.resize(kFirstBuckets);
+  level.around.resize(kFirstBuckets);
   return level;
 }
 
-/// Valid are points next to the plane between the normals: with t across n_i, n = n_i cos a + t sin a,
-///     |d . (n + n_i)| <= 2 kOffPlane r   and   |d| < r
-/// give
-///     |d . n_i| <= r (2 kOffPlane / (1 + cos a) + tan(a / 2)),
-/// the more the larger the angle. Cells beyond that need not know the record.
-void RecordStore::list(Level& level, std::uint32_t record) const {
-  const IrradianceRecord& r = records_[record];
-  const Vec3d local = Vec3d(r.position) - lower_, normal(r.normal);
-  const double c = double(std::min(options_.least_cosine, kWideCosine)), width = 1 / level.inverse_cell;
-  const double off =
-      double(r.radius) * (2 * double(kOffPlane) / (1 + c) + std::sqrt((1 - c) / (1 + c)) + kOffPlaneSlack);
-  const double reach = off + width / 2 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
-  const Entry entry{r.position, r.radius, r.normal, record};
-  for_each_cell(local, r.radius, level.inverse_cell, [&](Cell cell) {
-    const Vec3d middle{(double(cell.x) + 0.5) * width, (double(cell.y) + 0.5) * width, (double(cell.z) + 0.5) * width};
-    const std::size_t at = bucket_of(cell, level.buckets.size());
-    const auto put = [&](Bucket& bucket) {
-      if (bucket.ends_with(record)) return false;   // two cells of one hash: once
-      bucket.add(entry);
-      return true;
-    };
-    if (!options_.only_read) put(level.around[at]);
-    if (std::abs(dot(middle - local, normal)) <= reach) level.listed += put(level.buckets[at]);
-  });
+bool RecordStore::add(const IrradianceRecord& record) {
+  TEMPOLUX_CHECK(!options_.only_read);
+  Level* level = nullptr;
+  if (!keep(record, level)) return false;
+  if (!level) return true;
+  if (level->listed < 4 * level->buckets.size()) {
+    list(*level, level->members.back());
+    return true;
+  }
+  level->buckets.assign(4 * level->buckets.size(), {});
+  level->around.assign(level->buckets.size(), {});
+  level->listed = 0;
+  for (std::uint32_t member : level->members) list(*level, member);
+  return true;
 }
 
-bool RecordStore::add(const IrradianceRecord& record) {
+void RecordStore::add(std::span<const IrradianceRecord> records) {
+  if (!options_.only_read) {
+    for (const IrradianceRecord& record : records) add(record);
+    return;
+  }
+  TEMPOLUX_CHECK(records_.empty());
+  records_.reserve(records.size());
+  Level* level = nullptr;
+  for (const IrradianceRecord& record : records) keep(record, level);
+  for (Level& made : levels_) pack(made);
+}
+
+/// The record as such; level: that whose lists it belongs into, null if it is larger than all cells.
+bool RecordStore::keep(const IrradianceRecord& record, Level*& level) {
+  level = nullptr;
   if (!is_usable(record)) {
     ++refused_;
     return false;
@@ -154,19 +99,11 @@ bool RecordStore::add(const IrradianceRecord& record) {
   const auto index = std::uint32_t(records_.size());
   records_.push_back(record);
   if (double(record.radius) > largest_cell_) {
-    everywhere_.add({record.position, record.radius, record.normal, index});
+    everywhere_.add(entry_of(index));
     return true;
   }
-  Level& level = level_of(record.radius);
-  level.members.push_back(index);
-  if (level.listed < 4 * level.buckets.size()) {
-    list(level, index);
-    return true;
-  }
-  level.buckets.assign(4 * level.buckets.size(), {});
-  if (!options_.only_read) level.around.assign(level.buckets.size(), {});
-  level.listed = 0;
-  for (std::uint32_t member : level.members) list(level, member);
+  level = &level_of(record.radius);
+  level->members.push_back(index);
   return true;
 }
 
@@ -191,12 +128,27 @@ template <class Found>
 inline bool RecordStore::any_near(std::vector<Bucket> Level::*listed, float least_cosine, Vec3 position, Vec3 normal,
                                   const Found& found) const {
   const Vec3d local = Vec3d(position) - lower_;
-  for (const Level& level : levels_) {
-    const std::vector<Bucket>& buckets = level.*listed;
-    const Bucket& bucket = buckets[bucket_of(cell_at(local, level.inverse_cell), buckets.size())];
-    if (bucket.any_near(position, normal, least_cosine, found)) return true;
+  if (options_.only_read) {
+    // Where the lists are is asked of all levels at once: they lie far apart in memory.
+    std::size_t at[kFinest + 1];
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      const Level& level = levels_[i];
+      at[i] = bucket_of(cell_at(local, level.inverse_cell), level.first.size() - 1);
+      __builtin_prefetch(&level.first[at[i]]);
+    }
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+      const Level& level = levels_[i];
+      const std::uint32_t first = level.first[at[i]], end = level.first[at[i] + 1];
+      if (any_of({level.eights.data() + first, end - first}, position, normal, least_cosine, found)) return true;
+    }
+  } else {
+    for (const Level& level : levels_) {
+      const std::vector<Bucket>& buckets = level.*listed;
+      const Bucket& bucket = buckets[bucket_of(cell_at(local, level.inverse_cell), buckets.size())];
+      if (any_of(bucket.eights(), position, normal, least_cosine, found)) return true;
+    }
   }
-  return everywhere_.any_near(position, normal, least_cosine, found);
+  return any_of(everywhere_.eights(), position, normal, least_cosine, found);
 }
 
 void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first) {

@@ -31,7 +31,7 @@ struct IrradianceRecord {
 struct InterpolationOptions {
   /// Records whose normal is farther off do not count: n n_i > least_cosine, in [0, 1).
   float least_cosine = 0.94f;
-  bool only_read = false;               ///< clamp_with_neighbours() is not asked for: half of the lists are not made
+  bool only_read = false;               ///< all records come at once, clamp_with_neighbours() is not asked for
 };
 
 /// least_cosine of records placed with this error bound (lib/gather/place_records.h): on curved surfaces a bright spot rises
@@ -57,6 +57,9 @@ class RecordStore {
 
   /// False, and the record is left out and counted, if one of its numbers is not finite or its radius not above 0.
   bool add(const IrradianceRecord& record);
+  /// The same for many. A store that is only read takes its records by one call of this: its lists are made once, each in one
+  /// piece of memory.
+  void add(std::span<const IrradianceRecord> records);
   /// Neighbour clamping [after Krivanek et al. 2006]: what is near one record cannot be much farther from its neighbours,
   /// though all of their rays may have missed it. For the records i that are valid where `record` is, d apart:
   ///     r <- min(r, R_i + slope d),   then   r_i <- min(r_i, R + slope d),
@@ -103,20 +106,20 @@ class RecordStore {
     std::uint32_t record;
   };
   /// Entries in eights, so that a look-up compares eight at once: one in twenty is valid where it is listed.
+  static constexpr std::size_t kLanes = 8;
+  struct alignas(32) Eight {
+    float x[kLanes], y[kLanes], z[kLanes], radius[kLanes] = {}, normal_x[kLanes], normal_y[kLanes], normal_z[kLanes];
+    std::uint32_t record[kLanes];
+    void set(std::size_t lane, const Entry& entry);
+  };
   class Bucket {
    public:
     void add(const Entry& entry);
     bool ends_with(std::uint32_t record) const { return count_ > 0 && last_ == record; }
     void set_radius(std::uint32_t record, float radius);
-    /// found(entry) of those that are near and face about the same way (a little more than valid ones), in order, until true.
-    template <class Found> bool any_near(Vec3 position, Vec3 normal, float least_cosine, const Found& found) const;
+    std::span<const Eight> eights() const { return eights_; }
 
    private:
-    static constexpr std::size_t kLanes = 8;
-    struct alignas(32) Eight {
-      float x[kLanes], y[kLanes], z[kLanes], radius[kLanes] = {}, normal_x[kLanes], normal_y[kLanes], normal_z[kLanes];
-      std::uint32_t record[kLanes];
-    };
     std::vector<Eight> eights_;
     std::uint32_t count_ = 0, last_ = 0;   ///< last_: the record that came last
   };
@@ -126,11 +129,22 @@ class RecordStore {
     std::size_t listed = 0;             ///< entries in all buckets
     std::vector<std::uint32_t> members;
     std::vector<Bucket> buckets;        ///< by the hash of the cell, a power of two of them: what may be valid in it
-    std::vector<Bucket> around;         ///< likewise: all of which the sphere meets it; empty if only read
+    std::vector<Bucket> around;         ///< likewise: all of which the sphere meets it
+    /// If only read, in place of buckets and around: bucket b is eights[first[b]] to eights[first[b + 1]].
+    std::vector<std::uint32_t> first;
+    std::vector<Eight> eights;
   };
   Level& level_of(float radius);
+  bool keep(const IrradianceRecord& record, Level*& level);
   void list(Level& level, std::uint32_t record) const;
+  /// body(cell, near) for the cells that the validity sphere meets; near: the record may be valid in it.
+  template <class Body> void for_each_cell_of(const Level& level, const IrradianceRecord& record, const Body& body) const;
+  Entry entry_of(std::uint32_t record) const;
+  void pack(Level& level) const;
   void shrink(std::uint32_t record, float radius);
+  /// found(entry) of those that are near and face about the same way (a little more than valid ones), in order, until true.
+  template <class Found>
+  static bool any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine, const Found& found);
   /// Is found(entry) true of a record that may be valid at the point? Each is asked once, until one is.
   template <class Found>
   bool any_near(std::vector<Bucket> Level::*listed, float least_cosine, Vec3 position, Vec3 normal,
