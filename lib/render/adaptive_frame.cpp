@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "lib/render/pixel_light.h"
 #include "lib/render/pixel_samples.h"
@@ -18,8 +19,7 @@ struct PixelState {
   bool plain = false;                   ///< the first met one matte surface, controlled
   int lights = 1;                       ///< samples of the lights to a further camera ray
   int own = 0;                          ///< further samples for its own sake
-  float heirs = 0;                      ///< neighbours that share what those change
-  Rgb change{0.0f};                     ///< ... of the direct layer, W/m^2/sr
+  std::uint32_t surface = kNone;        ///< met by the first
   double sharp = 0, sharp_variance = 0; ///< of one of the first: PixelSum::sharp; a square of light may be beyond float
   float difference = 0, noise_difference = 0;     ///< of all else: mean over half of the first samples less that over the others
 
@@ -31,11 +31,19 @@ struct PixelState {
 
 // Pixels: one is judged by the 24 around it; by 8 for what has edges, which are narrow: all that see one pay for it.
 constexpr int kNear = 2, kNearSharp = 1;
-constexpr double kBetween = 0.1;
+constexpr double kBetween = 0.1, kSharp = 0.5;   // of its variance: more samples there make less of the picture's error
+constexpr double kBright = 4;          // times the picture's mean: what is brighter is seen as white, and its error so
 // Samples that are stratified err as n^(-5/6) or so. The least error for a number of samples has n ~ sigma^(2 / (1 + 10/6)).
 constexpr int kLightsTogether = 4;     // samples of the lights at a place where only they are uncertain
 constexpr double kStratified = 0.75, kTypical = 12;
 constexpr double kOwn = 4;             // pixel errors by which one sample of a dot may change it
+constexpr double kSpot = 2;            // times the samples it got that a pixel would ask for by all of them, and stands out
+
+/// What further samples for its own sake took from a pixel [W/m^2/sr], to be shared out among its neighbours.
+struct Change {
+  std::size_t pixel = 0;
+  Layers taken;
+};
 
 class AdaptiveFrame {
  public:
@@ -54,20 +62,24 @@ class AdaptiveFrame {
     const std::vector<int> missing = missing_samples();
     for_each_tile(view_, options_, rays, options_.progress, [&](RayCounts& counts) {
       return [&, sparse = SparseCaustics()](std::size_t pixel, int x, int y) mutable {
-        const int count = missing[pixel], own = pixels_[pixel].own, wanted = options_.samples + count;
-        if (count > 0) join_further(pixel, x, y, options_.samples, count, sparse, counts);
-        if (!controlled_) return;
-        const float seen = seen_around(x, y);
-        if (own == 0) return take_noise_out(pixel, seen, wanted);
-        const Rgb unchanged = without_noise(image_.pixels[pixel][Layer::direct], pixels_[pixel].direct_noise, seen, wanted);
-        join_further(pixel, x, y, wanted, own, sparse, counts);
-        take_noise_out(pixel, seen, wanted + own);
-        pixels_[pixel].change = unchanged - image_.pixels[pixel][Layer::direct];
+        PixelState& state = pixels_[pixel];
+        const int count = missing[pixel], taken = options_.samples + count;
+        PixelSum sum;
+        if (count > 0) sum = join_further(pixel, x, y, options_.samples, count, sparse, counts);
+        if (state.own == 0 && state.lights == 1 && options_.diffuse_light) state.own = spot_samples(pixel, x, y, sum, taken);
+        const float seen = controlled_ ? seen_around(x, y) : 0;
+        Layers& layers = image_.pixels[pixel];
+        if (state.own == 0) return take_noise_out(state, seen, taken, layers);
+        Layers unchanged = layers;
+        take_noise_out(state, seen, taken, unchanged);
+        join_further(pixel, x, y, taken, state.own, sparse, counts);
+        take_noise_out(state, seen, taken + state.own, layers);
+        note_change(pixel, unchanged);
       };
     });
     double sum = 0;
     for (std::size_t pixel = 0; pixel < missing.size(); ++pixel) sum += missing[pixel] + pixels_[pixel].own;
-    if (controlled_) share_changes();
+    share_changes();
     return sum;
   }
 
@@ -80,7 +92,10 @@ class AdaptiveFrame {
     with_light(pixel, sparse, [&](const DiffuseLight* light) {
       for_each_sample(scene_, view_, options_.seed, light, pixel, x, y, 0, n, 1, counts,
                       [&](int s) { return controlled_ ? &control[s < a ? 0 : 1] : nullptr; },
-                      [&](int s, const Layers& sample) { (s < a ? first : second).add(sample); });
+                      [&](int s, std::uint32_t surface, const Layers& sample) {
+                        (s < a ? first : second).add(sample);
+                        if (s == 0) state.surface = surface;
+                      });
     });
     join(first, 0, a, image_.pixels[pixel]);
     if (b > 0) join(second, a, b, image_.pixels[pixel]);
@@ -128,16 +143,18 @@ class AdaptiveFrame {
   }
 
   /// `count` samples more, from the one of number `first` on.
-  void join_further(std::size_t pixel, int x, int y, int first, int count, SparseCaustics& sparse, RayCounts& counts) {
+  PixelSum join_further(std::size_t pixel, int x, int y, int first, int count, SparseCaustics& sparse, RayCounts& counts) {
     const int lights = pixels_[pixel].lights;
     LightControl control;
+    PixelSum sum;
     with_light(pixel, sparse, [&](const DiffuseLight* light) {
-      PixelSum sum = sample_pixel(scene_, view_, options_.seed, light, pixel, x, y, first, count / lights, lights, counts,
+      sum = sample_pixel(scene_, view_, options_.seed, light, pixel, x, y, first, count / lights, lights, counts,
                                   controlled_ ? &control : nullptr);
       sum.stand_for(lights);
       join(sum, first, count, image_.pixels[pixel]);
     });
     pixels_[pixel].add_noise(control);
+    return sum;
   }
 
   static Rgb without_noise(const Rgb& radiance, const Rgb& noise, float seen, int count) {
@@ -146,10 +163,9 @@ class AdaptiveFrame {
     return rest;
   }
 
-  void take_noise_out(std::size_t pixel, float seen, int count) {
-    Layers& layers = image_.pixels[pixel];
-    layers[Layer::direct] = without_noise(layers[Layer::direct], pixels_[pixel].direct_noise, seen, count);
-    layers[Layer::specular] = without_noise(layers[Layer::specular], pixels_[pixel].specular_noise, seen, count);
+  static void take_noise_out(const PixelState& state, float seen, int count, Layers& layers) {
+    layers[Layer::direct] = without_noise(layers[Layer::direct], state.direct_noise, seen, count);
+    layers[Layer::specular] = without_noise(layers[Layer::specular], state.specular_noise, seen, count);
   }
 
   /// Of the light that large lights send to a plain pixel: did its first samples see some and miss some, where
@@ -159,26 +175,51 @@ class AdaptiveFrame {
     PixelState& state = pixels_[pixel];
     const int wanted = int(std::min(double(options_.adaptive_limit), 1 / (kOwn * options_.pixel_error)));
     if (state.lights == 1 || samples >= wanted || !(state.seen > 0 && state.seen < state.sampled)) return;
-    for_each_heir(pixel, x, y, [&](std::size_t) { ++state.heirs; });
-    if (state.heirs > 0) state.own = (wanted - samples + state.lights - 1) / state.lights * state.lights;
+    if (count_heirs(pixel, x, y) > 0) state.own = (wanted - samples + state.lights - 1) / state.lights * state.lights;
+  }
+
+  /// Samples for its own sake of a pixel that stands out by what has edges: one of its samples met a lamp that is smaller than
+  /// a pixel in a curved mirror, say, and its neighbours' first samples had met none. Shared out like a dot's.
+  int spot_samples(std::size_t pixel, int x, int y, const PixelSum& further, int samples) const {
+    const PixelState& state = pixels_[pixel];
+    const double first = options_.samples, sum = state.sharp * first + further.sharp,
+                 square = state.sharp_variance * (first - 1) + state.sharp * state.sharp * first + further.sharp_square;
+    const double variance = std::max(0.0, square - sum * sum / samples) / std::max(1, samples - 1);
+    const double wanted = std::min(wanted_samples(std::sqrt(variance), level_around(x, y)), double(options_.adaptive_limit));
+    return wanted > kSpot * samples && count_heirs(pixel, x, y) > 0 ? int(wanted) - samples : 0;
   }
 
   template <class Body>
   void for_each_heir(std::size_t pixel, int x, int y, const Body& body) const {
     for_each_neighbour(x, y, kNear, [&](std::size_t at) {
-      if (pixels_[at].plain && pixels_[at].memory[0].surface == pixels_[pixel].memory[0].surface) body(at);
+      if (pixels_[at].plain == pixels_[pixel].plain && pixels_[at].surface == pixels_[pixel].surface) body(at);
     });
   }
 
-  /// Few pixels have some: one after the other.
+  int count_heirs(std::size_t pixel, int x, int y) const {
+    int count = 0;
+    for_each_heir(pixel, x, y, [&](std::size_t) { ++count; });
+    return count;
+  }
+
+  void note_change(std::size_t pixel, Layers taken) {
+    for (std::size_t l = 0; l < kLayerCount; ++l) taken.value[l] = taken.value[l] - image_.pixels[pixel].value[l];
+    const std::lock_guard lock(changes_mutex_);
+    changes_.push_back({pixel, taken});
+  }
+
+  /// Few pixels have some: one after the other, in an order that does not depend on threads.
   void share_changes() {
     const auto width = std::size_t(view_.width());
-    for (std::size_t pixel = 0; pixel < pixels_.size(); ++pixel) {
-      const PixelState& state = pixels_[pixel];
-      if (state.own == 0) continue;
-      for_each_heir(pixel, int(pixel % width), int(pixel / width), [&](std::size_t at) {
-        Rgb& direct = image_.pixels[at][Layer::direct];
-        for (int c = 0; c < 3; ++c) direct[c] = std::max(0.0f, direct[c] + state.change[c] / state.heirs);
+    std::sort(changes_.begin(), changes_.end(), [](const Change& a, const Change& b) { return a.pixel < b.pixel; });
+    for (const auto& [pixel, taken] : changes_) {
+      const int x = int(pixel % width), y = int(pixel / width);
+      const auto heirs = float(count_heirs(pixel, x, y));
+      for_each_heir(pixel, x, y, [&, taken = &taken](std::size_t at) {
+        for (std::size_t l = 0; l < kLayerCount; ++l) {
+          Rgb& radiance = image_.pixels[at].value[l];
+          for (int c = 0; c < 3; ++c) radiance[c] = std::max(0.0f, radiance[c] + taken->value[l][c] / heirs);
+        }
       });
     }
   }
@@ -227,30 +268,43 @@ class AdaptiveFrame {
   std::vector<int> missing_samples() {
     double all = 0;
     for (const PixelState& state : pixels_) all += double(state.mean);
-    const double picture = all / double(std::max<std::size_t>(1, pixels_.size()));
+    picture_ = all / double(std::max<std::size_t>(1, pixels_.size()));
     std::vector<double> smooth(pixels_.size());
     RayCounts none;
     for_each_pixel(view_, options_, none, {},
                    [&](std::size_t pixel, int x, int y, RayCounts&) { smooth[pixel] = smooth_variance(pixel, x, y); });
     std::vector<int> missing(pixels_.size());
     for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) {
-      double pooled = 0, level = 0;
+      double pooled = 0;
       int n = 0;
       for_each_neighbour(x, y, kNear, [&](std::size_t at) {
         ++n;
         pooled += smooth[at];
-        level += double(pixels_[at].mean);
       });
       if (n == 0) return;   // a picture of one pixel
-      const double sigma = std::sqrt(pooled / n + sharp_variance(x, y));
-      const double error = options_.pixel_error * (std::min(level / n, picture) + 0.1 * picture);
-      const double wanted = error > 0 ? kTypical * std::pow(sigma / (kTypical * error), kStratified) : 0;
+      const double sigma = std::sqrt(pooled / n + kSharp * sharp_variance(x, y));
+      const double wanted = wanted_samples(sigma, level_around(x, y));
       const int more = std::clamp(int(std::min(wanted, double(options_.adaptive_limit))) - options_.samples, 0, options_.adaptive_limit);
       const int lights = pixels_[pixel].lights = is_plain(x, y) ? kLightsTogether : 1;
       missing[pixel] = more > 0 ? std::max(1, (more + lights / 2) / lights) * lights : 0;
       if (controlled_) ask_for_own(pixel, x, y, options_.samples + missing[pixel]);
     });
     return missing;
+  }
+
+  double level_around(int x, int y) const {
+    double level = 0;
+    int n = 0;
+    for_each_neighbour(x, y, kNear, [&](std::size_t at) {
+      ++n;
+      level += double(pixels_[at].mean);
+    });
+    return n > 0 ? level / n : 0;
+  }
+
+  double wanted_samples(double sigma, double level) const {
+    const double error = options_.pixel_error * (std::min(level, kBright * picture_) + 0.1 * picture_);
+    return error > 0 ? kTypical * std::pow(sigma / (kTypical * error), kStratified) : 0;
   }
 
   const RenderScene& scene_;
@@ -260,7 +314,10 @@ class AdaptiveFrame {
   bool controlled_;
   int first_half_;
   float scene_size_;
+  double picture_ = 0;   ///< mean of all pixels' first samples
   std::vector<PixelState> pixels_;
+  std::vector<Change> changes_;
+  std::mutex changes_mutex_;
 };
 
 }  // namespace

@@ -17,6 +17,10 @@ namespace tempolux {
 /// and the eight around it see one matte surface each, it gets samples until one is worth 4 pixel errors. They move its mean towards
 /// what is seen around it; as much is taken from, or given to, the neighbours on its surface in equal parts. So an area's mean has
 /// no bias; some thousandths of a pixel's light are those of the area within two pixels.
+///
+/// A lamp smaller than a pixel in a curved mirror is met by one sample of many, and its pixel then shows ten times what it
+/// should; neighbours that met none call for no more. If by all its samples (of what has edges) a pixel would ask for
+/// more than twice as many as it got, it gets them (caches and photons only), and its neighbours what that took from it likewise.
 void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame);
 
 }  // namespace tempolux

@@ -74,7 +74,7 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
                 [&](RayCounts& counts) { return [&](std::size_t pixel, int x, int y) { body(pixel, x, y, counts); }; });
 }
 
-/// Samples [first, first + count) of a pixel, one after the other: add(sample, radiance); control(sample): where that one's
+/// Samples [first, first + count) of a pixel, one after the other: add(sample, surface met, radiance); control(sample): where that one's
 /// LightControl goes, or nullptr. Each takes the mean of the light of `lights` samples, which [first, first + count x lights) are.
 template <class Control, class Add>
 void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const DiffuseLight* light,
@@ -95,7 +95,7 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint
       scene.tracer.intersect({rays, std::size_t(n)}, {hits, std::size_t(n)});
     for (int i = 0; i < n; ++i) {
       const auto first_light = std::uint32_t(start + (first + i - start) * lights);
-      add(first + i, trace_eye_path(scene, {rays[i], hits[i], view.cone(), first_light, std::uint32_t(lights)},
+      add(first + i, hits[i].surface, trace_eye_path(scene, {rays[i], hits[i], view.cone(), first_light, std::uint32_t(lights)},
                                     PixelRandom(seed, pixel, std::uint32_t(first + i)), light, counts, control(first + i)));
     }
   }
@@ -106,7 +106,7 @@ inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, s
                              LightControl* control = nullptr) {
   PixelSum sum;
   for_each_sample(scene, view, seed, light, pixel, x, y, first, count, lights, counts, [&](int) { return control; },
-                  [&](int, const Layers& sample) { sum.add(sample); });
+                  [&](int, std::uint32_t, const Layers& sample) { sum.add(sample); });
   return sum;
 }
 

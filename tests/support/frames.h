@@ -1,0 +1,43 @@
+// tests/support/frames.h -- what tests of whole frames render: the example's room, a camera above the origin.
+#pragma once
+
+#include "lib/render/frame_renderer.h"
+#include "lib/scene/gltf_load.h"
+#include "tests/support/scenes.h"
+
+namespace tempolux::test {
+
+/// pipelines/scenes/S2_cornell_moving.glb: matte boxes, one of them moving.
+struct Cornell {
+  Scene scene = load_gltf("../pipelines/scenes/S2_cornell_moving.glb");
+  TimeOptions time;
+  Segment segment;
+  SceneFrame frame;
+  Tracer tracer;
+  Lights lights;
+  CameraView view;
+
+  explicit Cornell(int number = 10, int width = 64, int height = 36)
+      : segment(segment_of(scene, number, time)),
+        frame(scene_at_frame(scene, segment, number, time)),
+        tracer(frame),
+        lights(frame, build_emission_table(scene, segment, time)),
+        view(frame.camera(scene.camera_node("auto")), frame.origin, width, height) {}
+  RenderScene render_scene() const { return {tracer, lights}; }
+};
+
+/// 64 x 36 pixels of 1/32 m, seen from z = 1, the middle at the origin.
+inline CameraView from_above() {
+  PlacedCamera camera;
+  camera.camera.kind = Camera::Kind::orthographic;
+  camera.camera.ymag_m = 0.5625f;
+  camera.scene_from_camera.translation = {0, 0, 1};
+  return CameraView(camera, {}, 64, 36);
+}
+
+/// Direct light alone.
+struct NoLight : DiffuseLight {
+  Irradiance at(const SurfacePoint&, Vec3, Vec3, bool, const Rgb*) const override { return {}; }
+};
+
+}  // namespace tempolux::test
