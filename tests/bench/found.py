@@ -13,8 +13,8 @@ more: in closed rooms each is stored many times) and 16 shadow rays per point, n
 difference, and cost less than more seeds. Records are the default's. Prints a table; writes found-layers.json and found.png
 (path tracer left, photon chain right, each pair at its own exposure) to --out.
 A first run of either way tells the variance and the cost of every layer; then as many samples per pixel of the one and seeds of
-the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows. An error bar
-is that of 95 %, by Student's t for the few seeds. A layer agrees if the means differ by at most 1.5 % and the bar is no wider
+the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows; four times that
+if else one would be too wide to tell. An error bar is that of 95 %, by Student's t for the few seeds. A layer agrees if the means differ by at most 1.5 % and the bar is no wider
 than that; it does not if they differ by more than 1.5 % plus the bar; else it is undecided. Layers below 0.1 % of the picture
 are listed, but not judged.
 """
@@ -40,6 +40,7 @@ LIMIT = 0.015           # of a layer's mean: what the two may differ by
 WANTED_BAR = 0.01       # of a judged layer's mean
 PILOT, PILOT_SEEDS = 32, 3   # samples per pixel and seeds that tell how many are needed
 MOST_SEEDS = 16
+PATIENCE = 4            # times --cpu where a bar would be wider than LIMIT
 ROUGHER = {"24_animation_pointer": 0.7}   # black but for spots of lights without extent: at 0.1 one path in 10^5 brings half of a layer
 SLOW_SEED = 8           # CPU s with a third of the photons: then that is enough
 LIGHT_SAMPLES = 16      # shadow rays per irradiance point
@@ -134,7 +135,10 @@ class Found:
             if cpu < SLOW_SEED:
                 photons = self.photons
             chain, row["chain_cpu_s"] = self.chains(scene, range(1, PILOT_SEEDS + 1), photons)
-            spp, seeds = samples_wanted(path, halves, row["path_cpu_s"], chain, row["chain_cpu_s"], self.cpu)
+            pilot = path, halves, row["path_cpu_s"], chain, row["chain_cpu_s"]
+            widest, spp, seeds = samples_wanted(*pilot, self.cpu)
+            if widest > LIMIT:
+                _, spp, seeds = samples_wanted(*pilot, PATIENCE * self.cpu)
             if spp > PILOT:
                 path, halves, row["path_cpu_s"], _ = self.reference(scene, spp)
             if seeds > PILOT_SEEDS:
@@ -197,7 +201,7 @@ def is_judged(path, layer, chain):
 
 
 def samples_wanted(path, halves, path_cpu, chain, chain_cpu, most_cpu):
-    """(samples per pixel, seeds) by a first run of both: see above."""
+    """(widest error bar, samples per pixel, seeds) by a first run of both: see above."""
     variances = []    # of one sample per pixel, of one seed; of the mean
     for layer in LAYERS:
         seeds, size = [mean(image, layer) for image in chain], mean(path, layer)
@@ -213,7 +217,7 @@ def samples_wanted(path, halves, path_cpu, chain, chain_cpu, most_cpu):
         cost = seeds * chain_cpu / len(chain) + spp * path_cpu / PILOT
         if seeds == PILOT_SEEDS or cost <= 1.1 * most_cpu:
             best = min(best, (max(widest, WANTED_BAR), cost, spp, seeds))
-    return best[2:]
+    return best[0], *best[2:]
 
 
 def layer_row(layer, path, halves, chain):
@@ -322,7 +326,7 @@ def main():
     parser.add_argument("--out", type=Path, default=project / "out" / "found", help="sheet, table as JSON [out/found]")
     parser.add_argument("--only", default="", help="regular expression: files whose path it is found in")
     parser.add_argument("--size", default="320x180", help="[320x180]")
-    parser.add_argument("--cpu", type=float, default=120, help="CPU s for a scene, about: beyond, a layer stays undecided [120]")
+    parser.add_argument("--cpu", type=float, default=120, help="CPU s for a scene, about; more for hard ones [120]")
     parser.add_argument("--photons", type=int, default=12_000_000, help="a third where that takes 8 CPU s [12000000]")
     args = parser.parse_args()
     bench = Bench(args.build.resolve(), args.out.resolve(), project, False, 0)
