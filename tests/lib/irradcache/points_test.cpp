@@ -80,6 +80,41 @@ TEST(PointLookup, WhatLiesAtTheEdgeOfAHotSpotIsNotReadFromAfar) {
   EXPECT_FALSE(infinite_at(500, 1000, {0.056f, 0, 0.02f}));
 }
 
+/// Points known by a few shadow rays: of those in the light half say 0.1, half 1.9, drawn for each; all beside the shadow of a
+/// grid are dark, and so are those of a sheet 1 mm below, which faces the same way. Hits at marked points sample their light, 0 or
+/// 1: in the mean hits in the light must get 1. Of 10000 points at most all are read, 0.9 / sqrt(10000) = 0.9 % is their
+/// standard deviation. Were points marked by what they say themselves (brighter than the mean, with a dark one beside), those of
+/// 1.9 would be sampled and those of 0.1 read: 0.55.
+TEST(PointLookup, APointsOwnLightHasNoSayInWhetherItIsRead) {
+  constexpr float kSpacing = 0.01f;
+  const PathRandom random(7, 7);
+  for (const bool sheets : {false, true}) {
+    std::vector<IrradiancePoint> points = square(10000);
+    const auto is_lit = [&](const IrradiancePoint& p) {
+      return p.position.y == 0 && (sheets || (int(p.position.x / (5 * kSpacing)) + int(p.position.z / (5 * kSpacing))) % 2 == 0);
+    };
+    if (sheets)
+      for (std::size_t i = 0; i < 10000; ++i) points.push_back(point_at(points[i].position - Vec3{0, 0.001f, 0}, {0, 1, 0}, 0, 0));
+    double mean = 0, lit = 0, marked = 0;
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+      points[i].indirect = Rgb(0.0f);
+      if (is_lit(points[i])) points[i].direct = Rgb(random.get1(i, Purpose::test) < 0.5f ? 0.1f : 1.9f);
+    }
+    const PointLookup lookup(points, box({0, -0.001f, 0}, {1, 0, 1}), kSpacing);
+    for (const IrradiancePoint& p : points) {
+      if (!is_lit(p)) continue;
+      const PointLight* read = lookup.find(p.position, {0, 1, 0}, 0);
+      ASSERT_NE(read, nullptr);
+      if (!is_lit(points[read->point])) continue;   // another's cell
+      ++lit;
+      marked += read->shadow_edge;
+      mean += read->shadow_edge ? 1.0 : double(read->all.g);
+    }
+    EXPECT_NEAR(mean / lit, 1, 0.03) << sheets;
+    EXPECT_GT(marked, 0.3 * lit) << sheets;   // there are such edges
+  }
+}
+
 /// Two sheets 1 mm apart that face away from each other, and one that is seen from both sides.
 TEST(PointLookup, SidesAreNeverMixedUp) {
   std::vector<IrradiancePoint> points = square(400);
