@@ -1,16 +1,17 @@
 #include "lib/light/large_light.h"
 
-#include <immintrin.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "lib/core/check.h"
 #include "lib/core/sampling.h"
+#include "lib/light/lanes.h"
 
 namespace tempolux {
 namespace {
 
+static_assert(kLargeTogether == Lanes::kCount);
 constexpr double kSameShape = 1e-5;      // of the size
 constexpr float kSmallSolidAngle = 0.02f;
 constexpr float kFewDigits = 0.05f;      // sr: below, sums over edges cancel too many digits of a float
@@ -29,7 +30,18 @@ inline float angle_of(float sine, float cosine) {
 }
 inline double angle_of(double sine, double cosine) { return std::atan2(sine, cosine); }
 
-/// The same of four at a time, bit for bit.
+/// The same of eight at a time.
+inline Lanes angle_of(Lanes sine, Lanes cosine) {
+  const Lanes c = abs(cosine), large = max(sine, c);
+  const Lanes x = (large > 0.0f) & (min(sine, c) / large), x2 = x * x;
+  Lanes p = kArcTangent[0];
+  for (std::size_t i = 1; i < kArcTangent.size(); ++i) p = p * x2 + kArcTangent[i];
+  p = p * x;
+  const Lanes first = choose(sine > c, p, kPi / 2 - p);
+  return choose(cosine, first, kPi - first);   // by its sign
+}
+
+/// Of four at a time, bit for bit.
 inline __m128 angles_of(__m128 sine, __m128 cosine) {
   const auto all = [](float x) { return _mm_set1_ps(x); };
   const __m128 c = _mm_andnot_ps(all(-0.0f), cosine), large = _mm_max_ps(sine, c);
@@ -109,32 +121,49 @@ float height_above(const LargeLight& light, Vec3 from) {
   return light.triangle.two_sided ? std::abs(height) : height;
 }
 
-/// Where on the rectangle, in its sides' lengths; solid_angle: 0 if it is too small or too near to go by it.
-Vec2 sample_spherical_rectangle(const LargeLight& light, Vec3 from, float z, Vec2 u, float& solid_angle) {
-  const Vec3 side_x = light.corner[1] - light.corner[0], side_y = light.corner[3] - light.corner[0], to = light.corner[0] - from;
-  const float width = length(side_x), height = length(side_y);
-  const float x0 = dot(to, side_x) / width, x1 = x0 + width, y0 = dot(to, side_y) / height, y1 = y0 + height;
-  // Planes through the point and the sides y0, x1, y1, x0, normals inwards: z components alone are needed of two.
-  const __m128 side = _mm_setr_ps(-y0, x1, y1, -x0), one = _mm_set1_ps(1);
-  const __m128 b = side * (one / _mm_sqrt_ps(_mm_set1_ps(z * z) + side * side));
-  const __m128 cosine = _mm_setzero_ps() - b * _mm_shuffle_ps(b, b, _MM_SHUFFLE(0, 3, 2, 1));   // of the angles at the corners
-  alignas(16) float angle[4], bs[4];
-  _mm_store_ps(angle, angles_of(_mm_sqrt_ps(_mm_max_ps(_mm_setzero_ps(), one - cosine * cosine)), cosine));
-  _mm_store_ps(bs, b);
-  const float b0 = bs[0], b2 = bs[2], k = 2 * kPi - angle[2] - angle[3];
-  solid_angle = angle[0] + angle[1] - k;
-  if (!(solid_angle > kSmallSolidAngle)) {
-    solid_angle = 0;
-    return u;
+struct OnRectangle {
+  Lanes x, y;          ///< in its sides' lengths
+  Lanes solid_angle;   ///< 0 if it is too small or too near to go by it: then uniform in area
+};
+
+/// Sines and cosines of the first `count`; lanes have none.
+void sine_cosine(Lanes angle, std::size_t count, Lanes& sine, Lanes& cosine) {
+  alignas(32) float a[Lanes::kCount], s[Lanes::kCount] = {}, c[Lanes::kCount] = {};
+  angle.store(a);
+  for (std::size_t i = 0; i < count; ++i) {
+    s[i] = std::sin(a[i]);
+    c[i] = std::cos(a[i]);
   }
-  const float along = u.x * solid_angle + k, sine = std::sin(along);
-  const float f = sine != 0 ? (std::cos(along) * b0 - b2) / sine : INFINITY;
-  const float cu = std::clamp(std::copysign(1 / std::sqrt(f * f + b0 * b0), f), -1.0f, 1.0f);
-  const float x = std::clamp(cu * z / std::sqrt(std::max(1e-12f, 1 - cu * cu)), x0, x1);
-  const float d2 = x * x + z * z, h0 = y0 / std::sqrt(d2 + y0 * y0), h1 = y1 / std::sqrt(d2 + y1 * y1);
-  const float h = h0 + u.y * (h1 - h0);
-  const float y = std::clamp(h * std::sqrt(d2 / std::max(1e-12f, 1 - h * h)), y0, y1);
-  return {(x - x0) / width, (y - y0) / height};
+  sine = Lanes::load(s);
+  cosine = Lanes::load(c);
+}
+
+/// A point uniform in solid angle, from `count` points z above the plane.
+OnRectangle sample_spherical_rectangle(const LargeLight& light, std::size_t count, Vec3T<Lanes> from, Lanes z, Lanes u, Lanes v) {
+  const auto all = [](Vec3 a) { return Vec3T<Lanes>{a.x, a.y, a.z}; };
+  const Vec3 side_x = light.corner[1] - light.corner[0], side_y = light.corner[3] - light.corner[0];
+  const Lanes width = length(side_x), height = length(side_y);
+  const Vec3T<Lanes> to = all(light.corner[0]) - from;
+  const Lanes x0 = dot(to, all(side_x)) / width, x1 = x0 + width, y0 = dot(to, all(side_y)) / height, y1 = y0 + height;
+  // Planes through the point and the sides y0, x1, y1, x0, normals inwards: z components alone are needed of two.
+  const Lanes z2 = z * z, side[4] = {-y0, x1, y1, -x0};
+  Lanes b[4], angle[4];
+  for (int i = 0; i < 4; ++i) b[i] = side[i] * (Lanes(1.0f) / sqrt(z2 + side[i] * side[i]));
+  for (int i = 0; i < 4; ++i) {   // at the corners
+    const Lanes cosine = -(b[i] * b[(i + 1) % 4]);
+    angle[i] = angle_of(sqrt(max(0.0f, Lanes(1.0f) - cosine * cosine)), cosine);
+  }
+  const Lanes k = Lanes(2 * kPi) - angle[2] - angle[3], solid_angle = angle[0] + angle[1] - k, large = solid_angle > kSmallSolidAngle;
+  Lanes sine, cosine;
+  sine_cosine(u * solid_angle + k, count, sine, cosine);
+  const Lanes f = (cosine * b[0] - b[2]) / sine;   // infinite where the sine is 0
+  const Lanes cu = max(min(with_sign_of(Lanes(1.0f) / sqrt(f * f + b[0] * b[0]), f), 1.0f), -1.0f);
+  const Lanes least = 1e-12f;
+  const Lanes x = min(max(cu * z / sqrt(max(least, Lanes(1.0f) - cu * cu)), x0), x1);
+  const Lanes d2 = x * x + z2, h0 = y0 / sqrt(d2 + y0 * y0), h1 = y1 / sqrt(d2 + y1 * y1);
+  const Lanes h = h0 + v * (h1 - h0);
+  const Lanes y = min(max(h * sqrt(d2 / max(least, Lanes(1.0f) - h * h)), y0), y1);
+  return {choose(large, u, (x - x0) / width), choose(large, v, (y - y0) / height), large & solid_angle};
 }
 
 /// Completes a triangle to the rectangle of which the other is the other half; false if it is not.
@@ -182,25 +211,45 @@ double projected_solid_angle(const LargeLight& light, Vec3 from, Vec3 normal) {
   return found > kFewDigits ? double(found) : projected<double>(light, from, normal);
 }
 
-bool sample_large_light(const LargeLight& light, Vec3 from, Vec2 u, LargeLightPoint& sample) {
+unsigned sample_large_light(const LargeLight& light, std::span<const Vec3> from, std::span<const Vec2> u, LargeLightPoint* samples) {
+  TEMPOLUX_CHECK(from.size() <= kLargeTogether && from.size() == u.size());
+  unsigned found = 0;
   if (!light.is_rectangle()) {
-    TrianglePoint point;
-    if (!sample_triangle(light.triangle, from, u, point)) return false;
-    sample = {point.position, point.wi, point.pdf_solid_angle};
-    return true;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      TrianglePoint point;
+      if (!sample_triangle(light.triangle, from[i], u[i], point)) continue;
+      samples[i] = {point.position, point.wi, point.pdf_solid_angle};
+      found |= 1u << i;
+    }
+    return found;
   }
-  const float height = height_above(light, from);
-  if (!(height > 0)) return false;
-  float solid_angle = 0;
-  const Vec2 at = sample_spherical_rectangle(light, from, height, u, solid_angle);
-  sample.position = light.corner[0] + (light.corner[1] - light.corner[0]) * at.x + (light.corner[3] - light.corner[0]) * at.y;
-  const Vec3 to = sample.position - from;
-  const double distance = double(length(to));
-  if (!(distance > 0)) return false;
-  sample.wi = to / float(distance);
-  sample.pdf_solid_angle = solid_angle > 0 ? 1 / double(solid_angle)
-                                           : distance * distance * distance / (2 * light.triangle.area * double(height));
-  return sample.pdf_solid_angle < INFINITY;
+  LaneVectors points, numbers;   // u.x, u.y and the height above the light
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    points.set(int(i), from[i]);
+    numbers.set(int(i), {u[i].x, u[i].y, height_above(light, from[i])});
+  }
+  const Vec3T<Lanes> origin = points.load(), number = numbers.load();
+  const OnRectangle at = sample_spherical_rectangle(light, from.size(), origin, number.z, number.x, number.y);
+  const auto all = [](Vec3 a) { return Vec3T<Lanes>{a.x, a.y, a.z}; };
+  const Vec3T<Lanes> position =
+      all(light.corner[0]) + all(light.corner[1] - light.corner[0]) * at.x + all(light.corner[3] - light.corner[0]) * at.y;
+  const Vec3T<Lanes> to = position - origin;
+  const Lanes distance = sqrt(dot(to, to));
+  LaneVectors positions, directions, more;   // more: distance, solid angle
+  positions.store(position);
+  directions.store(to / distance);
+  more.store({distance, at.solid_angle, 0.0f});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double height = double(numbers.z[i]), d = double(more.x[i]), solid_angle = double(more.y[i]);
+    if (!(height > 0) || !(d > 0)) continue;
+    const double pdf = solid_angle > 0 ? 1 / solid_angle : d * d * d / (2 * light.triangle.area * height);
+    if (!(pdf < INFINITY)) continue;
+    samples[i].position = positions.get(int(i));
+    samples[i].wi = directions.get(int(i));
+    samples[i].pdf_solid_angle = pdf;
+    found |= 1u << i;
+  }
+  return found;
 }
 
 }  // namespace tempolux

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "lib/light/triangle_light.h"
@@ -32,9 +33,14 @@ struct LargeLightPoint {
   double pdf_solid_angle = 0;  ///< [1/sr]
 };
 
-/// A point as seen from `from`; false if it shows no emitting side there. Uniform in solid angle where that is large, else in
+inline constexpr std::size_t kLargeTogether = 8;
+/// Points, samples[i] as seen from from[i], at most kLargeTogether: many cost little more than one. Bit i of the result is not
+/// set if the light shows no emitting side to from[i]. Uniform in solid angle where that is large, else in
 /// area: of rectangles by Urena, Fajardo and King, "An Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013,
 /// of triangles by sample_triangle.
-bool sample_large_light(const LargeLight& light, Vec3 from, Vec2 u, LargeLightPoint& sample);
+unsigned sample_large_light(const LargeLight& light, std::span<const Vec3> from, std::span<const Vec2> u, LargeLightPoint* samples);
+inline bool sample_large_light(const LargeLight& light, Vec3 from, Vec2 u, LargeLightPoint& sample) {
+  return sample_large_light(light, {&from, 1}, {&u, 1}, &sample) != 0;
+}
 
 }  // namespace tempolux

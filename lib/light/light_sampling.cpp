@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "lib/core/check.h"
 #include "lib/core/random.h"
 #include "lib/light/lights_impl.h"
 #include "lib/light/punctual.h"
@@ -151,41 +152,70 @@ bool Lights::has_large() const {
   return !impl_->apart.large.empty();
 }
 
-Lights::Apart Lights::apart(Vec3 point, Vec3 normal) const {
+/// Each part is written where it stays: a copy of what was just written waits for it.
+void Lights::apart(Vec3 point, Vec3 normal, Apart& at) const {
   const Impl& m = *impl_;
-  Apart at{point, normal, Rgb(0.0f), {}, 0, m.apart.rest.start(point, normal), m.distant_irradiance(normal), 0};
+  at.point = point;
+  at.normal = normal;
+  m.apart.rest.start(point, normal, at.rest);
+  at.distant = m.distant_irradiance(normal);
+  at.irradiance = Rgb(0.0f);
+  at.sum_large = 0;
   for (std::size_t i = 0; i < m.apart.large.size(); ++i) {
+    const Rgb radiance = m.apart.large[i].triangle.radiance;
     const float projected = float(projected_solid_angle(m.apart.large[i], point, normal));
-    at.irradiance += m.apart.large[i].triangle.radiance * projected;
-    at.sum_large += at.large[i] = max_component(m.apart.large[i].triangle.radiance) * projected;
+    at.irradiance += radiance * projected;
+    at.sum_large += at.large[i] = max_component(radiance) * projected;
   }
   const double all = at.distant + at.rest.sum;
-  if (all > 0) at.chance = std::min(1.0, all / (kFew * (all + double(max_component(at.irradiance)))));
-  return at;
+  at.chance = all > 0 ? std::min(1.0, all / (kFew * (all + double(max_component(at.irradiance))))) : 0;
 }
 
-bool Lights::sample_large(const Apart& at, Vec2 u, LightSample& sample) const {
+unsigned Lights::sample_large(std::span<const Apart* const> at, std::span<const Vec2> u, LightSample* samples) const {
+  TEMPOLUX_CHECK(at.size() <= kTogether && at.size() == u.size());
   const std::vector<LargeLight>& large = impl_->apart.large;
-  sample = {};
-  if (!(at.sum_large > 0)) return false;
-  float left = u.x * at.sum_large;
-  std::size_t chosen = 0;
-  for (std::size_t i = 0; i < large.size(); ++i) {
-    if (!(at.large[i] > 0)) continue;
-    chosen = i;
-    if (left < at.large[i]) break;
-    left -= at.large[i];
+  float left[kTogether];
+  std::size_t chosen[kTogether];
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    chosen[i] = large.size();
+    if (!(at[i]->sum_large > 0)) continue;
+    left[i] = u[i].x * at[i]->sum_large;
+    for (std::size_t l = 0; l < large.size(); ++l) {
+      if (!(at[i]->large[l] > 0)) continue;
+      chosen[i] = l;
+      if (left[i] < at[i]->large[l]) break;
+      left[i] -= at[i]->large[l];
+    }
   }
-  u.x = std::min(left / at.large[chosen], kOneMinusEpsilon);
-  LargeLightPoint found;
-  if (!sample_large_light(large[chosen], at.point, u, found)) return false;
-  const double pdf = double(at.large[chosen] / at.sum_large) * found.pdf_solid_angle;
-  sample.wi = found.wi;
-  sample.position = found.position;
-  sample.position_offset = large[chosen].triangle.offset;
-  sample.radiance = Rgb(Rgbd(large[chosen].triangle.radiance) / pdf);
-  sample.pdf_solid_angle = float(pdf);
-  return is_finite(sample.radiance);
+  unsigned sampled = 0;
+  for (std::size_t l = 0; l < large.size(); ++l) {
+    std::size_t count = 0, whose[kTogether];
+    Vec3 from[kTogether];
+    Vec2 on_light[kTogether];
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (chosen[i] != l) continue;
+      from[count] = at[i]->point;
+      on_light[count] = {std::min(left[i] / at[i]->large[l], kOneMinusEpsilon), u[i].y};
+      whose[count++] = i;
+    }
+    if (count == 0) continue;
+    thread_local LargeLightPoint points[kTogether];
+    const unsigned found = sample_large_light(large[l], {from, count}, {on_light, count}, points);
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!(found >> k & 1)) continue;
+      const std::size_t i = whose[k];
+      const double pdf = double(at[i]->large[l] / at[i]->sum_large) * points[k].pdf_solid_angle;
+      const Rgb radiance(Rgbd(large[l].triangle.radiance) / pdf);
+      samples[i].wi = points[k].wi;
+      samples[i].position = points[k].position;
+      samples[i].position_offset = large[l].triangle.offset;
+      samples[i].radiance = radiance;
+      samples[i].pdf_solid_angle = float(pdf);
+      samples[i].delta = false;
+      sampled |= unsigned(is_finite(radiance)) << i;
+    }
+  }
+  return sampled;
 }
 
 bool Lights::sample_rest(const Apart& at, Vec2 u, LightSample& sample) const {

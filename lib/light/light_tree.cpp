@@ -290,10 +290,8 @@ double LightTree::importance(Vec3 point, Vec3 normal) const {
   return nodes_.empty() ? 0 : whole_ * importances(nodes_[0], point, normal, each);
 }
 
-LightTree::Start LightTree::start(Vec3 point, Vec3 normal) const {
-  Start start;
-  if (!nodes_.empty()) start.sum = whole_ * importances(nodes_[0], point, normal, start.each);
-  return start;
+void LightTree::start(Vec3 point, Vec3 normal, Start& start) const {
+  start.sum = nodes_.empty() ? 0 : whole_ * importances(nodes_[0], point, normal, start.each);
 }
 
 bool LightTree::choose(Vec3 point, Vec3 normal, float u, Choice& choice) const {

@@ -44,7 +44,12 @@ class LightTree {
     double each[kWidth];  ///< importance of the children, in parts of the whole tree's weight
     double sum = 0;       ///< of all, as importance()
   };
-  Start start(Vec3 point, Vec3 normal) const;
+  Start start(Vec3 point, Vec3 normal) const {
+    Start start;
+    this->start(point, normal, start);
+    return start;
+  }
+  void start(Vec3 point, Vec3 normal, Start& start) const;
   bool choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const;
   /// Walks down by the importance of both children: an upper bound of weight cos cos / distance^2. `normal`:
   /// unit, or zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at

@@ -1,8 +1,11 @@
 #include "lib/render/path_tracer.h"
 
+#include <array>
+
+#include "lib/core/check.h"
 #include "lib/core/sampling.h"
 #include "lib/material/inside.h"
-#include "lib/render/shading.h"
+#include "lib/render/matte_ends.h"
 
 namespace tempolux {
 namespace {
@@ -52,41 +55,6 @@ void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, const Rg
   result[path.after(false).layer()] += arriving * glossy;
 }
 
-bool reaches(const RenderScene& scene, const ShadingPoint& x, const LightSample& light, RayCounts& counts) {
-  if (!x.sees(light.wi)) return false;
-  ++counts.shadow;
-  return !scene.tracer.occluded(spawn_shadow_ray(x.surface, light.position, light.position_offset));
-}
-
-/// The same at a matte end of the path: large lights and the others apart; the mean of the light of samples [first, first + n).
-void add_controlled_light(const RenderScene& scene, const ShadingPoint& x, const Rgb& throughput, const EyePath& path,
-                          const PixelRandom& random, std::uint32_t first, std::uint32_t n, std::uint32_t bounce, Layers& result,
-                          LightControl& control, RayCounts& counts) {
-  const Layer layer = path.after(true).layer();
-  const Rgb reflected = throughput * x.bsdf.diffuse_albedo() * kInvPi;
-  Rgb& noise = layer == Layer::direct ? control.direct : control.specular;
-  const Lights::Apart at = scene.lights.apart(x.surface.position, x.normal);
-  Rgb sum(0.0f);
-  for (std::uint32_t i = first; i < first + n; ++i) {
-    const PixelRandom numbers = random.of_sample(i);
-    LightSample light;
-    if (scene.lights.sample_large(at, numbers.get2(bounce, Purpose::light_point), light)) {
-      const Rgb arriving = reflected * light.radiance * std::max(0.0f, dot(light.wi, x.normal));
-      noise += arriving;
-      control.sampled += channel_mean(arriving);
-      if (!is_black(arriving) && reaches(scene, x, light, counts)) {
-        control.seen += channel_mean(arriving);
-        sum += arriving;
-      }
-    }
-    if (!scene.lights.sample_rest(at, numbers.get2(bounce, Purpose::light_choice), light)) continue;
-    const Rgb arriving = reflected * light.radiance * std::max(0.0f, dot(light.wi, x.normal));
-    if (!is_black(arriving) && reaches(scene, x, light, counts)) sum += arriving;
-  }
-  noise += reflected * at.irradiance * -float(n);
-  result[layer] += n == 1 ? sum : sum * (1 / float(n));
-}
-
 /// Emission of the surface that was hit, weighed against light sampling from the scattering before.
 /// Textures are read at their finest level where light sampling could have found the light: both read the same.
 void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, const LastScatter& last,
@@ -112,18 +80,11 @@ void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter
   result[layer] += throughput * scene.lights.environment(direction) * weight;
 }
 
-}  // namespace
-
-Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
-                      const DiffuseLight* diffuse_light, RayCounts& counts, RayCone cone) {
-  EyeRay eye{camera_ray, {}, cone};
-  scene.tracer.intersect(camera_ray, eye.hit);
-  return trace_eye_path(scene, eye, random, diffuse_light, counts, nullptr);
-}
-
-Layers trace_eye_path(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random, const DiffuseLight* diffuse_light,
-                      RayCounts& counts, LightControl* control) {
-  Layers result;
+/// Follows a path; adds to `result`. With `end` it may end at a matte surface of which all but the light sampled there is
+/// known: then that is set and the answer is true.
+bool follow(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random, const DiffuseLight* diffuse_light,
+            RayCounts& counts, MatteEnd* end, Layers& result) {
+  bool ends_matte = false;
   Rgb throughput{1.0f};
   EyePath path;
   Inside inside;
@@ -155,13 +116,23 @@ Layers trace_eye_path(const RenderScene& scene, const EyeRay& eye, const PixelRa
     }
     const ShadingPoint x(point, wo, material);
     const bool ends_here = diffuse_light && x.bsdf.has_diffuse();
-    if (ends_here && control && x.bsdf.is_matte() && !inside.any())
-      add_controlled_light(scene, x, throughput, path, random, eye.first_light, eye.lights, bounce, result, *control, counts);
-    else
+    const bool controlled = ends_here && end && x.bsdf.is_matte();
+    if (controlled && !inside.any()) {
+      ends_matte = true;
+      end->surface = point;
+      end->normal = x.normal;
+      end->normal_geometric = x.normal_geometric;
+      end->reflected = throughput * x.bsdf.diffuse_albedo() * kInvPi;
+      end->layer = path.after(true).layer();
+      end->first = eye.first_light;
+      end->count = eye.lights;
+      end->bounce = bounce;
+    } else {
       add_sampled_light(scene, x, throughput, path, inside, random, bounce, !ends_here, result, counts);
+    }
     if (ends_here) {
       const bool seen_directly = path.layer() == Layer::emission;
-      if (control && seen_directly && x.bsdf.is_matte()) ++control->seen_matte;
+      if (controlled && seen_directly) ++end->control.seen_matte;
       const DiffuseLight::Irradiance e = diffuse_light->at(point, x.normal_geometric, x.normal, seen_directly, nullptr);
       ++counts.lookups;
       // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
@@ -197,7 +168,40 @@ Layers trace_eye_path(const RenderScene& scene, const EyeRay& eye, const PixelRa
     hit = {};
     scene.tracer.intersect(ray, hit);
   }
-  return result;
+  return ends_matte;
+}
+
+}  // namespace
+
+Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
+                      const DiffuseLight* diffuse_light, RayCounts& counts, RayCone cone) {
+  EyeRay eye{camera_ray, {}, cone};
+  scene.tracer.intersect(camera_ray, eye.hit);
+  Layers layers;
+  follow(scene, eye, random, diffuse_light, counts, nullptr, layers);
+  return layers;
+}
+
+void trace_eye_paths(const RenderScene& scene, std::span<const EyeRay> eyes, const PixelRandom& random, std::uint32_t first,
+                     const DiffuseLight* diffuse_light, RayCounts& counts, std::span<LightControl* const> controls, Layers* layers) {
+  TEMPOLUX_CHECK(eyes.size() <= kPathsTogether && (controls.empty() || controls.size() == eyes.size()));
+  thread_local std::array<MatteEnd, kPathsTogether> ends;   // not made anew for each pixel
+  std::size_t count = 0, whose[kPathsTogether];
+  for (std::size_t i = 0; i < eyes.size(); ++i) {
+    MatteEnd& end = ends[count];
+    end.control = {};
+    layers[i] = {};
+    const bool matte = follow(scene, eyes[i], random.of_sample(first + std::uint32_t(i)), diffuse_light, counts,
+                              controls.empty() ? nullptr : &end, layers[i]);
+    if (matte) whose[count++] = i;
+    else if (!controls.empty()) *controls[i] += end.control;
+  }
+  if (count == 0) return;
+  sample_controlled_lights(scene, std::span(ends).first(count), random, counts);
+  for (std::size_t k = 0; k < count; ++k) {
+    layers[whose[k]][ends[k].layer] += ends[k].light;
+    *controls[whose[k]] += ends[k].control;
+  }
 }
 
 }  // namespace tempolux

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lib/core/random.h"
@@ -113,6 +114,10 @@ struct LightControl {
   Rgb direct{0.0f}, specular{0.0f};   ///< by layer: sampled less exact [W/m^2/sr]; 0 in the mean
   float sampled = 0, seen = 0;        ///< samples without and with shadows, mean of the channels
   int seen_matte = 0;                 ///< paths that ended at the camera ray's own hit
+  LightControl& operator+=(const LightControl& o) {
+    direct += o.direct; specular += o.specular; sampled += o.sampled; seen += o.seen; seen_matte += o.seen_matte;
+    return *this;
+  }
 };
 
 /// The scene as a renderer sees it; all must outlive it.
@@ -143,7 +148,10 @@ struct EyeRay {
   RayCone cone;
   std::uint32_t first_light = 0, lights = 1;   ///< with a control: which samples' light a matte end takes the mean of
 };
-Layers trace_eye_path(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random, const DiffuseLight* diffuse_light,
-                      RayCounts& counts, LightControl* control);
+/// Several samples of a pixel, at most kPathsTogether: layers[i] of eyes[i], by the numbers of sample first + i. `controls`:
+/// empty, or one for each (several may be the same); then their matte ends sample the lights together.
+inline constexpr std::size_t kPathsTogether = 8;
+void trace_eye_paths(const RenderScene& scene, std::span<const EyeRay> eyes, const PixelRandom& random, std::uint32_t first,
+                     const DiffuseLight* diffuse_light, RayCounts& counts, std::span<LightControl* const> controls, Layers* layers);
 
 }  // namespace tempolux

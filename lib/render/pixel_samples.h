@@ -80,24 +80,30 @@ template <class Control, class Add>
 void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const DiffuseLight* light,
                      std::size_t pixel, int x, int y, int first, int count, int lights, RayCounts& counts, const Control& control, const Add& add) {
   const int start = first;
-  constexpr int kTogether = 8, kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
+  constexpr int kTogether = int(kPathsTogether), kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
   for (const int end = first + count; first < end; first += kTogether) {
     const int n = std::min(kTogether, end - first);
     Ray rays[kTogether];
     Hit hits[kTogether];
+    const PixelRandom random(seed, pixel, std::uint32_t(first));
     for (int i = 0; i < n; ++i) {
-      const Vec2 jitter = PixelRandom(seed, pixel, std::uint32_t(first + i)).get2(0, Purpose::pixel);
+      const Vec2 jitter = random.of_sample(std::uint32_t(first + i)).get2(0, Purpose::pixel);
       rays[i] = view.ray(float(x) + jitter.x, float(y) + jitter.y);
     }
     if (n < kFewest)
       for (int i = 0; i < n; ++i) scene.tracer.intersect(rays[i], hits[i]);
     else
       scene.tracer.intersect({rays, std::size_t(n)}, {hits, std::size_t(n)});
+    EyeRay eyes[kTogether];
+    LightControl* controls[kTogether];
+    Layers layers[kTogether];
     for (int i = 0; i < n; ++i) {
-      const auto first_light = std::uint32_t(start + (first + i - start) * lights);
-      add(first + i, hits[i].surface, trace_eye_path(scene, {rays[i], hits[i], view.cone(), first_light, std::uint32_t(lights)},
-                                    PixelRandom(seed, pixel, std::uint32_t(first + i)), light, counts, control(first + i)));
+      eyes[i] = {rays[i], hits[i], view.cone(), std::uint32_t(start + (first + i - start) * lights), std::uint32_t(lights)};
+      controls[i] = control(first + i);
     }
+    trace_eye_paths(scene, {eyes, std::size_t(n)}, random, std::uint32_t(first), light, counts,
+                    {controls, std::size_t(controls[0] ? n : 0)}, layers);
+    for (int i = 0; i < n; ++i) add(first + i, hits[i].surface, layers[i]);
   }
 }
 

@@ -79,6 +79,29 @@ TEST(LargeLight, PointsOnARectangleAreUniformInSolidAngle) {
   }
 }
 
+// What is asked for together has nothing to do with each other: far and near points, one behind the light, one beside it in
+// its plane, small numbers of them, a triangle as well.
+TEST(LargeLight, ManyPointsAtOnceAreThoseOneByOne) {
+  const std::vector<Vec3> from{{0, 0, 0}, {0.9f, -0.7f, 0.5f}, {0, 0, 2}, {3, 1, -2}, {0.2f, 0.1f, -14}, {5, 0, 1}, {0, 0, 0.999f}, {-2, 2, 0.9f}};
+  const auto corners = square_facing_down({0, 0, 1}, 1);
+  const LargeLight rectangle = large_lights(corners)[0], triangle = large_lights({corners[0], corners[1], corners[2]})[0];
+  for (const LargeLight& light : {rectangle, triangle})
+    for (std::size_t count = 1; count <= from.size(); ++count) {
+      std::vector<Vec2> u;
+      for (std::size_t i = 0; i < count; ++i) u.push_back(sobol_owen_2d(std::uint32_t(i), count));
+      std::vector<LargeLightPoint> together(count);
+      const unsigned found = sample_large_light(light, std::span(from).first(count), u, together.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        LargeLightPoint alone;
+        ASSERT_EQ(found >> i & 1, unsigned(sample_large_light(light, from[i], u[i], alone))) << i;
+        ASSERT_EQ(together[i].position, alone.position) << i;
+        ASSERT_EQ(together[i].wi, alone.wi) << i;
+        ASSERT_EQ(together[i].pdf_solid_angle, alone.pdf_solid_angle) << i;
+      }
+      EXPECT_EQ(found, 0xdbu & ((1u << count) - 1));   // all but those behind it and in its plane
+    }
+}
+
 TEST(LargeLight, BothSidesOfATwoSidedOneShine) {
   const auto corners = square_facing_down({0, 0, 1}, 1);
   const LargeLight light = large_lights(corners, true)[0];
