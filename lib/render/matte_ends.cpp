@@ -43,7 +43,7 @@ void add_rest(const RenderScene& scene, MatteEnd& end, const LightSample& light,
 }
 
 void take(const RenderScene& scene, const PixelRandom& random, std::span<const Sampling> samplings, RayCounts& counts) {
-  thread_local std::array<LightSample, kTogether> large;
+  thread_local std::array<LightSample, kTogether> large, rest;
   const Lights::Apart* at[kTogether];
   Vec2 u[kTogether];
   for (std::size_t i = 0; i < samplings.size(); ++i) {
@@ -51,13 +51,14 @@ void take(const RenderScene& scene, const PixelRandom& random, std::span<const S
     u[i] = random.of_sample(samplings[i].number).get2(samplings[i].end->bounce, Purpose::light_point);
   }
   const unsigned found = scene.lights.sample_large({at, samplings.size()}, {u, samplings.size()}, large.data());
+  unsigned rest_found = 0;
   for (std::size_t i = 0; i < samplings.size(); ++i) {
-    MatteEnd& end = *samplings[i].end;
-    LightSample light;
-    const Vec2 choice = random.of_sample(samplings[i].number).get2(end.bounce, Purpose::light_choice);
-    const bool rest = scene.lights.sample_rest(*at[i], choice, light);
-    if (found >> i & 1) add_large(scene, end, large[i], counts);
-    if (rest) add_rest(scene, end, light, counts);
+    const Vec2 choice = random.of_sample(samplings[i].number).get2(samplings[i].end->bounce, Purpose::light_choice);
+    rest_found |= unsigned(scene.lights.sample_rest(*at[i], choice, rest[i])) << i;
+  }
+  for (std::size_t i = 0; i < samplings.size(); ++i) {
+    if (found >> i & 1) add_large(scene, *samplings[i].end, large[i], counts);
+    if (rest_found >> i & 1) add_rest(scene, *samplings[i].end, rest[i], counts);
   }
 }
 

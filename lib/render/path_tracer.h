@@ -60,30 +60,26 @@ class EyePath {
 class PixelRandom {
  public:
   PixelRandom(std::uint64_t seed, std::uint64_t pixel, std::uint32_t sample)
-      : key_(mix64(mix64(seed ^ 0x8f14e45fceea167aull) + pixel * 0x9e3779b97f4a7c15ull)), sample_(sample), plain_(key_, sample) {}
+      : key_(mix64(mix64(seed ^ 0x8f14e45fceea167aull) + pixel * 0x9e3779b97f4a7c15ull)), sample_(sample) {}
 
   /// Those of another sample of the pixel.
-  PixelRandom of_sample(std::uint32_t sample) const {
-    PixelRandom other = *this;
-    other.sample_ = sample;
-    other.plain_ = PathRandom(key_, sample);
-    return other;
-  }
+  PixelRandom of_sample(std::uint32_t sample) const { return {key_, sample}; }
   Vec2 get2(std::uint32_t bounce, Purpose purpose) const {
-    return bounce < kSobolBounces ? sobol_owen_2d(sample_, key(bounce, purpose)) : plain_.get2(bounce, purpose);
+    return bounce < kSobolBounces ? sobol_owen_2d(sample_, key(bounce, purpose)) : plain().get2(bounce, purpose);
   }
   float get1(std::uint32_t bounce, Purpose purpose) const {
-    return bounce < kSobolBounces ? sobol_owen_1d(sample_, key(bounce, purpose)) : plain_.get1(bounce, purpose);
+    return bounce < kSobolBounces ? sobol_owen_1d(sample_, key(bounce, purpose)) : plain().get1(bounce, purpose);
   }
 
  private:
+  PixelRandom(std::uint64_t key, std::uint32_t sample) : key_(key), sample_(sample) {}
+  PathRandom plain() const { return {key_, sample_}; }
   static constexpr std::uint32_t kSobolBounces = 4;
   std::uint64_t key(std::uint32_t bounce, Purpose purpose) const {
     return key_ + (std::uint64_t(bounce) * 64 + std::uint64_t(purpose)) * 0xd1342543de82ef95ull;
   }
   std::uint64_t key_;
   std::uint32_t sample_;
-  PathRandom plain_;
 };
 
 /// Counters of one thread's work, for stats.
