@@ -15,8 +15,8 @@
 namespace tempolux::tools {
 namespace {
 
-/// EXR with or without NaN; any other format as lib/image reads it.
-Image load(const std::string& path, bool allow_nan) {
+/// EXR with or without NaN, its R, G and B alone if it has them; any other format as lib/image reads it.
+Image load(const std::string& path, bool allow_nan, bool only_rgb = false) {
   std::string magic(4, '\0');
   if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
     magic.resize(std::fread(magic.data(), 1, magic.size(), file));
@@ -25,8 +25,12 @@ Image load(const std::string& path, bool allow_nan) {
   if (magic != std::string("\x76\x2f\x31\x01", 4)) return load_image(path);
   ExrReadOptions options;
   options.allow_nan = allow_nan;
+  options.only_rgb = only_rgb;
   return load_exr(path, options);
 }
+
+/// What a picture of it needs.
+Image load_shown(const std::string& path, const PictureOptions& options) { return load(path, true, options.layer.empty()); }
 
 constexpr std::string_view kHistory = "tempolux:history";
 
@@ -114,7 +118,7 @@ Facts image_difference(const std::string& a, const std::string& b) {
 }
 
 void write_picture(const std::string& path, const PictureOptions& options, Output& output) {
-  const Image image = load(path, true);
+  const Image image = load_shown(path, options);
   const PreviewOptions preview{options.layer, options.exposure_stops};
   save_png(output.temporary_path(), named(path, [&] { return make_picture(image, preview); }));
 }
@@ -129,7 +133,7 @@ void write_sheet(const std::vector<std::string>& paths, const PictureOptions& op
   if (!preview.exposure_stops) {  // frames are read twice, so that one at a time is in memory
     std::vector<double> stops;
     for (const std::string& path : paths) {
-      const Image image = load(path, true);
+      const Image image = load_shown(path, options);
       stops.push_back(named(path, [&] { return auto_exposure_stops(image, options.layer); }));
       step();
     }
@@ -137,7 +141,7 @@ void write_sheet(const std::vector<std::string>& paths, const PictureOptions& op
   }
   std::vector<Picture> pictures;
   for (const std::string& path : paths) {
-    const Image image = load(path, true);
+    const Image image = load_shown(path, options);
     const Picture picture = named(path, [&] { return make_picture(image, preview); });
     pictures.push_back(contact_sheet({picture}, 1, options.tile_width));
     step();

@@ -35,6 +35,7 @@ void save_exr(const std::string& path, const Image& image, const ExrWriteOptions
 struct ExrReadOptions {
   std::uint64_t max_pixels = 512ull << 20;  ///< of the data window and of the display window
   bool allow_nan = false;                   ///< NaN anywhere and infinity in colour are let through
+  bool only_rgb = false;                    ///< of a file that has R, G and B these alone
 };
 
 /// Reads a scan-line or tiled single-part EXR (of a multi-part file: the first part; of mip maps: the full

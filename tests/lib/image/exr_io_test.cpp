@@ -62,6 +62,22 @@ TEST(Exr, FloatsAndIdsComeBackToTheBit) {
   }
 }
 
+TEST(Exr, ColourAloneIsRead) {
+  const Folder folder;
+  Image image = random_image(67, 131);
+  save_exr(folder / "a.exr", image);
+  const Image back = load_exr(folder / "a.exr", {.only_rgb = true});
+  ASSERT_EQ(back.channels.size(), 3u);
+  for (const char* name : {"B", "G", "R"}) {
+    ASSERT_NE(back.find(name), nullptr);
+    EXPECT_EQ(std::memcmp(back.find(name)->values.data(), image.find(name)->values.data(), 4 * image.pixel_count()), 0) << name;
+  }
+  // Without one of them there is no colour: all is read.
+  std::erase_if(image.channels, [](const Channel& channel) { return channel.name == "G"; });
+  save_exr(folder / "b.exr", image);
+  EXPECT_EQ(load_exr(folder / "b.exr", {.only_rgb = true}).channels.size(), image.channels.size());
+}
+
 TEST(Exr, DenormalsComeBackUnderFlushToZero) {
   const Folder folder;
   const Image image = random_image(5, 4);
