@@ -9,14 +9,15 @@ a light gets a lamp and a dim sky; in one with lights without extent no surface 
 tracer cannot find those in a mirror, and hardly in gloss or glass as smooth as that (the variance of their light goes with
 roughness^-4), so such layers may stay undecided; one scene is made rougher still (ROUGHER). Where things stand (skins, morphs,
 instances) is learnt from a few photons of a sun. The photon chain takes 12 million photons (4, if those cost 8 CPU s or
-more: in closed rooms each is stored many times) and 16 shadow rays per point, not its defaults: between seeds both make most of the
-difference, and cost less than more seeds. Records are the default's. Prints a table; writes found-layers.json and found.png
-(path tracer left, photon chain right, each pair at its own exposure) to --out.
+more: in closed rooms each is stored many times), 80k points and 16 shadow rays for each, not its defaults: between seeds
+photons and shadow rays make most of the difference, and cost less than more seeds; points nearer to each other tell the light
+on both sides of a narrow gap apart (the ground is put just below). Records are the default's. Prints a table; writes
+found-layers.json and found.png (path tracer left, photon chain right, each pair at its own exposure) to --out.
 A first run of either way tells the variance and the cost of every layer; then as many samples per pixel of the one and seeds of
-the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows; four times that
-if else one would be too wide to tell. An error bar is that of 95 %, by Student's t for the few seeds. A layer agrees if the means differ by at most 1.5 % and the bar is no wider
-than that; it does not if they differ by more than 1.5 % plus the bar; else it is undecided. Layers below 0.1 % of the picture
-are listed, but not judged.
+the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows. Where a layer
+would stay undecided, once more: below half of that, for four times the CPU time. An error bar is that of 95 %, by Student's t
+for the few seeds. A layer agrees if the means differ by at most 1.5 % and the bar is no wider than that; it does not if they
+differ by more than 1.5 % plus the bar; else it is undecided. Layers below 0.1 % of the picture are listed, but not judged.
 """
 import argparse
 import json
@@ -40,10 +41,10 @@ LIMIT = 0.015           # of a layer's mean: what the two may differ by
 WANTED_BAR = 0.01       # of a judged layer's mean
 PILOT, PILOT_SEEDS = 32, 3   # samples per pixel and seeds that tell how many are needed
 MOST_SEEDS = 16
-PATIENCE = 4            # times --cpu where a bar would be wider than LIMIT
+PATIENCE = 4            # times --cpu where a layer would stay undecided
 ROUGHER = {"24_animation_pointer": 0.7}   # black but for spots of lights without extent: at 0.1 one path in 10^5 brings half of a layer
 SLOW_SEED = 8           # CPU s with a third of the photons: then that is enough
-LIGHT_SAMPLES = 16      # shadow rays per irradiance point
+POINTS, LIGHT_SAMPLES = "80k", 16   # irradiance points, shadow rays for each
 
 
 class Refused(Exception):
@@ -109,7 +110,7 @@ class Found:
         photon_map, points, cache, image = (self.folder / f"chain.{end}" for end in ("photons", "irradpoints", "irradcache", "exr"))
         common = [scene, "--frame", FRAME, "-q", "--seed", seed, *self.sky, *options]
         runs = [self.tool("photon-trace", *common, "--photons", photons, "-o", photon_map),
-                self.tool("irradcache-build", *common, "--photons", photon_map, "--light-samples", LIGHT_SAMPLES, "--keep-points", points,
+                self.tool("irradcache-build", *common, "--photons", photon_map, "--point-count", POINTS, "--light-samples", LIGHT_SAMPLES, "--keep-points", points,
                           "--size", size, "-o", cache),
                 self.tool("frame-render", *common, "--size", size, "--irradcache", cache, "--points", points, "--photons",
                           photon_map, "--channels", "RGBA,layers", "--compression", "none", "-o", image)]
@@ -136,22 +137,24 @@ class Found:
                 photons = self.photons
             chain, row["chain_cpu_s"] = self.chains(scene, range(1, PILOT_SEEDS + 1), photons)
             pilot = path, halves, row["path_cpu_s"], chain, row["chain_cpu_s"]
-            widest, spp, seeds = samples_wanted(*pilot, self.cpu)
-            if widest > LIMIT:
-                _, spp, seeds = samples_wanted(*pilot, PATIENCE * self.cpu)
-            if spp > PILOT:
-                path, halves, row["path_cpu_s"], _ = self.reference(scene, spp)
-            if seeds > PILOT_SEEDS:
-                more, cpu = self.chains(scene, range(PILOT_SEEDS + 1, seeds + 1), photons)
-                chain, row["chain_cpu_s"] = chain + more, row["chain_cpu_s"] + cpu
-            row |= {"spp": spp, "seeds": seeds, "photons": photons}
+            for patience in (1, PATIENCE):
+                widest, spp, seeds = samples_wanted(*pilot, patience * self.cpu, WANTED_BAR if patience == 1 else WANTED_BAR / 2)
+                if widest > LIMIT and patience == 1:
+                    continue
+                if spp > PILOT:
+                    path, halves, row["path_cpu_s"], _ = self.reference(scene, spp)
+                if seeds > len(chain):
+                    more, cpu = self.chains(scene, range(len(chain) + 1, seeds + 1), photons)
+                    chain, row["chain_cpu_s"] = chain + more, row["chain_cpu_s"] + cpu
+                row["layers"] = {layer: layer_row(layer, path, halves, chain) for layer in LAYERS}
+                if all(layer["verdict"] != "undecided" for layer in row["layers"].values()):
+                    break
+            row |= {"spp": spp, "seeds": len(chain), "photons": photons}
         except Refused as refusal:
             row["exit"], row["message"] = refusal.args
             return row
         row["exit"] = 0
         row["not_finite"] = path.not_finite() + chain[0].not_finite()
-        for layer in LAYERS:
-            row["layers"][layer] = layer_row(layer, path, halves, chain)
         scale = brightness(path)
         row["pictures"] = [self.shown(file.stem, way, image, scale) for way, image in (("path", path), ("photons", chain[0]))]
         return row
@@ -200,7 +203,7 @@ def is_judged(path, layer, chain):
     return max(mean(path, layer), chain) >= JUDGED * mean(path)
 
 
-def samples_wanted(path, halves, path_cpu, chain, chain_cpu, most_cpu):
+def samples_wanted(path, halves, path_cpu, chain, chain_cpu, most_cpu, wanted_bar):
     """(widest error bar, samples per pixel, seeds) by a first run of both: see above."""
     variances = []    # of one sample per pixel, of one seed; of the mean
     for layer in LAYERS:
@@ -209,14 +212,14 @@ def samples_wanted(path, halves, path_cpu, chain, chain_cpu, most_cpu):
             variances.append((error_of_mean(halves, layer) ** 2 * PILOT / size ** 2, statistics.variance(seeds) / size ** 2))
     best = (math.inf, 0, PILOT, PILOT_SEEDS)
     for seeds in range(PILOT_SEEDS, MOST_SEEDS + 1):
-        left = [WANTED_BAR ** 2 - student(seeds - 1) ** 2 * v / seeds for _, v in variances]
+        left = [wanted_bar ** 2 - student(seeds - 1) ** 2 * v / seeds for _, v in variances]
         wanted = max((1.96 ** 2 * v / room if room > 0 else math.inf for (v, _), room in zip(variances, left)), default=0)
         paid = (most_cpu - seeds * chain_cpu / len(chain)) / (path_cpu / PILOT)
         spp = max(PILOT, 16 * math.ceil(min(wanted, paid) / 16))
         widest = max((error_bar(math.sqrt(v / spp), math.sqrt(w / seeds), seeds) for v, w in variances), default=0)
         cost = seeds * chain_cpu / len(chain) + spp * path_cpu / PILOT
         if seeds == PILOT_SEEDS or cost <= 1.1 * most_cpu:
-            best = min(best, (max(widest, WANTED_BAR), cost, spp, seeds))
+            best = min(best, (max(widest, wanted_bar), cost, spp, seeds))
     return best[0], *best[2:]
 
 
@@ -307,7 +310,7 @@ def found(bench, _=None, only="", size="320x180", cpu=120, photons=12_000_000):
             same = work.same_for_threads(file)
             good = good and same
             notes.append(f"{file.name}: {'the same' if same else 'OTHER'} bytes with 1, 2, 3 and 7 threads.")
-    notes += [f"Photon chain: {LIGHT_SAMPLES} shadow rays per irradiance point, else its defaults. Where a least roughness is "
+    notes += [f"Photon chain: {POINTS} irradiance points, {LIGHT_SAMPLES} shadow rays for each, else its defaults. Where a least roughness is "
               "named (lights without extent beside smooth surfaces), both ways render surfaces so rough."]
     notes += summary(rows)
     (bench.out / "found-layers.json").write_text(json.dumps(rows, indent=1))
