@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures what RESULTS.md says: error against time, and the required figures.
 
-    make -f Makefile.example bench                       everything, about an hour on two idle cores
+    make -f Makefile.example bench                       everything, about two hours on two idle cores
     python3 tests/bench/bench.py --only threads,start    some parts again; the page keeps the others
     python3 tests/bench/bench.py --page                  the page alone, from what was measured before
 """
