@@ -25,6 +25,7 @@ def options():
     parser.add_argument("--results", type=Path, default=project / "RESULTS.md", help="the page [RESULTS.md]")
     parser.add_argument("--docs", type=Path, default=project / "docs", help="folder of its figures [docs]")
     parser.add_argument("--only", default=",".join(["sweep", *FIGURES]), help="parts, by comma: [%(default)s]")
+    parser.add_argument("--scenes", default="", help="part found: regular expression, these files alone; the others as measured before")
     parser.add_argument("--reference-samples", type=int, default=2048,
                         help="per pixel, of each reference; 8192 for errors below 0.001 [2048]")
     parser.add_argument("--quick", action="store_true", help="tiny sizes: does every script still run?")
@@ -40,11 +41,11 @@ def draw_curves(bench, peers):
     (bench.out / "sweep.json").write_text(json.dumps(made))
 
 
-def measure(bench, name, peers):
+def measure(bench, name, peers, scenes):
     """One required figure; kept as JSON."""
     load = os.getloadavg()[0]
     begin = time.monotonic()
-    found = FIGURES[name](bench, peers)
+    found = FIGURES[name](bench, peers, **({"only": scenes} if name == "found" else {}))
     found |= {"machine": machine(bench.project), "load": f"{load:.1f}", "seconds": round(time.monotonic() - begin, 1)}
     (bench.out / f"{name}.json").write_text(json.dumps(found, indent=1))
     print(results_page.table(found["header"], found["rows"]) + "".join(note + "\n" for note in found["notes"])
@@ -62,7 +63,7 @@ def main():
             if name == "sweep":
                 draw_curves(bench, peers["peers"])
             elif name in FIGURES:
-                measure(bench, name, peers["peers"])
+                measure(bench, name, peers["peers"], args.scenes)
             else:
                 raise SystemExit(f"--only: no part is called '{name}'; there are sweep,{','.join(FIGURES)}")
         except Missing as reason:

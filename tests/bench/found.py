@@ -2,7 +2,7 @@
 """Scenes made by others, path-traced and by the photon chain: does each render, and do the layers agree?
 
     python3 tests/bench/found.py                        all of ../shared/scenes/found/gltf
-    python3 tests/bench/found.py --only 'Fox|17_ior'    some of them
+    python3 tests/bench/found.py --only 'Fox|17_ior'    some of them; the others' rows are kept, with the commit they are of
 
 A file without a camera is copied to a temporary folder and gets one that sees all of it, and a ground below; a file without
 a light gets a lamp and a dim sky; in one with lights without extent no surface is smoother than a roughness of 0.1: the path
@@ -32,7 +32,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
 from furnish import LEAST_ROUGHNESS, Asset, furnished, roughened, with_sun
-from measure import Bench, Missing, figure
+from measure import Bench, Missing, figure, machine
 
 LAYERS = ("emission", "specular", "direct", "caustic", "indirect")
 FRAME = 10
@@ -40,7 +40,7 @@ JUDGED = 0.001          # of the picture: layers below are listed only
 LIMIT = 0.015           # of a layer's mean: what the two may differ by
 WANTED_BAR = 0.01       # of a judged layer's mean
 PILOT, PILOT_SEEDS = 32, 3   # samples per pixel and seeds that tell how many are needed
-MOST_SEEDS = 16
+MOST_SEEDS = 40
 PATIENCE = 4            # times --cpu where a layer would stay undecided
 ROUGHER = {"24_animation_pointer": 0.7}   # black but for spots of lights without extent: at 0.1 one path in 10^5 brings half of a layer
 SLOW_SEED = 8           # CPU s with a third of the photons: then that is enough
@@ -66,7 +66,8 @@ class Found:
         done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
         lines = done.stderr.splitlines()
         if done.returncode != 0:
-            raise Refused(done.returncode, next((line for line in lines if name in line), done.stderr[:200]))
+            message = next((line for line in lines if name in line), done.stderr[:200])
+            raise Refused(done.returncode, re.sub(re.escape(str(self.folder)) + r"/\w+/", "", message))
         return json.loads(stats.read_text()), [line for line in lines if "warning" in line]
 
     def usable(self, file):
@@ -156,14 +157,13 @@ class Found:
         row["exit"] = 0
         row["not_finite"] = path.not_finite() + chain[0].not_finite()
         scale = brightness(path)
-        row["pictures"] = [self.shown(file.stem, way, image, scale) for way, image in (("path", path), ("photons", chain[0]))]
+        for picture, image in zip(self.shown(file), (path, chain[0])):
+            exr.write(picture, image.width, image.height, {c: [v * scale for v in image.channels[c]] for c in "RGB"})
         return row
 
-    def shown(self, stem, way, image, scale):
-        """The picture at an exposure of its own, for the sheet."""
-        path = self.pictures / f"{stem}-{way}.exr"
-        exr.write(path, image.width, image.height, {c: [v * scale for v in image.channels[c]] for c in "RGB"})
-        return path
+    def shown(self, file):
+        """By paths, by photons: pictures at an exposure of their own, for the sheet."""
+        return [self.pictures / f"{file.stem}-{way}.exr" for way in ("path", "photons")]
 
     def same_for_threads(self, file):
         """Are the bytes of photons, cache and frames the same for 1, 2, 3 and 7 threads?"""
@@ -255,6 +255,13 @@ def expected_refusal(file, row):
     return row["exit"] == 2 and any(f"{name} is not supported" in row["message"] for name in required)
 
 
+def is_good(file, row):
+    if row["exit"] != 0:
+        return expected_refusal(file, row)
+    return (not row["not_finite"] and row.get("same_bytes", True)
+            and all(r["verdict"] in ("agrees", None) for r in row["layers"].values()))
+
+
 def table_rows(name, row):
     """Strings: the file's line, one for each layer that is not black."""
     if row["exit"] != 0:
@@ -289,37 +296,40 @@ def found(bench, _=None, only="", size="320x180", cpu=120, photons=12_000_000):
         raise Missing("../shared/scenes/found/gltf is absent")
     if bench.quick:
         only, size, cpu, photons = only or "CornellBox|BoxDraco", bench.size, 0, 10_000
-    files = sorted(p for p in folder.rglob("*.gl*") if p.suffix in (".gltf", ".glb") and re.search(only, str(p)))
-    rows, lines, notes, good, pictures, rendered = {}, [], [], True, [], []
+    files = {str(p.relative_to(folder)): p for p in sorted(folder.rglob("*.gl*")) if p.suffix in (".gltf", ".glb")}
+    kept, commit = bench.out / "found-layers.json", machine(bench.project).split()[-1]
+    rows = json.loads(kept.read_text()) if only and kept.exists() and not bench.quick else {}
+    measured = [name for name in files if re.search(only, name)]
     with tempfile.TemporaryDirectory(dir=bench.out) as temporary:
         work = Found(bench, Path(temporary), size, cpu, photons)
-        for file in files:
-            name = str(file.relative_to(folder))
-            row = rows[name] = work.compare(file)
-            for line in table_rows(name, row):
+        for name in measured:
+            rows[name] = work.compare(files[name]) | {"commit": commit}
+            for line in table_rows(name, rows[name]):
                 print("  ".join(line), flush=True)
-                lines.append(line)
-            notes += [f"{name}: {warning}" for warning in row.get("warnings", [])]
-            if row["exit"] != 0:
-                good = good and expected_refusal(file, row)
-                continue
-            good = good and not row["not_finite"] and all(r["verdict"] in ("agrees", None) for r in row["layers"].values())
-            pictures += row.pop("pictures")
-            rendered.append(file)
-        for file in rendered[::max(1, len(rendered) // 5)][:0 if bench.quick else 5]:
-            same = work.same_for_threads(file)
-            good = good and same
-            notes.append(f"{file.name}: {'the same' if same else 'OTHER'} bytes with 1, 2, 3 and 7 threads.")
-    notes += [f"Photon chain: {POINTS} irradiance points, {LIGHT_SAMPLES} shadow rays for each, else its defaults. Where a least roughness is "
-              "named (lights without extent beside smooth surfaces), both ways render surfaces so rough."]
+            kept.write_text(json.dumps(rows, indent=1))
+        rows = {name: rows[name] for name in files if name in rows}
+        rendered = [name for name, row in rows.items() if row["exit"] == 0]
+        for name in rendered[::max(1, len(rendered) // 5)][:0 if bench.quick else 5]:
+            if name in measured or "same_bytes" not in rows[name]:
+                rows[name]["same_bytes"] = work.same_for_threads(files[name])
+        pictures = [picture for name in rendered for picture in work.shown(files[name])]
+    kept.write_text(json.dumps(rows, indent=1))
+    good = all(is_good(files[name], row) for name, row in rows.items())
+    notes = [f"{name}: {warning}" for name, row in rows.items() for warning in row.get("warnings", [])]
+    notes += [f"{Path(name).name}: {'the same' if row['same_bytes'] else 'OTHER'} bytes with 1, 2, 3 and 7 threads."
+              for name, row in rows.items() if "same_bytes" in row]
+    notes += [f"Photon chain: {POINTS} irradiance points, {LIGHT_SAMPLES} shadow rays for each, else its defaults. Where a least "
+              "roughness is named (lights without extent beside smooth surfaces), both ways render surfaces so rough."]
+    notes += [f"Measured at commit {other}: {', '.join(Path(name).stem for name, row in rows.items() if row['commit'] == other)}."
+              for other in sorted({row["commit"] for row in rows.values()} - {commit})]
     notes += summary(rows)
-    (bench.out / "found-layers.json").write_text(json.dumps(rows, indent=1))
     if pictures:
         bench.run([bench.bin / "tempolux-info", "--sheet", bench.out / "found.png", "--columns", 6, "--exposure", 0, *pictures])
     return figure("Scenes made by others, path tracer and photon chain",
                   "all render or are refused by name; means of layers within 1.5 %; the same bytes for any number of threads",
                   ["file, layer", "", "path tracer, mean", "photon chain, mean", "chain / path - 1, error bar", "CPU s, path tracer and chain"],
-                  lines, None if bench.quick or only else good, notes)
+                  [line for name, row in rows.items() for line in table_rows(name, row)],
+                  good if len(rows) == len(files) and not bench.quick else None, notes)
 
 
 def main():
