@@ -19,7 +19,7 @@ struct FrameOptions {
   int max_samples = 1 << 20;            ///< never more than this for target_error
   /// > 0: after `samples` everywhere, more where pixels are uncertain: n = 12 (sigma / (12 pixel_error (L + 0.1 mean)))^(3/4),
   /// sigma the standard deviation of a sample as far as stratification leaves it, L the radiance, both around the pixel, L at
-  /// most 4 times the picture's mean. So spread they give the least error for their number. sigma and L are those
+  /// most the picture's mean. So spread they give the least error for their number. sigma and L are those
   /// of the neighbouring pixels, whose samples are independent: no bias. Of edges it is that of the 8 around it and
   /// between them, half of their variance, of all else of 24. A pixel that still stands out by its own samples gets as many as
   /// those call for, and its neighbours what that takes from it: no bias of the mean around it. See adaptive_frame.h.

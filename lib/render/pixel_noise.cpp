@@ -6,7 +6,6 @@ namespace tempolux {
 namespace {
 
 constexpr double kBetween = 0.1, kSharp = 0.5;   // of its variance: more samples there make less of the picture's error
-constexpr double kBright = 4;          // times the picture's mean: what is brighter is seen as white, and its error so
 // Samples that are stratified err as n^(-5/6) or so. The least error for a number of samples has n ~ sigma^(2 / (1 + 10/6)).
 constexpr int kLightsTogether = 4;     // samples of the lights at a place where only they are uncertain
 constexpr double kStratified = 0.75, kTypical = 12;
@@ -74,7 +73,7 @@ double PixelNoise::level_around(int x, int y) const {
 }
 
 double PixelNoise::wanted_samples(double sigma, double level) const {
-  const double error = options_.pixel_error * (std::min(level, kBright * picture_) + 0.1 * picture_);
+  const double error = options_.pixel_error * (std::min(level, picture_) + 0.1 * picture_);
   return error > 0 ? kTypical * std::pow(sigma / (kTypical * error), kStratified) : 0;
 }
 
