@@ -45,7 +45,7 @@ def light(bench, name, stem, seed, settings, size, keep):
         bench.run([build, "points", *common, "--photons", photons, *settings.points, "-o", points, "--stats", stats[1]])
         bench.run([build, "records", *common, "--points", points, *gather, "--stats", stats[2]])
         return stats
-    bench.run([build, *common, "--photons", photons, *settings.points, *gather, "--stats", stats[2]])
+    bench.run([build, *common, "--photons", photons, *settings.points, "--keep-points", points, *gather, "--stats", stats[2]])
     return [stats[0], stats[2]]
 
 
@@ -64,9 +64,7 @@ def frame(bench, name, seed, settings, size=None, fresh=False):
         files = bench.out / "frames" / stem
         try:
             light(bench, name, stem, seed, settings, size, keep)
-            spare = ["--points", keep[1]] if settings.steps else ["--photons", keep[0]]
-            if settings.steps and settings.caustics:
-                spare += ["--photons", keep[0]]
+            spare = ["--points", keep[1], *(["--photons", keep[0]] if settings.caustics or not settings.steps else [])]
             bench.run([tools[2], scene, "--frame", number, "--irradcache", keep[2], *spare, "--seed", seed, "--size", size,
                        *settings.pixels, "--channels", "RGBA,layers,id", "-q", "-o", f"{files}.exr",
                        "--stats", f"{files}.json"])
