@@ -15,7 +15,7 @@ on both sides of a narrow gap apart (the ground is put just below). Records are 
 found-layers.json and found.png (path tracer left, photon chain right, each pair at its own exposure) to --out.
 A first run of either way tells the variance and the cost of every layer; then as many samples per pixel of the one and seeds of
 the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows. Where a layer
-would stay undecided, once more: below half of that, for four times the CPU time. An error bar is that of 95 %, by Student's t
+would stay undecided, once more: below half of that, for twice the CPU time. An error bar is that of 95 %, by Student's t
 for the few seeds. A layer agrees if the means differ by at most 1.5 % and the bar is no wider than that; it does not if they
 differ by more than 1.5 % plus the bar; else it is undecided. Layers below 0.1 % of the picture are listed, but not judged.
 """
@@ -41,7 +41,7 @@ LIMIT = 0.015           # of a layer's mean: what the two may differ by
 WANTED_BAR = 0.01       # of a judged layer's mean
 PILOT, PILOT_SEEDS = 32, 3   # samples per pixel and seeds that tell how many are needed
 MOST_SEEDS = 40
-PATIENCE = 4            # times --cpu where a layer would stay undecided
+PATIENCE = 2            # times --cpu where a layer would stay undecided
 ROUGHER = {"24_animation_pointer": 0.7}   # black but for spots of lights without extent: at 0.1 one path in 10^5 brings half of a layer
 SLOW_SEED = 8           # CPU s with a third of the photons: then that is enough
 POINTS, LIGHT_SAMPLES = "80k", 16   # irradiance points, shadow rays for each
