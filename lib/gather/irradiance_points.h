@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/photons/photons.h"
+#include "lib/gather/footprint_density.h"
 #include "lib/gather/point_density.h"
 #include "lib/irradcache/points.h"
 #include "lib/light/lights.h"
@@ -33,7 +34,7 @@ std::vector<IrradiancePoint> place_points(const SceneFrame& frame, const PointOp
 
 /// Fills in the irradiance of all points:
 /// - direct by light sampling, stratified shadow rays; under a coat times Bsdf::arrival_weight, as photons are stored;
-/// - caustic and indirect by the density of the photons of that kind (PointDensity).
+/// - caustic and indirect by the density of the photons of that kind (FootprintDensity, PointDensity).
 /// photon_shift is added to the photons' positions: scene space minus theirs. Same results for any number of
 /// threads.
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,

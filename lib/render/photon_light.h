@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "lib/density/irradiance_estimate.h"
-#include "lib/gather/point_density.h"
+#include "lib/gather/footprint_density.h"
 #include "lib/render/path_tracer.h"
 
 namespace tempolux {
@@ -19,7 +19,7 @@ struct PhotonLightOptions {
 
 /// Caustic and indirect irradiance from the photons of a map, each kind by its own k nearest. Biased: light is
 /// blurred over the radius of the estimate, and indirect light is lost at edges and corners within it; the bias falls
-/// with the photons' number. Caustic light is divided by the area that can be reached (PointDensity::estimate_sampled):
+/// with the photons' number. Caustic light is divided by the area that can be reached (FootprintDensity):
 /// right on slender things too, where it is uniform over them. Without caustic photons nothing is built for them.
 class PhotonLight : public DiffuseLight {
  public:
@@ -29,17 +29,16 @@ class PhotonLight : public DiffuseLight {
               const PhotonLightOptions& options);
 
   Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view, const Rgb* caustic) const override;
-  /// sparse_radius: m, of the estimate if it holds fewer photons than wanted, or none; else 0.
+  /// sparse_radius: m, over which light is averaged where photons are few (FootprintDensity); else 0.
   Rgb caustic(Vec3 position, Vec3 normal, float& sparse_radius) const;
   std::size_t photon_count() const { return (caustic_ ? caustic_->photon_count() : 0) + indirect_.size(); }
 
  private:
   Rgb indirect(Vec3 position, Vec3 normal) const;
 
-  std::unique_ptr<PointDensity> caustic_;   ///< null: no photon is of that kind
+  std::unique_ptr<FootprintDensity> caustic_;   ///< null: no photon is of that kind
   PhotonIndex indirect_;
   IrradianceOptions options_;
-  float caustic_radius_ = 0;                ///< m, at most
 };
 
 }  // namespace tempolux

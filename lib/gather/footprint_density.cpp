@@ -1,0 +1,272 @@
+#include "lib/gather/footprint_density.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "lib/core/frame.h"
+#include "lib/core/parallel.h"
+#include "lib/core/sampling.h"
+
+namespace tempolux {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kLeastRadius = 64;   ///< times Reach::offset(): an ellipsoid's height above the surface that floats can tell
+constexpr int kMostHalvings = 6;     ///< of a footprint's radius, where hardly any of it is surface
+constexpr std::size_t kLeavesAtOnce = 16;
+constexpr float kSamePlane = 0.999999f, kGolden = 0.6180340f;
+constexpr int kAreaProbes = 8;   ///< that must arrive where a footprint is not whole; their noise is that of one photon among k
+constexpr int kDraws = 4;
+enum : std::uint8_t { kUnknown, kWhole, kNotWhole };
+
+double share(Rgbd light) { return std::abs(light.r) + std::abs(light.g) + std::abs(light.b); }
+
+}  // namespace
+
+FootprintDensity::FootprintDensity(const Tracer& tracer, std::span<const formats::Photon> photons,
+                                   const FootprintOptions& options, std::uint8_t kinds, Vec3d shift)
+    : options_(options), area_(tracer), index_(photons, kinds, shift) {
+  if (empty()) return;
+  const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
+  leaves_ = std::make_unique<Leaf[]>(leaves);
+  extents_ = std::make_unique<std::atomic<Extent>[]>(index_.size());
+  parallel_chunks(leaves, kLeavesAtOnce, [&](std::size_t first, std::size_t last) {
+    thread_local NeighbourList found;
+    for (std::size_t i = first * kLeaf; i < last * kLeaf; ++i) {
+      Leaf& leaf = leaves_[i / kLeaf];
+      const std::size_t lane = i % kLeaf;
+      if (i >= index_.size()) {
+        leaf.x[lane] = kNaN;
+        continue;
+      }
+      const Vec3 position = index_.position(i);
+      const auto n = formats::decode_normal(photons[index_.source(i)].normal);
+      const float radius = radius_of(i, {n[0], n[1], n[2]}, found);
+      leaf.x[lane] = position.x, leaf.y[lane] = position.y, leaf.z[lane] = position.z;
+      leaf.nx[lane] = n[0], leaf.ny[lane] = n[1], leaf.nz[lane] = n[2];
+      leaf.inverse_r2[lane] = 1 / (radius * radius);
+    }
+  });
+  leaf_whole_ = std::make_unique<std::atomic<std::uint8_t>[]>(leaves);
+  build_nodes(area_.offset());
+}
+
+/// To the k-th of its neighbours.
+float FootprintDensity::radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const {
+  const int wanted = std::min(options_.neighbours + 1, kMaxNeighbours);   // it finds itself
+  index_.find_nearest({index_.position(photon), normal, options_.max_radius, kMinCos, kFlattening, kAllKinds}, wanted, found);
+  const float radius = int(found.count()) < wanted ? options_.max_radius : std::sqrt(found.distance2()[found.farthest()]);
+  return std::max(std::min(radius, options_.max_radius), kLeastRadius * area_.offset());
+}
+
+/// Boxes of all footprints in a subtree.
+void FootprintDensity::build_nodes(float slack) {
+  const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
+  std::vector<Box3> boxes(leaves);
+  parallel_chunks(leaves, kLeavesAtOnce, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first * kLeaf; i < std::min(last * kLeaf, index_.size()); ++i) {
+      const Leaf& leaf = leaves_[i / kLeaf];
+      const std::size_t lane = i % kLeaf;
+      const float radius = outer_radius(std::uint32_t(i));
+      const auto half = [&](float n) {   // of the ellipsoid's box
+        return radius * std::sqrt(std::max(0.0f, 1 - (1 - 1 / (kFlattening * kFlattening)) * n * n)) * 1.0001f + slack;
+      };
+      const Vec3 middle = index_.position(i), halves{half(leaf.nx[lane]), half(leaf.ny[lane]), half(leaf.nz[lane])};
+      boxes[i / kLeaf].add(middle - halves);
+      boxes[i / kLeaf].add(middle + halves);
+    }
+  });
+  do {
+    level_start_.push_back(nodes_.size());
+    std::vector<Box3> parents((boxes.size() + kChildren - 1) / kChildren);
+    for (std::size_t j = 0; j < parents.size(); ++j) {
+      Node node;
+      for (std::size_t c = 0; c < kChildren; ++c) {
+        const std::size_t child = kChildren * j + c;
+        for (int axis = 0; axis < 3; ++axis) {
+          node.lower[axis][c] = child < boxes.size() ? boxes[child].lower[axis] : kNaN;
+          node.upper[axis][c] = child < boxes.size() ? boxes[child].upper[axis] : kNaN;
+        }
+        if (child < boxes.size()) parents[j].add(boxes[child]);
+      }
+      nodes_.push_back(node);
+    }
+    boxes = std::move(parents);
+  } while (boxes.size() > 1);
+}
+
+void FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
+  struct Entry {
+    std::size_t level, node;
+  };
+  std::array<Entry, (kChildren - 1) * 12 + 1> stack;   // 2^31 photons have 9 levels
+  std::size_t depth = 0;
+  stack[depth++] = {level_start_.size() - 1, 0};
+  while (depth > 0) {
+    const auto [level, number] = stack[--depth];
+    const Node& node = nodes_[level_start_[level] + number];
+    std::array<int, kChildren> inside;
+    for (std::size_t c = 0; c < kChildren; ++c)   // NaN of a missing child is never inside
+      inside[c] = (position.x >= node.lower[0][c]) & (position.x <= node.upper[0][c]) & (position.y >= node.lower[1][c]) &
+                  (position.y <= node.upper[1][c]) & (position.z >= node.lower[2][c]) & (position.z <= node.upper[2][c]);
+    for (std::size_t c = 0; c < kChildren; ++c) {
+      if (!inside[c]) continue;
+      if (level == 0) scan_leaf(kChildren * number + c, position, normal, found);
+      else stack[depth++] = {level - 1, kChildren * number + c};
+    }
+  }
+}
+
+void FootprintDensity::scan_leaf(std::size_t number, Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
+  const Leaf& leaf = leaves_[number];
+  std::array<float, kLeaf> distance2;
+  std::array<int, kLeaf> covers;
+  int any = 0;
+  for (std::size_t i = 0; i < kLeaf; ++i) {
+    const float dx = position.x - leaf.x[i], dy = position.y - leaf.y[i], dz = position.z - leaf.z[i];
+    const float h = dx * leaf.nx[i] + dy * leaf.ny[i] + dz * leaf.nz[i];
+    distance2[i] = dx * dx + dy * dy + dz * dz + (kFlattening * kFlattening - 1) * h * h;
+    const float cosine = normal.x * leaf.nx[i] + normal.y * leaf.ny[i] + normal.z * leaf.nz[i];
+    covers[i] = (distance2[i] * leaf.inverse_r2[i] < 1) & (cosine > kMinCos);
+    any |= covers[i];
+  }
+  if (!any) return;
+  for (std::size_t i = 0; i < kLeaf; ++i)
+    if (covers[i]) found.push_back({std::uint32_t(number * kLeaf + i), distance2[i]});
+}
+
+float FootprintDensity::outer_radius(std::uint32_t photon) const {
+  return 1 / std::sqrt(leaves_[photon / kLeaf].inverse_r2[photon % kLeaf]);
+}
+
+Vec3 FootprintDensity::normal_of(std::uint32_t photon) const {
+  const Leaf& leaf = leaves_[photon / kLeaf];
+  const std::size_t lane = photon % kLeaf;
+  return {leaf.nx[lane], leaf.ny[lane], leaf.nz[lane]};
+}
+
+/// The first to ask works it out; others that ask meanwhile come to the same.
+FootprintDensity::Extent FootprintDensity::extent_of(std::uint32_t photon) const {
+  std::atomic<Extent>& known = extents_[photon];
+  Extent extent = known.load(std::memory_order_relaxed);
+  if (extent.radius == 0) {
+    extent = measure(photon);
+    known.store(extent, std::memory_order_relaxed);
+  }
+  return extent;
+}
+
+/// Do all footprints of a leaf lie in one whole disc? Spokes of that disc and one of each footprint are looked along: photons
+/// are many where they are dense, and so it costs two rays for each of them.
+bool FootprintDensity::leaf_whole(std::size_t number) const {
+  std::atomic<std::uint8_t>& known = leaf_whole_[number];
+  const std::uint8_t before = known.load(std::memory_order_relaxed);
+  if (before != kUnknown) return before == kWhole;
+  const bool whole = measure_leaf(number);
+  known.store(whole ? kWhole : kNotWhole, std::memory_order_relaxed);
+  return whole;
+}
+
+bool FootprintDensity::measure_leaf(std::size_t number) const {
+  const auto first = std::uint32_t(number * kLeaf), last = std::uint32_t(std::min((number + 1) * kLeaf, index_.size()));
+  const Vec3 normal = normal_of(first);
+  Vec3 middle{0, 0, 0};
+  for (std::uint32_t i = first; i < last; ++i) middle = middle + index_.position(i) * (1 / float(last - first));
+  float radius = 0;
+  for (std::uint32_t i = first; i < last; ++i) {
+    const Vec3 away = index_.position(i) - middle;
+    if (dot(normal_of(i), normal) < kSamePlane || std::abs(dot(away, normal)) > area_.offset()) return false;
+    radius = std::max(radius, std::sqrt(length2(away)) + outer_radius(i));
+  }
+  const float turn = PathRandom(0x6c656166ull, index_.source(first)).get1(0, Purpose::points);
+  if (!area_.whole(middle, normal, radius, turn)) return false;
+  const Frame frame(normal);
+  for (std::uint32_t i = first; i < last; ++i) {
+    const float phi = 2 * kPi * kGolden * float(i);
+    const Vec3 start = index_.position(i) + normal * (2 * area_.offset());
+    if (!area_.reach().free(start, start + (frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi)) * outer_radius(i)))
+      return false;
+  }
+  return true;
+}
+
+/// A footprint that is mostly air (of a photon on a wire) becomes smaller.
+FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
+  const Vec3 position = index_.position(photon), normal = normal_of(photon);
+  const PathRandom random(0x666f6f74ull, index_.source(photon));
+  float radius = outer_radius(photon);
+  const auto disc = [](float r) { return 1 / (kPi * r * r); };
+  if (leaf_whole(photon / kLeaf) || area_.whole(position, normal, radius, random.get1(2, Purpose::points)))
+    return {radius, -disc(radius)};
+  for (int i = 0; i <= kMostHalvings; ++i, radius /= 2) {
+    const PathRandom draws(random.bits(std::uint32_t(i), Purpose::points, 1), 0);
+    const double inverse = area_.inverse(position, normal, radius, kAreaProbes, ReachableArea::Kernel::round, draws);
+    if (inverse > 0) return {radius, float(inverse)};
+  }
+  return {2 * radius, disc(2 * radius)};
+}
+
+/// Light that need not reach the place counts if a few draws by its share, with replacement, all reach it; if one does not, all
+/// is tested. Exact in the mean: let s be the share out of reach and P = (1 - s)^m the chance to draw none of it; where some
+/// is drawn the sum is (reached - P all) / (1 - P), so that P all + (1 - P) that = reached. Not below 0, as P <= 1 - s.
+/// The numbers are drawn for the place: the same for any order of look-ups.
+Rgbd FootprintDensity::reaching(std::span<const Doubtful> doubtful, Vec3 position, Vec3 normal) const {
+  const auto reaches = [&](const Doubtful& d) {
+    return area_.reach()(index_.position(d.photon), normal_of(d.photon), position, normal);
+  };
+  Rgbd all{0.0}, reached{0.0};
+  double share_of_all = 0, share_out = 0;
+  for (const Doubtful& d : doubtful) {
+    all += d.light;
+    share_of_all += share(d.light);
+  }
+  const bool few = doubtful.size() <= std::size_t(kDraws);
+  if (!few) {
+    const std::uint64_t xy = std::uint64_t(std::bit_cast<std::uint32_t>(position.x)) << 32 | std::bit_cast<std::uint32_t>(position.y);
+    const PathRandom random(xy, std::bit_cast<std::uint32_t>(position.z));
+    bool open = true;
+    for (int i = 0; i < kDraws && open; ++i) {
+      double left = double(random.get1(std::uint32_t(i), Purpose::gather)) * share_of_all;
+      std::size_t drawn = 0;
+      while (drawn + 1 < doubtful.size() && left >= share(doubtful[drawn].light)) left -= share(doubtful[drawn++].light);
+      open = reaches(doubtful[drawn]);
+    }
+    if (open) return all;
+  }
+  for (const Doubtful& d : doubtful)
+    if (reaches(d)) reached += d.light;
+    else share_out += share(d.light);
+  if (few || !(share_out > 0)) return reached;
+  const double none = std::pow(std::max(0.0, 1 - share_out / share_of_all), kDraws);
+  return none < 1 ? (reached - all * none) / (1 - none) : reached;
+}
+
+Rgb FootprintDensity::estimate(Vec3 position, Vec3 normal, float& smooth_over) const {
+  smooth_over = 0;
+  if (empty()) return Rgb(0.0f);
+  thread_local std::vector<Covering> covering;
+  thread_local std::vector<Doubtful> doubtful;
+  covering.clear(), doubtful.clear();
+  find_covering(position, normal, covering);
+  Rgbd sum{0.0};
+  bool smooth = true;
+  for (const auto [photon, distance2] : covering) {
+    const auto [radius, inverse_area] = extent_of(photon);
+    smooth = smooth && radius >= options_.max_radius;
+    const double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
+    if (!(weight > 0)) continue;   // it has become smaller
+    const Rgbd light = Rgbd(index_.flux(photon)) * (weight * double(std::abs(inverse_area)));
+    const bool in_plane =
+        inverse_area < 0 && std::abs(dot(position - index_.position(photon), normal_of(photon))) < 4 * area_.offset();
+    if (in_plane) sum += light;
+    else doubtful.push_back({photon, light});
+  }
+  if (smooth) smooth_over = options_.max_radius;
+  if (!doubtful.empty()) sum += reaching(doubtful, position, normal);
+  return Rgb(sum);
+}
+
+}  // namespace tempolux

@@ -1,0 +1,92 @@
+// lib/gather/footprint_density.h -- irradiance from photons each of which lights its own surroundings: nothing is gained or lost.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lib/density/photon_index.h"
+#include "lib/gather/reachable_area.h"
+#include "lib/trace/trace.h"
+
+namespace tempolux {
+
+struct FootprintOptions {
+  int neighbours = 25;    ///< k
+  float max_radius = 1;   ///< m
+};
+
+/// Density of light that has edges and spots: caustics.
+///
+///     E(x) = sum over photons i that reach x of flux_i K(d_i / r_i) / A_i,   K(t) = 2 (1 - t^2)  [Epanechnikov 1969]
+///
+/// d_i: distance from the photon in the metric of the ellipsoid r_i : r_i : r_i / kFlattening about it. r_i [m]: to its k-th
+/// neighbour, at most max_radius. A_i [m^2]: the area that can be reached from it (Reach, which also decides on x), weighted
+/// by K. So each photon's light is spread over surface, all of it and no more: the integral of E is the flux, at walls,
+/// edges and steps too.
+///
+/// Why the radius is the photon's and not x's [Breiman, Meisel & Purcell 1977]: the k nearest of x give more light than there
+/// is. Their relative error is about r^2 / 8 times (Laplacian of E) / E, and r^2 goes as 1 / E: around a spot each x reaches
+/// as far as the spot is, and the integral of what they find there, k / (pi d^2), has no bound but max_radius. Of a disc of
+/// 1000 photons 25 nearest make 8 to 12 % more, of 5000 4 %. With r_i as 1 / sqrt(E) at the photon the error is of the
+/// fourth order in r [Abramson 1982].
+///
+/// Evenly spread photons (a mirror keeps the even spread of Halton's sequence) and independent ones have the same mean: no
+/// k - 1 or k - 1/2 is in it. Thread-safe; the same values for any number of threads.
+class FootprintDensity {
+ public:
+  /// Of the photons of these kinds (kind_bit), moved by `shift` [m] into the scene's space.
+  FootprintDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const FootprintOptions& options,
+                   std::uint8_t kinds = kAllKinds, Vec3d shift = {});
+
+  /// No photon is of these kinds.
+  bool empty() const { return index_.size() == 0; }
+  std::size_t photon_count() const { return index_.size(); }
+
+  /// Irradiance [W/m^2] of a place above a surface's lit side, normal: unit. Below 0 only by photons of negative flux.
+  /// `smooth_over`: max_radius where all footprints that cover the place are as wide as that, or none does; else 0.
+  Rgb estimate(Vec3 position, Vec3 normal, float& smooth_over) const;
+
+ private:
+  static constexpr std::size_t kLeaf = 32, kChildren = 8;
+  struct alignas(64) Leaf { float x[kLeaf], y[kLeaf], z[kLeaf], nx[kLeaf], ny[kLeaf], nz[kLeaf], inverse_r2[kLeaf]; };
+  struct alignas(64) Node { float lower[3][kChildren], upper[3][kChildren]; };
+  /// Found when a footprint is first asked for: most of a map's are never seen.
+  struct Extent {
+    float radius = 0;         ///< m; 0: not known yet
+    float inverse_area = 0;   ///< 1/m^2; below 0: of a whole disc, where all of its plane can be reached
+  };
+  struct Covering {
+    std::uint32_t photon;
+    float distance2;   ///< m^2, in the ellipsoid's metric
+  };
+  /// Light of a photon at a place that it may not reach.
+  struct Doubtful {
+    std::uint32_t photon;
+    Rgbd light;   ///< W/m^2
+  };
+  float radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const;
+  void build_nodes(float slack);
+  void find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
+  void scan_leaf(std::size_t leaf, Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
+  Extent extent_of(std::uint32_t photon) const;
+  Extent measure(std::uint32_t photon) const;
+  bool leaf_whole(std::size_t leaf) const;
+  bool measure_leaf(std::size_t leaf) const;
+  Rgbd reaching(std::span<const Doubtful> doubtful, Vec3 position, Vec3 normal) const;
+  float outer_radius(std::uint32_t photon) const;
+  Vec3 normal_of(std::uint32_t photon) const;
+
+  FootprintOptions options_;
+  ReachableArea area_;
+  PhotonIndex index_;
+  std::unique_ptr<Leaf[]> leaves_;           ///< in the index's order; unused places hold NaN, which covers nothing
+  std::vector<Node> nodes_;                  ///< level by level, the root last; level 0 has leaves as children
+  std::vector<std::size_t> level_start_;
+  std::unique_ptr<std::atomic<Extent>[]> extents_;
+  std::unique_ptr<std::atomic<std::uint8_t>[]> leaf_whole_;
+};
+
+}  // namespace tempolux

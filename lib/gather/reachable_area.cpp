@@ -1,0 +1,116 @@
+#include "lib/gather/reachable_area.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/frame.h"
+#include "lib/core/sampling.h"
+#include "lib/core/sobol.h"
+#include "lib/material/surface_material.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kRim = 16;             ///< places on the rim that are looked at first
+constexpr float kFlat = 0.005f;      ///< of the radius: how far off the plane the rim of a flat disc may lie
+constexpr int kMostProbes = 32;      ///< times the probes that must arrive
+constexpr int kMostInColumn = 8;     ///< surfaces on top of each other
+
+}  // namespace
+
+// All rays here meet surfaces of alpha mode BLEND wherever they are at all: what such a surface lets pass is in the
+// photons' flux already (photon_trace.h), its area is there.
+
+Reach::Reach(const Tracer& tracer) : tracer_(tracer) {
+  const Box3& bounds = tracer.frame().bounds;
+  offset_ = 0x1p-20f * max_component(max(abs(bounds.lower), abs(bounds.upper)));
+}
+
+bool Reach::free(Vec3 from, Vec3 to) const { return !tracer_.occluded({from, to - from, 0, 1, true}); }
+
+bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
+  const Vec3 start = from + normal * (2 * offset_), end = to + to_normal * (2 * offset_);
+  // Both ends stand on the lit sides: a ray from behind `to` meets the surface that `to` is on just before
+  // its end.
+  if (free(start, end)) return true;
+  const float below = dot(from - to, normal);
+  if (!(below > 0)) return false;
+  const Vec3 corner = end + normal * below;
+  return free(start, corner) && free(corner, end);
+}
+
+ReachableArea::ReachableArea(const Tracer& tracer) : tracer_(tracer), reach_(tracer) {
+  for (const Material& material : tracer.frame().materials) stores_.push_back(may_have_lambert(material));
+}
+
+bool ReachableArea::whole(Vec3 position, Vec3 normal, float radius, float turn) const {
+  const Frame frame(normal);
+  const Vec3 start = position + normal * (2 * reach_.offset());
+  const float down = 2 * reach_.offset() + std::max(4 * reach_.offset(), kFlat * radius);
+  for (int i = 0; i < kRim; ++i) {
+    const float phi = 2 * kPi * (float(i) + turn) / float(kRim);
+    const Vec3 rim = start + (frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi)) * radius;
+    Hit hit;
+    if (!reach_.free(start, rim) || !tracer_.intersect({rim, -normal, 0, down, true}, hit) ||
+        !stores_[tracer_.frame().surfaces[hit.surface].material])
+      return false;
+  }
+  return true;
+}
+
+/// 1 / area that can be reached, 1/m^2; 0 if there is none. Columns along the normal are drawn over the disc
+/// until a fixed number m of them arrives: the mean of (number drawn) / m is exactly 1 / (share that arrives) if they
+/// are independent [inverse binomial sampling, Haldane 1945], where m / (a fixed number drawn) would be too small in
+/// the mean. Spread evenly they are less noisy, but the mean is low by up to 1 / (2 m): m arrive as soon as m - 1/2 are
+/// to be expected. So for the flat kernel they are spread, for look-ups that are averaged they are independent. With the
+/// round kernel the area counts by its weight, which is what the columns are drawn by: density 2 (1 - d^2) / pi.
+double ReachableArea::inverse(Vec3 position, Vec3 normal, float radius, int probes, Kernel kernel,
+                              const PathRandom& random) const {
+  const Frame frame(normal);
+  const std::uint64_t key = random.bits(1, Purpose::points);
+  const bool round = kernel == Kernel::round;
+  int arrived = 0, drawn = 0;
+  double surface = 0;  // m^2 per m^2 of the disc, summed
+  while (arrived < probes && drawn < kMostProbes * probes) {
+    const auto i = std::uint32_t(drawn++);
+    Vec2 d = sample_disc_concentric(round ? random.get2(i, Purpose::place) : sobol_owen_2d(i, key));
+    if (round) {
+      const float uniform = std::min(1.0f, d.x * d.x + d.y * d.y), inward = 1 / std::sqrt(1 + std::sqrt(1 - uniform));
+      d = {d.x * inward, d.y * inward};   // d^2 = 1 - sqrt(1 - uniform)
+    }
+    const float height = radius / kFlattening * std::sqrt(std::max(0.0f, 1 - d.x * d.x - d.y * d.y));
+    const float here = column(position, normal, (frame.tangent * d.x + frame.bitangent * d.y) * radius, height,
+                              round ? random.get1(i, Purpose::place, 1) : 0);
+    arrived += here > 0;
+    surface += double(here);
+  }
+  if (arrived < (round ? probes : 1)) return 0;
+  return double(drawn) / (double(kPi) * double(radius) * double(radius) * surface);
+}
+
+/// Surface that can be reached in a column from `height` above the plane to as much below it, `across` from
+/// the point, over the column's section: sum of 1 / cos of the surfaces' tilts. For the round kernel they count with the
+/// probability of its weight there over its weight in the plane, 1 - (h / height)^2 at h from it, by `u` of [0, 1): weights
+/// themselves, which differ from column to column, would make the inverse of their sum too large. Flat kernel: u = 0.
+float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, float height, float u) const {
+  const float half = std::max(4 * reach_.offset(), height);
+  Vec3 top = position + across + normal * half;
+  float left = 2 * half, sum = 0;
+  for (int i = 0; i < kMostInColumn && left > 0; ++i) {
+    Hit hit;
+    if (!tracer_.intersect({top, -normal, 0, left, true}, hit)) break;
+    const SurfacePoint there = tracer_.surface_point(hit);
+    const float side = dot(there.normal_geometric, normal), cosine = std::abs(side);
+    const Vec3 up = side < 0 ? -there.normal_geometric : there.normal_geometric;
+    const float off_plane = dot(there.position - position, normal);
+    if (cosine > kMinCos && stores_[there.material] && off_plane * off_plane <= (1 - u) * half * half &&
+        reach_(position, normal, there.position, up))
+      sum += 1 / cosine;
+    const float step = hit.t + 4 * reach_.offset();
+    top = top - normal * step;
+    left -= step;
+  }
+  return sum;
+}
+
+}  // namespace tempolux
