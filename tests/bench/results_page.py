@@ -1,4 +1,5 @@
-"""RESULTS.md and its figures, from what the measurements left in the output folder. Nothing is typed by hand."""
+"""RESULTS.md and its figures, from what the measurements left in the output folder, and what is not there from the page as it
+was. Nothing is typed by hand."""
 import json
 import re
 import shutil
@@ -15,6 +16,8 @@ def verdict(met):
 
 
 def section(name, found, command):
+    if "text" in found:
+        return found["text"]
     text = f"### {found['title']}\n\n`{command} --only {name}` · {found['machine']} · load {found['load']}\n\n"
     text += f"Asked: {found['asked']}. {verdict(found['met']).capitalize()}.\n\n" + table(found["header"], found["rows"])
     for note in found["notes"]:
@@ -25,11 +28,37 @@ def section(name, found, command):
     return text + "\n"
 
 
+CURVES, FIGURES_IN_FULL = "## Error against run time\n", "## Figures in full\n"
+VERDICTS = {"not judged here": None, "met": True, "**missed**": False}
+
+
+def kept(page):
+    """What an earlier page says of parts that the output folder does not know: {name: what section() was given, and its text}."""
+    if not page.exists():
+        return {}
+    sections = re.split(r"^(?=### )", page.read_text().partition(FIGURES_IN_FULL)[2], flags=re.M)
+    found = {}
+    for text in sections:
+        head = re.match(r"### (.*)\n\n`.* --only (\S+)` · (.*) · load .*\n\nAsked: (.*)\. (.*)\.\n", text)
+        if head:
+            title, name, machine, asked, said = head.groups()
+            found[name] = {"title": title, "machine": machine, "asked": asked, "text": text.rstrip("\n") + "\n\n",
+                           "met": VERDICTS.get(said, VERDICTS.get(said.lower()))}
+    return found
+
+
+def kept_curves(page):
+    """The curves of an earlier page; "" if it has none."""
+    text = page.read_text() if page.exists() else ""
+    begin, end = text.find(CURVES), text.find(FIGURES_IN_FULL)
+    return text[begin:end] if 0 <= begin < end else ""
+
+
 def curves(bench, docs, page, command):
-    """error-report's tables, its plots copied to docs."""
+    """error-report's tables, its plots copied to docs; as they were, if there are none."""
     report = bench.out / "report"
     if not (bench.out / "sweep.json").exists():
-        return ""
+        return kept_curves(page)
     made = json.loads((bench.out / "sweep.json").read_text())
     docs.mkdir(parents=True, exist_ok=True)
     for old in docs.glob("error-*.svg"):
@@ -40,8 +69,7 @@ def curves(bench, docs, page, command):
     text = (report / "report.md").read_text().split("\n", 1)[1]
     text = re.sub(r"\]\(([^)]*\.svg)\)", rf"]({link}/\1)", text)
     text = re.sub(r"^### (.*)\n\n((?:\|.*\n)+)", long_tables, text, flags=re.M)
-    return f"""## Error against run time
-
+    return CURVES + f"""
 `{command} --only sweep` · {made['machine']} · load {made['load']}; every run: report/report.csv in its output folder
 
 Each scene is swept over samples per pixel (path tracing), over photons that are looked up directly (photon-trace, then
@@ -124,8 +152,9 @@ CPU seconds are user and system time of all threads. Cycles' rows: {peers_source
 
 """
     files = {name: bench.out / f"{name}.json" for name in figures}
-    found = {name: json.loads(file.read_text()) if file.exists() else None for name, file in files.items()}
+    before = kept(page)
+    found = {name: json.loads(file.read_text()) if file.exists() else before.get(name) for name, file in files.items()}
     text += summary(bench, found, figures, left_out, command)
-    text += curves(bench, docs, page, command) or f"## Error against run time\n\nNot measured: `{command} --only sweep`\n\n"
-    text += "## Figures in full\n\n" + "".join(section(name, f, command) for name, f in found.items() if f)
+    text += curves(bench, docs, page, command) or f"{CURVES}\nNot measured: `{command} --only sweep`\n\n"
+    text += FIGURES_IN_FULL + "\n" + "".join(section(name, f, command) for name, f in found.items() if f)
     page.write_text(text.rstrip("\n") + "\n")
