@@ -13,7 +13,7 @@ struct PhotonLightOptions {
   int neighbours = 50;            ///< k of the density estimate of indirect light
   float max_radius = 0;           ///< m; 0: a twentieth of the scene's diagonal
   int caustic_neighbours = 25;    ///< fewer: caustics have edges, and a pixel averages several estimates
-  float caustic_radius = 0;       ///< m; 0: a sixtieth of the scene's diagonal
+  float caustic_radius = 0;       ///< m; 0: a thirtieth of the scene's diagonal
   bool caustic_only = false;      ///< indirect light comes from elsewhere: index the caustic photons alone
 };
 
