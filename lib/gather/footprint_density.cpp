@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -18,11 +17,8 @@ constexpr float kLeastRadius = 64;   ///< times Reach::offset(): an ellipsoid's 
 constexpr int kMostHalvings = 6;     ///< of a footprint's radius, where hardly any of it is surface
 constexpr std::size_t kLeavesAtOnce = 16;
 constexpr float kSamePlane = 0.999999f, kGolden = 0.6180340f;
-constexpr int kAreaProbes = 8;   ///< that must arrive where a footprint is not whole; their noise is that of one photon among k
-constexpr int kDraws = 4;
+constexpr int kAreaProbes = 16;   ///< that must arrive where a footprint is not whole; their noise is that of one photon among k
 enum : std::uint8_t { kUnknown, kWhole, kNotWhole };
-
-double share(Rgbd light) { return std::abs(light.r) + std::abs(light.g) + std::abs(light.b); }
 
 }  // namespace
 
@@ -209,47 +205,11 @@ FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   return {2 * radius, disc(2 * radius)};
 }
 
-/// Light that need not reach the place counts if a few draws by its share, with replacement, all reach it; if one does not, all
-/// is tested. Exact in the mean: let s be the share out of reach and P = (1 - s)^m the chance to draw none of it; where some
-/// is drawn the sum is (reached - P all) / (1 - P), so that P all + (1 - P) that = reached. Not below 0, as P <= 1 - s.
-/// The numbers are drawn for the place: the same for any order of look-ups.
-Rgbd FootprintDensity::reaching(std::span<const Doubtful> doubtful, Vec3 position, Vec3 normal) const {
-  const auto reaches = [&](const Doubtful& d) {
-    return area_.reach()(index_.position(d.photon), normal_of(d.photon), position, normal);
-  };
-  Rgbd all{0.0}, reached{0.0};
-  double share_of_all = 0, share_out = 0;
-  for (const Doubtful& d : doubtful) {
-    all += d.light;
-    share_of_all += share(d.light);
-  }
-  const bool few = doubtful.size() <= std::size_t(kDraws);
-  if (!few) {
-    const std::uint64_t xy = std::uint64_t(std::bit_cast<std::uint32_t>(position.x)) << 32 | std::bit_cast<std::uint32_t>(position.y);
-    const PathRandom random(xy, std::bit_cast<std::uint32_t>(position.z));
-    bool open = true;
-    for (int i = 0; i < kDraws && open; ++i) {
-      double left = double(random.get1(std::uint32_t(i), Purpose::gather)) * share_of_all;
-      std::size_t drawn = 0;
-      while (drawn + 1 < doubtful.size() && left >= share(doubtful[drawn].light)) left -= share(doubtful[drawn++].light);
-      open = reaches(doubtful[drawn]);
-    }
-    if (open) return all;
-  }
-  for (const Doubtful& d : doubtful)
-    if (reaches(d)) reached += d.light;
-    else share_out += share(d.light);
-  if (few || !(share_out > 0)) return reached;
-  const double none = std::pow(std::max(0.0, 1 - share_out / share_of_all), kDraws);
-  return none < 1 ? (reached - all * none) / (1 - none) : reached;
-}
-
 Rgb FootprintDensity::estimate(Vec3 position, Vec3 normal, float& smooth_over) const {
   smooth_over = 0;
   if (empty()) return Rgb(0.0f);
   thread_local std::vector<Covering> covering;
-  thread_local std::vector<Doubtful> doubtful;
-  covering.clear(), doubtful.clear();
+  covering.clear();
   find_covering(position, normal, covering);
   Rgbd sum{0.0};
   bool smooth = true;
@@ -258,14 +218,12 @@ Rgb FootprintDensity::estimate(Vec3 position, Vec3 normal, float& smooth_over) c
     smooth = smooth && radius >= options_.max_radius;
     const double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
     if (!(weight > 0)) continue;   // it has become smaller
-    const Rgbd light = Rgbd(index_.flux(photon)) * (weight * double(std::abs(inverse_area)));
-    const bool in_plane =
-        inverse_area < 0 && std::abs(dot(position - index_.position(photon), normal_of(photon))) < 4 * area_.offset();
-    if (in_plane) sum += light;
-    else doubtful.push_back({photon, light});
+    const Vec3 from = index_.position(photon), from_normal = normal_of(photon);
+    const bool in_plane = inverse_area < 0 && std::abs(dot(position - from, from_normal)) < 4 * area_.offset();
+    if (in_plane || area_.reach()(from, from_normal, position, normal))
+      sum += Rgbd(index_.flux(photon)) * (weight * double(std::abs(inverse_area)));
   }
   if (smooth) smooth_over = options_.max_radius;
-  if (!doubtful.empty()) sum += reaching(doubtful, position, normal);
   return Rgb(sum);
 }
 

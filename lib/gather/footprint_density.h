@@ -62,11 +62,6 @@ class FootprintDensity {
     std::uint32_t photon;
     float distance2;   ///< m^2, in the ellipsoid's metric
   };
-  /// Light of a photon at a place that it may not reach.
-  struct Doubtful {
-    std::uint32_t photon;
-    Rgbd light;   ///< W/m^2
-  };
   float radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const;
   void build_nodes(float slack);
   void find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
@@ -75,7 +70,6 @@ class FootprintDensity {
   Extent measure(std::uint32_t photon) const;
   bool leaf_whole(std::size_t leaf) const;
   bool measure_leaf(std::size_t leaf) const;
-  Rgbd reaching(std::span<const Doubtful> doubtful, Vec3 position, Vec3 normal) const;
   float outer_radius(std::uint32_t photon) const;
   Vec3 normal_of(std::uint32_t photon) const;
 

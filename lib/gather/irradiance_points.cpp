@@ -70,20 +70,46 @@ bool any_coated(const SceneFrame& frame) {
                      [](const Material& m) { return lobes_of(m).lambert && lobes_of(m).specular; });
 }
 
-/// Scattering of the surface a point is on; nothing if it is not found or has no Lambert lobe there.
-std::optional<Bsdf> coat_at(const Tracer& tracer, const IrradiancePoint& point, float offset) {
+/// Do shading normals differ from triangles' anywhere, by more than half a degree?
+bool any_bent(const SceneFrame& frame) {
+  constexpr float kBent = 0.99996f;
+  return std::any_of(frame.surfaces.begin(), frame.surfaces.end(), [&](const Surface& surface) {
+    const Material& material = frame.materials[surface.material];
+    if (!may_have_lambert(material)) return false;
+    if (material.textures && material.textures->normal) return true;
+    if (!surface.smooth()) return false;
+    return std::any_of(surface.primitive->triangles.begin(), surface.primitive->triangles.end(), [&](const auto& t) {
+      const Vec3 a = surface.position(t[0]);
+      const Vec3 n = normalize(cross(surface.position(t[1]) - a, surface.position(t[2]) - a));
+      return length2(n) > 0 && std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return std::abs(dot(n, surface.normal(v))) < kBent; });
+    });
+  });
+}
+
+/// How the surface a point is on scatters: shading normal on the point's side; its lobes if the Lambert lobe lies under a coat.
+struct Scattering {
+  Vec3 normal;
+  std::optional<Bsdf> coat;
+};
+
+/// As the point's normal says, without a coat, if its surface is not found.
+Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, float offset) {
   Hit hit;
-  if (!tracer.intersect({point.position + point.normal * (4 * offset), -point.normal, 0, 8 * offset, true}, hit)) return {};
+  if (!tracer.intersect({point.position + point.normal * (4 * offset), -point.normal, 0, 8 * offset, true}, hit))
+    return {point.normal, {}};
   SurfacePoint there = tracer.surface_point(hit);
   const SurfaceMaterial material(tracer.frame(), there, 0);
   const Bsdf bsdf(material, dot(there.normal_geometric, point.normal) > 0);
-  return bsdf.has_diffuse() && bsdf.has_specular() ? std::optional(bsdf) : std::nullopt;
+  Scattering found{dot(there.normal, point.normal) < 0 ? -there.normal : there.normal, {}};
+  if (bsdf.has_diffuse() && bsdf.has_specular()) found.coat = bsdf;
+  return found;
 }
 
-/// Direct light at a point: mean over stratified light samples of radiance cos / pdf where nothing is in
-/// between, times arrival_weight under a coat.
+/// Direct light at a point: mean over stratified light samples of radiance cos / pdf where nothing is in between, times
+/// arrival_weight under a coat. The cosine is to the shading normal, as where an eye looks at the place and where photons
+/// arrive (photon_trace.h); what comes from behind either normal does not count.
 Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset,
-                 int samples, const std::optional<Bsdf>& coat, const PathRandom& random) {
+                 int samples, const Scattering& scattering, const PathRandom& random) {
   SurfacePoint from;
   from.position = point.position;
   from.normal = from.normal_geometric = point.normal;
@@ -92,13 +118,14 @@ Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoi
   for (int s = 0; s < samples; ++s) {
     const float u = (float(s) + random.get1(0, Purpose::light_choice, std::uint32_t(s))) / float(samples);
     LightSample light;
-    if (!lights.sample(point.position, point.normal, std::min(u, kOneMinusEpsilon),
+    if (!lights.sample(point.position, scattering.normal, std::min(u, kOneMinusEpsilon),
                        random.get2(0, Purpose::light_point, std::uint32_t(s)), light))
       continue;
-    const float cosine = dot(light.wi, point.normal);
-    if (!(cosine > 0) || tracer.occluded(spawn_shadow_ray(from, light.position, light.position_offset)))
+    const float cosine = dot(light.wi, scattering.normal);
+    if (!(cosine > 0 && dot(light.wi, point.normal) > 0) ||
+        tracer.occluded(spawn_shadow_ray(from, light.position, light.position_offset)))
       continue;
-    sum += Rgbd(light.radiance) * double(coat ? cosine * coat->arrival_weight(cosine) : cosine);
+    sum += Rgbd(light.radiance) * double(scattering.coat ? cosine * scattering.coat->arrival_weight(cosine) : cosine);
   }
   return Rgb(sum / double(samples));
 }
@@ -128,7 +155,7 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
   const FootprintDensity caustic(tracer, photons, {density.neighbours, density.max_radius}, kind_bit(formats::PathKind::caustic), photon_shift);
   const PointDensity indirect(tracer, photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
   const float offset = Reach(tracer).offset();
-  const bool coated = !lights.empty() && any_coated(tracer.frame());
+  const bool asks = !lights.empty() && (any_coated(tracer.frame()) || any_bent(tracer.frame()));
 
   // Neighbours in space one after the other: look-ups and rays find their data in cache.
   std::vector<Vec3> positions;
@@ -141,7 +168,7 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
       point.direct = lights.empty()
                          ? Rgb(0.0f)
                          : direct_light(tracer, lights, point, offset, options.light_samples,
-                                        coated ? coat_at(tracer, point, offset) : std::nullopt, random);
+                                        asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, {}}, random);
       float unused;
       point.caustic = caustic.estimate(point.position, point.normal, unused);
       point.indirect = indirect.estimate(point, random, point.radius);

@@ -33,7 +33,8 @@ float point_spacing(const SceneFrame& frame, const PointOptions& options);
 std::vector<IrradiancePoint> place_points(const SceneFrame& frame, const PointOptions& options);
 
 /// Fills in the irradiance of all points:
-/// - direct by light sampling, stratified shadow rays; under a coat times Bsdf::arrival_weight, as photons are stored;
+/// - direct by light sampling, stratified shadow rays, as photons are stored: by the shading normal, under a coat times
+///   Bsdf::arrival_weight;
 /// - caustic and indirect by the density of the photons of that kind (FootprintDensity, PointDensity).
 /// photon_shift is added to the photons' positions: scene space minus theirs. Same results for any number of
 /// threads.

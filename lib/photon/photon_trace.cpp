@@ -27,6 +27,8 @@ PathKind kind_after(bool diffuse_seen, bool specular_seen) {
   return diffuse_seen ? PathKind::indirect : specular_seen ? PathKind::caustic : PathKind::direct;
 }
 
+constexpr float kLooksAway = 1e-4f;   ///< cosine below which a shading normal looks away from a direction, as SeenSide has it
+
 /// A light ray arriving at a surface: normals turned to the side it comes from.
 struct Arrival {
   Vec3 wi, normal_geometric, normal;
@@ -54,12 +56,31 @@ struct Arrival {
     const Vec3 out = sample_hemisphere_cos(u), in = geometric.to_local(wi);
     travel = geometric.to_world(out);
     const Vec3 shaded = frame.to_local(travel);
-    const bool by_shading = shaded.z > 1e-4f;
+    const bool by_shading = shaded.z > kLooksAway;
     // Light from behind the shading normal is seen from behind it only, and then it scatters by D alone.
     if (!(wi_local.z > 0)) return by_shading ? Rgb(0.0f) : bsdf.eval_diffuse(out, in) * kPi;
     const float p = bsdf.pdf_diffuse(chosen.wi, wi_local) / pdf_hemisphere_cos(chosen.wi.z);
     return by_shading ? bsdf.eval_diffuse(shaded, wi_local) * (kPi * shading_correction / p)
                       : bsdf.eval_diffuse(out, in) * (kPi / p);
+  }
+
+  /// Of all events, how many are drawn by scatter_beyond(): as many as there are directions for it, or so; none where the
+  /// normals differ by less than half a degree.
+  float chance_beyond() const {
+    const float cosine = dot(normal, normal_geometric);
+    return flat || cosine > 0.99996f ? 0 : 0.5f * std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+  }
+
+  /// Event S into directions from which the eye sees the geometric normal, since the shading normal looks away from them
+  /// (SeenSide); black into others, and where D was drawn. Beside the events by the shading normal, not instead of them.
+  Bsdf::Sample scatter_beyond(const Bsdf& bsdf, float u_lobe, Vec2 u, Vec3& travel) const {
+    const Frame geometric(normal_geometric);
+    Bsdf::Sample next = bsdf.sample(geometric.to_local(wi), u_lobe, u);
+    travel = geometric.to_world(next.wi);
+    const float side = next.transmitted ? -1.0f : 1.0f;
+    if (next.diffuse || side * dot(travel, normal) > kLooksAway) next.weight = Rgb(0.0f);
+    next.diffuse = false;
+    return next;
   }
 };
 
@@ -264,16 +285,24 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   // Scatter, or be absorbed.
   const PathRandom& random = path.random;
   const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;   // else it chooses nothing
-  Bsdf::Sample next = bsdf.is_matte() ? bsdf.sample_matte(at.wi_local, draw.direction)
-                                      : bsdf.sample(at.wi_local, u_lobe, draw.u);
-  Vec3 travel = at.frame.to_world(next.wi);
-  if (!at.flat && (next.diffuse || !(at.wi_local.z > 0))) {
-    next.diffuse = true;
-    next.weight = at.scatter_diffuse(bsdf, next, draw.u, travel);
-  } else if (!at.flat) {
-    const float side = next.transmitted ? -1.0f : 1.0f;
-    next.weight *= at.shading_correction * std::max(0.0f, side * dot(travel, at.normal_geometric)) /
-                   std::max(1e-6f, side * next.wi.z);
+  const float p_beyond = bsdf.has_specular() ? at.chance_beyond() : 0;
+  Bsdf::Sample next;
+  Vec3 travel;
+  if (p_beyond > 0 && random.get1(draw.bounce, Purpose::lobe, 1) < p_beyond) {
+    next = at.scatter_beyond(bsdf, u_lobe, draw.u, travel);
+    next.weight *= 1 / p_beyond;
+  } else {
+    next = bsdf.is_matte() ? bsdf.sample_matte(at.wi_local, draw.direction) : bsdf.sample(at.wi_local, u_lobe, draw.u);
+    travel = at.frame.to_world(next.wi);
+    if (!at.flat && (next.diffuse || !(at.wi_local.z > 0))) {
+      next.diffuse = true;
+      next.weight = at.scatter_diffuse(bsdf, next, draw.u, travel);
+    } else if (!at.flat) {
+      const float side = next.transmitted ? -1.0f : 1.0f;
+      next.weight *= at.shading_correction * std::max(0.0f, side * dot(travel, at.normal_geometric)) /
+                     std::max(1e-6f, side * next.wi.z);
+    }
+    if (p_beyond > 0) next.weight *= 1 / (1 - p_beyond);
   }
   const float cos_geometric = (next.transmitted ? -1.0f : 1.0f) * dot(travel, at.normal_geometric);
   const Rgb reflected = flux * next.weight;

@@ -33,7 +33,7 @@ class SparseCaustics {
   }
 
  private:
-  static constexpr float kWithin = 1 / 8.0f, kSameNormal = 0.9995f;   // 2 degrees
+  static constexpr float kWithin = 1 / 16.0f, kSameNormal = 0.9995f;   // 2 degrees
   struct Kept {
     std::uint32_t surface = kNone;
     Vec3 position, normal;

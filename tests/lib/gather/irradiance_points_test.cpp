@@ -421,6 +421,30 @@ TEST(IrradiancePoints, DirectLightCountsByWhatTheCoatLetsIn) {
   }
 }
 
+/// Direct light counts by the shading normal, as photons and eyes count it: a floor whose normals lean 30 degrees to the
+/// right, lamps of 1 W/sr 100 m away (of 1/10^4 W/m^2 upright): at the zenith cos 30, at 30 degrees on the right 1, and from
+/// 65 degrees on the left, behind that normal, nothing. Their directions change by 0.02 over the floor.
+TEST(IrradiancePoints, DirectLightCountsByTheShadingNormal) {
+  const auto direction = [](float degrees) { return Vec3{std::sin(degrees * kPi / 180), std::cos(degrees * kPi / 180), 0}; };
+  for (const auto& [lamp, expected] : {std::pair{0.0f, 0.8660f}, {30.0f, 1.0f}, {-65.0f, 0.0f}}) {
+    HandMadeScene scene;
+    scene.add({{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}}, {{0, 1, 2}, {0, 2, 3}}, matte(Rgb(0.5f)), false,
+              std::vector<Vec3>(4, direction(30)));
+    scene.add_point_light(direction(lamp) * 100, Rgb(1e4f));
+    const SceneFrame& frame = scene.frame();
+    const Tracer tracer(frame);
+    const Lights lights(frame, build_emission_table({&frame, 1}));
+    const PointOptions options{.count = 200};
+    std::vector<IrradiancePoint> points = place_points(frame, options);
+    estimate_points(tracer, lights, {}, {}, options, points);
+    for (const IrradiancePoint& point : points) {
+      if (point.normal.y > 0) {
+        EXPECT_NEAR(point.direct.g, expected, 0.03f) << "lamp at " << lamp;
+      }
+    }
+  }
+}
+
 TEST(IrradiancePoints, AnyNumberOfThreadsGivesTheSameBytes) {
   test::ClosedBox box(Shape::sphere, 0.8f);
   Stage stage(box.scene);
