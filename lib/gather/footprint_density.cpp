@@ -13,7 +13,9 @@ namespace tempolux {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kLeastRadius = 64;   ///< times Reach::offset(): an ellipsoid's height above the surface that floats can tell
+constexpr float kThin = 64;         ///< times Reach::offset(): radius of an ellipsoid whose height positions can just tell
+constexpr float kLift = 1e-4f;       ///< of a radius: what decoded normals may be off by at its end
+constexpr float kAlmost = 0.999999f;
 constexpr int kMostHalvings = 6;     ///< of a footprint's radius, where hardly any of it is surface
 constexpr std::size_t kLeavesAtOnce = 16;
 constexpr float kSamePlane = 0.999999f, kGolden = 0.6180340f;
@@ -44,10 +46,13 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, std::span<const formats
       leaf.x[lane] = position.x, leaf.y[lane] = position.y, leaf.z[lane] = position.z;
       leaf.nx[lane] = n[0], leaf.ny[lane] = n[1], leaf.nz[lane] = n[2];
       leaf.inverse_r2[lane] = 1 / (radius * radius);
+      const float flattening = radius / std::max(radius / kFlattening, kThin / kFlattening * area_.offset());
+      leaf.flat[lane] = flattening * flattening - 1;
+      leaf.narrow2[lane] = radius < kAlmost * options_.max_radius ? (radius + options_.margin) * (radius + options_.margin) : -1;
     }
   });
   leaf_whole_ = std::make_unique<std::atomic<std::uint8_t>[]>(leaves);
-  build_nodes(area_.offset());
+  build_nodes();
 }
 
 /// To the k-th of its neighbours.
@@ -55,20 +60,20 @@ float FootprintDensity::radius_of(std::size_t photon, Vec3 normal, NeighbourList
   const int wanted = std::min(options_.neighbours + 1, kMaxNeighbours);   // it finds itself
   index_.find_nearest({index_.position(photon), normal, options_.max_radius, kMinCos, kFlattening, kAllKinds}, wanted, found);
   const float radius = int(found.count()) < wanted ? options_.max_radius : std::sqrt(found.distance2()[found.farthest()]);
-  return std::max(std::min(radius, options_.max_radius), kLeastRadius * area_.offset());
+  return std::max(std::min(radius, options_.max_radius), area_.offset());
 }
 
-/// Boxes of all footprints in a subtree.
-void FootprintDensity::build_nodes(float slack) {
+/// Boxes of all footprints in a subtree, with their margins.
+void FootprintDensity::build_nodes() {
   const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
   std::vector<Box3> boxes(leaves);
   parallel_chunks(leaves, kLeavesAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first * kLeaf; i < std::min(last * kLeaf, index_.size()); ++i) {
       const Leaf& leaf = leaves_[i / kLeaf];
       const std::size_t lane = i % kLeaf;
-      const float radius = outer_radius(std::uint32_t(i));
+      const float radius = std::sqrt(std::max(leaf.narrow2[lane], 1 / leaf.inverse_r2[lane]));
       const auto half = [&](float n) {   // of the ellipsoid's box
-        return radius * std::sqrt(std::max(0.0f, 1 - (1 - 1 / (kFlattening * kFlattening)) * n * n)) * 1.0001f + slack;
+        return radius * std::sqrt(std::max(0.0f, 1 - n * n + n * n / (leaf.flat[lane] + 1))) * 1.0001f + area_.offset();
       };
       const Vec3 middle = index_.position(i), halves{half(leaf.nx[lane]), half(leaf.ny[lane]), half(leaf.nz[lane])};
       boxes[i / kLeaf].add(middle - halves);
@@ -94,12 +99,14 @@ void FootprintDensity::build_nodes(float slack) {
   } while (boxes.size() > 1);
 }
 
-void FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
+/// Do all footprints that come near have the largest radius?
+bool FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
   struct Entry {
     std::size_t level, node;
   };
   std::array<Entry, (kChildren - 1) * 12 + 1> stack;   // 2^31 photons have 9 levels
   std::size_t depth = 0;
+  bool wide = true;
   stack[depth++] = {level_start_.size() - 1, 0};
   while (depth > 0) {
     const auto [level, number] = stack[--depth];
@@ -110,28 +117,31 @@ void FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Cov
                   (position.y <= node.upper[1][c]) & (position.z >= node.lower[2][c]) & (position.z <= node.upper[2][c]);
     for (std::size_t c = 0; c < kChildren; ++c) {
       if (!inside[c]) continue;
-      if (level == 0) scan_leaf(kChildren * number + c, position, normal, found);
+      if (level == 0) wide &= scan_leaf(kChildren * number + c, position, normal, found);
       else stack[depth++] = {level - 1, kChildren * number + c};
     }
   }
+  return wide;
 }
 
-void FootprintDensity::scan_leaf(std::size_t number, Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
+bool FootprintDensity::scan_leaf(std::size_t number, Vec3 position, Vec3 normal, std::vector<Covering>& found) const {
   const Leaf& leaf = leaves_[number];
   std::array<float, kLeaf> distance2;
   std::array<int, kLeaf> covers;
-  int any = 0;
+  int any = 0, narrow = 0;
   for (std::size_t i = 0; i < kLeaf; ++i) {
     const float dx = position.x - leaf.x[i], dy = position.y - leaf.y[i], dz = position.z - leaf.z[i];
     const float h = dx * leaf.nx[i] + dy * leaf.ny[i] + dz * leaf.nz[i];
-    distance2[i] = dx * dx + dy * dy + dz * dz + (kFlattening * kFlattening - 1) * h * h;
+    distance2[i] = dx * dx + dy * dy + dz * dz + leaf.flat[i] * h * h;
     const float cosine = normal.x * leaf.nx[i] + normal.y * leaf.ny[i] + normal.z * leaf.nz[i];
     covers[i] = (distance2[i] * leaf.inverse_r2[i] < 1) & (cosine > kMinCos);
     any |= covers[i];
+    narrow |= (distance2[i] < leaf.narrow2[i]) & (cosine > kMinCos);
   }
-  if (!any) return;
+  if (!any) return !narrow;
   for (std::size_t i = 0; i < kLeaf; ++i)
     if (covers[i]) found.push_back({std::uint32_t(number * kLeaf + i), distance2[i]});
+  return !narrow;
 }
 
 float FootprintDensity::outer_radius(std::uint32_t photon) const {
@@ -156,7 +166,7 @@ FootprintDensity::Extent FootprintDensity::extent_of(std::uint32_t photon) const
 }
 
 /// Do all footprints of a leaf lie in one whole disc? Spokes of that disc and one of each footprint are looked along: photons
-/// are many where they are dense, and so it costs two rays for each of them.
+/// are many where they are dense, and so it costs three rays for each of them.
 bool FootprintDensity::leaf_whole(std::size_t number) const {
   std::atomic<std::uint8_t>& known = leaf_whole_[number];
   const std::uint8_t before = known.load(std::memory_order_relaxed);
@@ -178,13 +188,12 @@ bool FootprintDensity::measure_leaf(std::size_t number) const {
     radius = std::max(radius, std::sqrt(length2(away)) + outer_radius(i));
   }
   const float turn = PathRandom(0x6c656166ull, index_.source(first)).get1(0, Purpose::points);
-  if (!area_.whole(middle, normal, radius, turn)) return false;
+  if (!area_.whole(middle, normal, radius, turn, kLift * radius)) return false;
   const Frame frame(normal);
   for (std::uint32_t i = first; i < last; ++i) {
     const float phi = 2 * kPi * kGolden * float(i);
-    const Vec3 start = index_.position(i) + normal * (2 * area_.offset());
-    if (!area_.reach().free(start, start + (frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi)) * outer_radius(i)))
-      return false;
+    const Vec3 outwards = frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi);
+    if (!area_.whole_towards(index_.position(i), normal, outwards, outer_radius(i), kLift * outer_radius(i))) return false;
   }
   return true;
 }
@@ -195,7 +204,8 @@ FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   const PathRandom random(0x666f6f74ull, index_.source(photon));
   float radius = outer_radius(photon);
   const auto disc = [](float r) { return 1 / (kPi * r * r); };
-  if (leaf_whole(photon / kLeaf) || area_.whole(position, normal, radius, random.get1(2, Purpose::points)))
+  if (radius < kThin * area_.offset() || leaf_whole(photon / kLeaf) ||
+      area_.whole(position, normal, radius, random.get1(2, Purpose::points), kLift * radius))
     return {radius, -disc(radius)};
   for (int i = 0; i <= kMostHalvings; ++i, radius /= 2) {
     const PathRandom draws(random.bits(std::uint32_t(i), Purpose::points, 1), 0);
@@ -210,16 +220,16 @@ Rgb FootprintDensity::estimate(Vec3 position, Vec3 normal, float& smooth_over) c
   if (empty()) return Rgb(0.0f);
   thread_local std::vector<Covering> covering;
   covering.clear();
-  find_covering(position, normal, covering);
+  bool smooth = find_covering(position, normal, covering) && !covering.empty();
   Rgbd sum{0.0};
-  bool smooth = true;
   for (const auto [photon, distance2] : covering) {
     const auto [radius, inverse_area] = extent_of(photon);
-    smooth = smooth && radius >= options_.max_radius;
+    smooth = smooth && radius > kAlmost * options_.max_radius;
     const double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
     if (!(weight > 0)) continue;   // it has become smaller
     const Vec3 from = index_.position(photon), from_normal = normal_of(photon);
-    const bool in_plane = inverse_area < 0 && std::abs(dot(position - from, from_normal)) < 4 * area_.offset();
+    const bool in_plane =
+        inverse_area < 0 && std::abs(dot(position - from, from_normal)) < 4 * area_.offset() + kLift * radius;
     if (in_plane || area_.reach()(from, from_normal, position, normal))
       sum += Rgbd(index_.flux(photon)) * (weight * double(std::abs(inverse_area)));
   }

@@ -14,8 +14,9 @@
 namespace tempolux {
 
 struct FootprintOptions {
-  int neighbours = 25;    ///< k
+  int neighbours = 25;    ///< k, below kMaxNeighbours
   float max_radius = 1;   ///< m
+  float margin = 0;       ///< m: light counts as smooth only if no footprint narrower than max_radius is as near as this
 };
 
 /// Density of light that has edges and spots: caustics.
@@ -23,9 +24,10 @@ struct FootprintOptions {
 ///     E(x) = sum over photons i that reach x of flux_i K(d_i / r_i) / A_i,   K(t) = 2 (1 - t^2)  [Epanechnikov 1969]
 ///
 /// d_i: distance from the photon in the metric of the ellipsoid r_i : r_i : r_i / kFlattening about it. r_i [m]: to its k-th
-/// neighbour, at most max_radius. A_i [m^2]: the area that can be reached from it (Reach, which also decides on x), weighted
-/// by K. So each photon's light is spread over surface, all of it and no more: the integral of E is the flux, at walls,
-/// edges and steps too.
+/// neighbour, at most max_radius; at least Reach::offset(), and halved while hardly any of the ellipsoid is surface (on wires).
+/// A_i [m^2]: the area that can be reached from it (Reach, which also decides on x), weighted by K. So each photon's light is
+/// spread over surface, all of it and no more: the integral of E is the flux, at walls, edges and steps too. Only of
+/// footprints so small that positions cannot tell heights in them (64 Reach::offset()) nothing is asked, they count as discs.
 ///
 /// Why the radius is the photon's and not x's [Breiman, Meisel & Purcell 1977]: the k nearest of x give more light than there
 /// is. Their relative error is about r^2 / 8 times (Laplacian of E) / E, and r^2 goes as 1 / E: around a spot each x reaches
@@ -46,12 +48,17 @@ class FootprintDensity {
   std::size_t photon_count() const { return index_.size(); }
 
   /// Irradiance [W/m^2] of a place above a surface's lit side, normal: unit. Below 0 only by photons of negative flux.
-  /// `smooth_over`: max_radius where all footprints that cover the place are as wide as that, or none does; else 0.
+  /// `smooth_over`: max_radius where footprints cover the place and all that come within `margin` are as wide as that; else 0.
   Rgb estimate(Vec3 position, Vec3 normal, float& smooth_over) const;
 
  private:
   static constexpr std::size_t kLeaf = 32, kChildren = 8;
-  struct alignas(64) Leaf { float x[kLeaf], y[kLeaf], z[kLeaf], nx[kLeaf], ny[kLeaf], nz[kLeaf], inverse_r2[kLeaf]; };
+  struct alignas(64) Leaf {
+    float x[kLeaf], y[kLeaf], z[kLeaf], nx[kLeaf], ny[kLeaf], nz[kLeaf];
+    float inverse_r2[kLeaf];   ///< 1/m^2
+    float flat[kLeaf];         ///< (radius / height)^2 - 1 of the ellipsoid
+    float narrow2[kLeaf];      ///< m^2: (radius + margin)^2 of those narrower than max_radius, else -1
+  };
   struct alignas(64) Node { float lower[3][kChildren], upper[3][kChildren]; };
   /// Found when a footprint is first asked for: most of a map's are never seen.
   struct Extent {
@@ -63,9 +70,9 @@ class FootprintDensity {
     float distance2;   ///< m^2, in the ellipsoid's metric
   };
   float radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const;
-  void build_nodes(float slack);
-  void find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
-  void scan_leaf(std::size_t leaf, Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
+  void build_nodes();
+  bool find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
+  bool scan_leaf(std::size_t leaf, Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
   Extent extent_of(std::uint32_t photon) const;
   Extent measure(std::uint32_t photon) const;
   bool leaf_whole(std::size_t leaf) const;

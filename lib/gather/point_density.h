@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "lib/core/random.h"
 #include "lib/density/photon_index.h"
@@ -37,13 +36,8 @@ class PointDensity {
   PointDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const DensityOptions& options,
                std::uint8_t kinds = kAllKinds, Vec3d shift = {});
 
-  /// No photon is of these kinds.
-  bool empty() const { return index_.size() == 0; }
-
   /// Irradiance [W/m^2], >= 0; `radius` receives the half-axis of the ellipsoid, m, 0 if no photon is near.
   Rgb estimate(const IrradiancePoint& point, const PathRandom& random, float& radius) const;
-
-  std::size_t photon_count() const { return index_.size(); }
 
  private:
   struct Disc {

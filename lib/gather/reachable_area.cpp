@@ -43,26 +43,28 @@ ReachableArea::ReachableArea(const Tracer& tracer) : tracer_(tracer), reach_(tra
   for (const Material& material : tracer.frame().materials) stores_.push_back(may_have_lambert(material));
 }
 
-bool ReachableArea::whole(Vec3 position, Vec3 normal, float radius, float turn) const {
+bool ReachableArea::whole(Vec3 position, Vec3 normal, float radius, float turn, float lift) const {
   const Frame frame(normal);
-  const Vec3 start = position + normal * (2 * reach_.offset());
-  const float down = 2 * reach_.offset() + std::max(4 * reach_.offset(), kFlat * radius);
   for (int i = 0; i < kRim; ++i) {
     const float phi = 2 * kPi * (float(i) + turn) / float(kRim);
-    const Vec3 rim = start + (frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi)) * radius;
-    Hit hit;
-    if (!reach_.free(start, rim) || !tracer_.intersect({rim, -normal, 0, down, true}, hit) ||
-        !stores_[tracer_.frame().surfaces[hit.surface].material])
-      return false;
+    if (!whole_towards(position, normal, frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi), radius, lift)) return false;
   }
   return true;
+}
+
+bool ReachableArea::whole_towards(Vec3 position, Vec3 normal, Vec3 outwards, float radius, float lift) const {
+  const Vec3 start = position + normal * (2 * reach_.offset()), rim = start + normal * lift + outwards * radius;
+  const float down = 2 * reach_.offset() + lift + std::max(4 * reach_.offset(), kFlat * radius);
+  Hit hit;
+  return reach_.free(start, rim) && tracer_.intersect({rim, -normal, 0, down, true}, hit) &&
+         stores_[tracer_.frame().surfaces[hit.surface].material];
 }
 
 /// 1 / area that can be reached, 1/m^2; 0 if there is none. Columns along the normal are drawn over the disc
 /// until a fixed number m of them arrives: the mean of (number drawn) / m is exactly 1 / (share that arrives) if they
 /// are independent [inverse binomial sampling, Haldane 1945], where m / (a fixed number drawn) would be too small in
 /// the mean. Spread evenly they are less noisy, but the mean is low by up to 1 / (2 m): m arrive as soon as m - 1/2 are
-/// to be expected. So for the flat kernel they are spread, for look-ups that are averaged they are independent. With the
+/// to be expected. So for the flat kernel they are spread, for footprints, many of which light a place, they are independent. With the
 /// round kernel the area counts by its weight, which is what the columns are drawn by: density 2 (1 - d^2) / pi.
 double ReachableArea::inverse(Vec3 position, Vec3 normal, float radius, int probes, Kernel kernel,
                               const PathRandom& random) const {
@@ -83,6 +85,7 @@ double ReachableArea::inverse(Vec3 position, Vec3 normal, float radius, int prob
                               round ? random.get1(i, Purpose::place, 1) : 0);
     arrived += here > 0;
     surface += double(here);
+    if (round && arrived == 0 && drawn >= kMostProbes * probes / 4) return 0;
   }
   if (arrived < (round ? probes : 1)) return 0;
   return double(drawn) / (double(kPi) * double(radius) * double(radius) * surface);

@@ -1,7 +1,6 @@
 // lib/gather/reachable_area.h -- what of the surface around a place its light can be spread over: walls, edges, steps.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "lib/core/random.h"
@@ -45,10 +44,13 @@ class ReachableArea {
 
   /// Is the disc whole: can every place on its rim be reached across the plane, and is surface there? Sixteen places, turned
   /// by `turn` of [0, 1), miss walls that cut off less than 0.4 % of the disc.
-  bool whole(Vec3 position, Vec3 normal, float radius, float turn) const;
+  /// `lift`: m above the plane that spokes end, for normals that are known to lift / radius only.
+  bool whole(Vec3 position, Vec3 normal, float radius, float turn, float lift = 0) const;
+  /// One of those places.
+  bool whole_towards(Vec3 position, Vec3 normal, Vec3 outwards, float radius, float lift) const;
 
   /// 1 / area that can be reached, 1/m^2, exact in the mean; 0 if of kMostProbes * probes drawn columns none
-  /// arrives, with the round kernel if fewer than `probes` do.
+  /// arrives, with the round kernel if fewer than `probes` do, or none of the first quarter.
   double inverse(Vec3 position, Vec3 normal, float radius, int probes, Kernel kernel, const PathRandom& random) const;
 
  private:

@@ -64,12 +64,8 @@ struct Arrival {
                       : bsdf.eval_diffuse(out, in) * (kPi / p);
   }
 
-  /// Of all events, how many are drawn by scatter_beyond(): as many as there are directions for it, or so; none where the
-  /// normals differ by less than half a degree.
-  float chance_beyond() const {
-    const float cosine = dot(normal, normal_geometric);
-    return flat || cosine > 0.99996f ? 0 : 0.5f * std::sqrt(std::max(0.0f, 1 - cosine * cosine));
-  }
+  /// Do the normals differ by half a degree or more?
+  bool bent() const { return !flat && dot(normal, normal_geometric) < 0.99996f; }
 
   /// Event S into directions from which the eye sees the geometric normal, since the shading normal looks away from them
   /// (SeenSide); black into others, and where D was drawn. Beside the events by the shading normal, not instead of them.
@@ -285,13 +281,14 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   // Scatter, or be absorbed.
   const PathRandom& random = path.random;
   const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;   // else it chooses nothing
-  const float p_beyond = bsdf.has_specular() ? at.chance_beyond() : 0;
   Bsdf::Sample next;
   Vec3 travel;
-  if (p_beyond > 0 && random.get1(draw.bounce, Purpose::lobe, 1) < p_beyond) {
+  bool beyond = false;   // there are two events to choose from: of either as much as of both, so that each counts twice
+  if (bsdf.has_specular() && at.bent()) {
     next = at.scatter_beyond(bsdf, u_lobe, draw.u, travel);
-    next.weight *= 1 / p_beyond;
-  } else {
+    beyond = !is_black(next.weight);
+  }
+  if (!(beyond && random.get1(draw.bounce, Purpose::lobe, 1) < 0.5f)) {
     next = bsdf.is_matte() ? bsdf.sample_matte(at.wi_local, draw.direction) : bsdf.sample(at.wi_local, u_lobe, draw.u);
     travel = at.frame.to_world(next.wi);
     if (!at.flat && (next.diffuse || !(at.wi_local.z > 0))) {
@@ -302,8 +299,8 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
       next.weight *= at.shading_correction * std::max(0.0f, side * dot(travel, at.normal_geometric)) /
                      std::max(1e-6f, side * next.wi.z);
     }
-    if (p_beyond > 0) next.weight *= 1 / (1 - p_beyond);
   }
+  if (beyond) next.weight *= 2;
   const float cos_geometric = (next.transmitted ? -1.0f : 1.0f) * dot(travel, at.normal_geometric);
   const Rgb reflected = flux * next.weight;
   const float survival =

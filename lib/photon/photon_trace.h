@@ -43,7 +43,7 @@ struct PhotonBatch {
 /// A photon is recorded at every surface that has a Lambert lobe, before it is scattered, with
 ///     flux x arrival_weight(wi) x |wi.n_s| / |wi.n_g|     [W]
 /// so that  rho/pi x density  is what the Lambert lobe reflects, shading normals included [Veach 1997, 5.3]
-/// (they scatter to where the eye looks from, by D exactly; S events leave out what the eye sees by geometric normals);
+/// (they scatter to where the eye looks from: by the geometric normal, too, where the shading normal looks away);
 /// for a matte flat surface that is the flux that arrives. Inside solids of glass it is divided by the index
 /// squared (bsdf.h). What solids absorb on the way counts as absorbed. Of a surface of alpha mode BLEND only the
 /// share alpha of the photons take notice: divided by alpha they stand for all that arrive. Roulette keeps the flux

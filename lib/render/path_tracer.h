@@ -94,9 +94,10 @@ struct RayCounts {
 /// What replaces the path beyond its first Lambert scattering, if anything: irradiance [W/m^2] by kind.
 class DiffuseLight {
  public:
+  static constexpr float kSparseReach = 1 / 16.0f;
   struct Irradiance {
     Rgb caustic{0.0f}, indirect{0.0f};
-    float sparse_radius = 0;  ///< m: over which caustic light is averaged, where photons are few; else 0
+    float sparse_radius = 0;  ///< m: over which caustic light is averaged, where photons are few within kSparseReach of it; else 0
   };
   virtual ~DiffuseLight() = default;
   /// Light arriving at the point; both normals are unit and on the side seen. `direct_view`: the camera ray itself met it,

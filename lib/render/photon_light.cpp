@@ -8,7 +8,7 @@ PhotonLight::PhotonLight(const Tracer& tracer, std::span<const formats::Photon> 
   options_.max_radius = options.max_radius > 0 ? options.max_radius : 0.05f * tracer.frame().bounds.diagonal();
   if (!options.caustic_only) indirect_ = PhotonIndex(photons, kind_bit(formats::PathKind::indirect), photon_shift);
   const float caustic_radius = options.caustic_radius > 0 ? options.caustic_radius : tracer.frame().bounds.diagonal() / 30;
-  const FootprintOptions density{options.caustic_neighbours, caustic_radius};
+  const FootprintOptions density{options.caustic_neighbours, caustic_radius, kSparseReach * caustic_radius};
   caustic_ = std::make_unique<FootprintDensity>(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);
   if (caustic_->empty()) caustic_.reset();
 }

@@ -17,7 +17,7 @@ struct PhotonLightOptions {
   bool caustic_only = false;      ///< indirect light comes from elsewhere: index the caustic photons alone
 };
 
-/// Caustic and indirect irradiance from the photons of a map, each kind by its own k nearest. Biased: light is
+/// Caustic and indirect irradiance from the photons of a map, by footprints and by the k nearest. Biased: light is
 /// blurred over the radius of the estimate, and indirect light is lost at edges and corners within it; the bias falls
 /// with the photons' number. Caustic light is divided by the area that can be reached (FootprintDensity):
 /// right on slender things too, where it is uniform over them. Without caustic photons nothing is built for them.

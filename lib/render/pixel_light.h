@@ -12,7 +12,7 @@ namespace tempolux {
 
 /// Caustic light where photons are few: stray ones, each a disc as wide as estimates may be. It changes by little over a fraction
 /// of that width, and its estimate costs as much as all else a pixel asks for, so what was found nearby on the same surface,
-/// facing the same way, is taken again: light moves by kWithin of the width at most. Which answers are kept follows from the
+/// facing the same way, is taken again: light moves by kSparseReach of the width at most. Which answers are kept follows from the
 /// photons' number alone: were it from the answer, bright ones of a noisy estimate would be kept less often than dark ones.
 /// One for each tile: what is known does not depend on threads.
 class SparseCaustics {
@@ -27,13 +27,13 @@ class SparseCaustics {
     return nullptr;
   }
   void keep(const SurfacePoint& surface, Vec3 geometric, const DiffuseLight::Irradiance& light) {
-    const float reach = kWithin * light.sparse_radius;
+    const float reach = DiffuseLight::kSparseReach * light.sparse_radius;
     if (!(reach > 0)) return;
     kept_[next_++ % kept_.size()] = {surface.surface, surface.position, geometric, reach * reach, light.caustic};
   }
 
  private:
-  static constexpr float kWithin = 1 / 16.0f, kSameNormal = 0.9995f;   // 2 degrees
+  static constexpr float kSameNormal = 0.9995f;   // 2 degrees
   struct Kept {
     std::uint32_t surface = kNone;
     Vec3 position, normal;

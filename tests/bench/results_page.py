@@ -38,12 +38,13 @@ def kept(page):
         return {}
     sections = re.split(r"^(?=### )", page.read_text().partition(FIGURES_IN_FULL)[2], flags=re.M)
     found = {}
-    for text in sections:
+    for text in sections[1:]:
         head = re.match(r"### (.*)\n\n`.* --only (\S+)` · (.*) · load .*\n\nAsked: (.*)\. (.*)\.\n", text)
-        if head:
-            title, name, machine, asked, said = head.groups()
-            found[name] = {"title": title, "machine": machine, "asked": asked, "text": text.rstrip("\n") + "\n\n",
-                           "met": VERDICTS.get(said, VERDICTS.get(said.lower()))}
+        if not head:
+            raise SystemExit(f"{page}: cannot keep '{text.splitlines()[0]}': its head is not as section() writes it")
+        title, name, machine, asked, said = head.groups()
+        found[name] = {"title": title, "machine": machine, "asked": asked, "text": text.rstrip("\n") + "\n\n",
+                       "met": VERDICTS.get(said, VERDICTS.get(said.lower()))}
     return found
 
 
@@ -137,7 +138,7 @@ def age(bench, machine):
 
 def summary(bench, found, figures, left_out, command):
     """A row for each required figure, those too that have not been measured."""
-    rows = [[f["title"], f["asked"], verdict(f["met"]), age(bench, f["machine"])] if f else
+    rows = [[f["title"], f["asked"], verdict(f["met"]), "; not again: ".join(filter(None, (age(bench, f["machine"]), left_out.get(name))))] if f else
             [figures[name].__doc__.splitlines()[0].rstrip("."), f"`{command} --only {name}`", "**not measured**",
              left_out.get(name, "")] for name, f in found.items()]
     return "## Required figures\n\n" + table(["what", "asked", "verdict", "at commit"], rows) + "\n"

@@ -174,6 +174,50 @@ TEST(CausticLight, SpotsKeepTheirLight) {
   }
 }
 
+/// Stray photons around a spot of 1000 photons, 0.01 m across: light is smooth over the largest radius, 1 m, where no place of
+/// the spot is within the margin of 0.1 m, and not where nothing arrives, so that no answer from beside the spot counts in it.
+TEST(CausticLight, IsSmoothOnlyAwayFromSpots) {
+  HandMadeScene scene;
+  scene.add_quad({-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, matte(Rgb(0.0f)));
+  const SceneFrame& frame = scene.frame();
+  const Tracer tracer(frame);
+  const auto up = formats::encode_normal({0, 1, 0});
+  std::vector<formats::Photon> photons;
+  for (float x : {-1.5f, 1.5f}) photons.push_back({{x, 0, 0.3f}, {1, 1, 1}, up, 0, formats::PathKind::caustic, 1});
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const Vec2 d = sample_disc_concentric(PathRandom(1, 7).get2(i, Purpose::test));
+    photons.push_back({{0.005f * d.x, 0, 0.005f * d.y}, {1, 1, 1}, up, 0, formats::PathKind::caustic, 1});
+  }
+  const FootprintDensity density(tracer, photons, {.neighbours = 5, .max_radius = 1, .margin = 0.1f});
+  float smooth;
+  EXPECT_GT(density.estimate({-1, 0, 0}, {0, 1, 0}, smooth).g, 0);
+  EXPECT_EQ(smooth, 1) << "stray photons alone";
+  density.estimate({0.09f, 0, 0}, {0, 1, 0}, smooth);
+  EXPECT_EQ(smooth, 0) << "the spot is near";
+  EXPECT_EQ(density.estimate({4, 0, 0}, {0, 1, 0}, smooth).g, 0);
+  EXPECT_EQ(smooth, 0) << "nothing is there";
+}
+
+/// Photons nearer to each other than positions can tell heights of, in a scene of kilometres: each is a disc all the same, and
+/// no wider than its neighbours are. 1 W in a spot of 0.02 m, summed over a grid of 0.002 m.
+TEST(CausticLight, SpotsStaySharpInLargeScenes) {
+  HandMadeScene scene;
+  scene.add_quad({-4000, 0, 4000}, {4000, 0, 4000}, {4000, 0, -4000}, {-4000, 0, -4000}, matte(Rgb(0.0f)));
+  const SceneFrame& frame = scene.frame();
+  const Tracer tracer(frame);
+  std::vector<formats::Photon> photons;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const Vec2 d = sample_disc_concentric(PathRandom(2, 7).get2(i, Purpose::test));
+    photons.push_back({{0.01f * d.x, 0, 0.01f * d.y}, {1e-3f, 1e-3f, 1e-3f}, formats::encode_normal({0, 1, 0}), 0, formats::PathKind::caustic, 1});
+  }
+  const FootprintDensity density(tracer, photons, {.neighbours = 25, .max_radius = 1});
+  double sum = 0;
+  float smooth;
+  for (float x = -0.0299f; x < 0.03f; x += 0.002f)
+    for (float z = -0.0299f; z < 0.03f; z += 0.002f) sum += double(density.estimate({x, 0, z}, {0, 1, 0}, smooth).g) * 4e-6;
+  EXPECT_NEAR(sum, 1, 0.02);
+}
+
 /// No caustic photon: nothing is built, nothing is found.
 TEST(CausticLight, IsNothingWithoutItsPhotons) {
   HandMadeScene scene;

@@ -76,7 +76,7 @@ TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
 }
 
 /// Caustic irradiance x [m] on a floor of two meshes, 64 x 36 pixels of 1/32 m. Where photons are few (sparse_radius 1 m) an
-/// answer may be taken from an eighth of that, four pixels, away: no pixel is farther off than that and its own half, most are
+/// answer may be taken from a sixteenth of that, two pixels, away: no pixel is farther off than that and its own half, most are
 /// not asked for. Where they are not each pixel is asked for and right to its half. Neither takes an answer from beyond the
 /// seam at x = 0, where the other mesh gives -x.
 TEST(FrameRenderer, SparseCausticLightIsTakenFromNearbyOnly) {
@@ -107,7 +107,7 @@ TEST(FrameRenderer, SparseCausticLightIsTakenFromNearbyOnly) {
     for (int y = 0; y < 36; ++y)
       for (int x = 0; x < 64; ++x) {
         const float expected = std::abs((float(x) + 0.5f) / 32 - 1);
-        EXPECT_NEAR(rendered.mean.pixels[std::size_t(y * 64 + x)][Layer::caustic].g * kPi, expected, radius / 8 + 0.5f / 32 + 1e-5f);
+        EXPECT_NEAR(rendered.mean.pixels[std::size_t(y * 64 + x)][Layer::caustic].g * kPi, expected, radius / 16 + 0.5f / 32 + 1e-5f);
       }
     if (radius > 0) EXPECT_LT(light.asked, 64 * 36 / 4);
     else EXPECT_EQ(light.asked, 64 * 36);
