@@ -8,9 +8,9 @@ A file without a camera is copied to a temporary folder and gets one that sees a
 a light gets a lamp and a dim sky; in one with lights without extent no surface is smoother than a roughness of 0.1: the path
 tracer cannot find those in a mirror, and hardly in gloss or glass as smooth as that (the variance of their light goes with
 roughness^-4), so such layers may stay undecided; one scene is made rougher still (ROUGHER). Where things stand (skins, morphs,
-instances) is learnt from a few photons of a sun. The photon chain takes 12 million photons (4, if those cost 8 CPU s or
-more: in closed rooms each is stored many times), 80k points and 16 shadow rays for each, not its defaults: between seeds
-photons and shadow rays make most of the difference, and cost less than more seeds; points nearer to each other tell the light
+instances) is learnt from a few photons of a sun. The photon chain takes 12 million photons (4, if those fill 200 MB or more: in
+closed rooms each is stored many times; 36, if they fill less than 30: few meet anything), 80k points, 16 shadow rays for each, 64 samples per pixel and 8 photons to a caustic one's footprint, not its defaults: between seeds photons and rays
+make most of the difference, and cost less than more seeds; points nearer to each other and small footprints tell the light
 on both sides of a narrow gap apart (the ground is put just below). Records are the default's. Prints a table; writes
 found-layers.json and found.png (path tracer left, photon chain right, each pair at its own exposure) to --out.
 A first run of either way tells the variance and the cost of every layer; then as many samples per pixel of the one and seeds of
@@ -35,7 +35,6 @@ from furnish import LEAST_ROUGHNESS, Asset, furnished, roughened, with_sun
 from measure import Bench, Missing, figure, machine
 
 LAYERS = ("emission", "specular", "direct", "caustic", "indirect")
-FRAME = 10
 JUDGED = 0.001          # of the picture: layers below are listed only
 LIMIT = 0.015           # of a layer's mean: what the two may differ by
 WANTED_BAR = 0.01       # of a judged layer's mean
@@ -43,8 +42,10 @@ PILOT, PILOT_SEEDS = 32, 3   # samples per pixel and seeds that tell how many ar
 MOST_SEEDS = 40
 PATIENCE = 2            # times --cpu where a layer would stay undecided
 ROUGHER = {"24_animation_pointer": 0.7}   # black but for spots of lights without extent: at 0.1 one path in 10^5 brings half of a layer
-SLOW_SEED = 8           # CPU s with a third of the photons: then that is enough
+LARGE_MAP, SMALL_MAP = 200e6, 30e6   # bytes of a third of the photons: then that is enough; three times as many do not hurt
 POINTS, LIGHT_SAMPLES = "80k", 16   # irradiance points, shadow rays for each
+FRAME = 10
+FRAME_OPTIONS = ["--spp", 64, "--caustic-neighbours", 8]
 
 
 class Refused(Exception):
@@ -114,7 +115,7 @@ class Found:
                 self.tool("irradcache-build", *common, "--photons", photon_map, "--point-count", POINTS, "--light-samples", LIGHT_SAMPLES, "--keep-points", points,
                           "--size", size, "-o", cache),
                 self.tool("frame-render", *common, "--size", size, "--irradcache", cache, "--points", points, "--photons",
-                          photon_map, "--channels", "RGBA,layers", "--compression", "none", "-o", image)]
+                          photon_map, *FRAME_OPTIONS, "--channels", "RGBA,layers", "--compression", "none", "-o", image)]
         return image, sum(stats["cpu_s"] for stats, _ in runs)
 
     def chains(self, scene, seeds, photons):
@@ -133,9 +134,10 @@ class Found:
             scene, row["given"] = self.usable(file)
             path, halves, row["path_cpu_s"], row["warnings"] = self.reference(scene, PILOT)
             photons = self.photons // 3
-            _, cpu = self.chains(scene, [1], photons)
-            if cpu < SLOW_SEED:
-                photons = self.photons
+            self.by_photons(scene, self.size, photons, 1)
+            size = (self.folder / "chain.photons").stat().st_size
+            if size < LARGE_MAP:
+                photons = self.photons * (3 if size < SMALL_MAP else 1)
             chain, row["chain_cpu_s"] = self.chains(scene, range(1, PILOT_SEEDS + 1), photons)
             pilot = path, halves, row["path_cpu_s"], chain, row["chain_cpu_s"]
             for patience in (1, PATIENCE):
@@ -318,7 +320,7 @@ def found(bench, _=None, only="", size="320x180", cpu=120, photons=12_000_000):
     notes = [f"{name}: {warning}" for name, row in rows.items() for warning in row.get("warnings", [])]
     notes += [f"{Path(name).name}: {'the same' if row['same_bytes'] else 'OTHER'} bytes with 1, 2, 3 and 7 threads."
               for name, row in rows.items() if "same_bytes" in row]
-    notes += [f"Photon chain: {POINTS} irradiance points, {LIGHT_SAMPLES} shadow rays for each, else its defaults. Where a least "
+    notes += [f"Photon chain: {POINTS} irradiance points, {LIGHT_SAMPLES} shadow rays for each, frame-render {' '.join(map(str, FRAME_OPTIONS))}, else its defaults. Where a least "
               "roughness is named (lights without extent beside smooth surfaces), both ways render surfaces so rough."]
     notes += [f"Measured at commit {other}: {', '.join(Path(name).stem for name, row in rows.items() if row['commit'] == other)}."
               for other in sorted({row["commit"] for row in rows.values()} - {commit})]
@@ -340,7 +342,7 @@ def main():
     parser.add_argument("--only", default="", help="regular expression: files whose path it is found in")
     parser.add_argument("--size", default="320x180", help="[320x180]")
     parser.add_argument("--cpu", type=float, default=120, help="CPU s for a scene, about; more for hard ones [120]")
-    parser.add_argument("--photons", type=int, default=12_000_000, help="a third where that takes 8 CPU s [12000000]")
+    parser.add_argument("--photons", type=int, default=12_000_000, help="a third where that fills 200 MB, three times as many where it fills less than 30 [12000000]")
     args = parser.parse_args()
     bench = Bench(args.build.resolve(), args.out.resolve(), project, False, 0)
     try:
