@@ -9,10 +9,11 @@ a light gets a lamp and a dim sky; in one with lights without extent no surface 
 tracer cannot find those in a mirror, and hardly in gloss or glass as smooth as that (the variance of their light goes with
 roughness^-4), so such layers may stay undecided; one scene is made rougher still (ROUGHER). Where things stand (skins, morphs,
 instances) is learnt from a few photons of a sun. The photon chain takes 12 million photons (4, if those fill 200 MB or more: in
-closed rooms each is stored many times; 36, if they fill less than 30: few meet anything), 80k points, 16 shadow rays for each, 64 samples per pixel and 8 photons to a caustic one's footprint, not its defaults: between seeds photons and rays
-make most of the difference, and cost less than more seeds; points nearer to each other and small footprints tell the light
-on both sides of a narrow gap apart (the ground is put just below). Records are the default's. Prints a table; writes
-found-layers.json and found.png (path tracer left, photon chain right, each pair at its own exposure) to --out.
+closed rooms each is stored many times; 36, if they fill less than 30: few meet anything), 80k points, 16 shadow rays for each, 64
+samples per pixel and 8 photons to a caustic one's footprint, not its defaults: between seeds photons and rays make most of the
+difference, and cost less than more seeds; points nearer to each other and small footprints tell the light on both sides of a narrow
+gap apart (the ground is put just below). Records are the default's. Prints a table; writes found-layers.json and found.png (path
+tracer left, photon chain right, each pair at its own exposure) to --out.
 A first run of either way tells the variance and the cost of every layer; then as many samples per pixel of the one and seeds of
 the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows. Where a layer
 would stay undecided, once more: below half of that, for twice the CPU time. An error bar is that of 95 %, by Student's t
