@@ -16,7 +16,7 @@ gap apart (the ground is put just below). Records are the default's. Prints a ta
 tracer left, photon chain right, each pair at its own exposure) to --out.
 A first run of either way tells the variance and the cost of every layer; then as many samples per pixel of the one and seeds of
 the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows. Where a layer
-would stay undecided, once more: below half of that, for twice the CPU time. An error bar is that of 95 %, by Student's t
+would stay undecided, once more: below half of that, for four times the CPU time. An error bar is that of 95 %, by Student's t
 for the few seeds. A layer agrees if the means differ by at most 1.5 % and the bar is no wider than that; it does not if they
 differ by more than 1.5 % plus the bar; else it is undecided. Layers below 0.1 % of the picture are listed, but not judged.
 """
@@ -40,8 +40,8 @@ JUDGED = 0.001          # of the picture: layers below are listed only
 LIMIT = 0.015           # of a layer's mean: what the two may differ by
 WANTED_BAR = 0.01       # of a judged layer's mean
 PILOT, PILOT_SEEDS = 32, 3   # samples per pixel and seeds that tell how many are needed
-MOST_SEEDS = 40
-PATIENCE = 2            # times --cpu where a layer would stay undecided
+MOST_SEEDS = 60
+PATIENCE = 4            # times --cpu where a layer would stay undecided
 ROUGHER = {"24_animation_pointer": 0.7}   # black but for spots of lights without extent: at 0.1 one path in 10^5 brings half of a layer
 LARGE_MAP, SMALL_MAP = 200e6, 30e6   # bytes of a third of the photons: then that is enough; three times as many do not hurt
 POINTS, LIGHT_SAMPLES = "80k", 16   # irradiance points, shadow rays for each
