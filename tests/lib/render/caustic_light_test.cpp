@@ -133,6 +133,14 @@ TEST(CausticLight, IsUnbiasedForIndependentAndForEvenlySpreadPhotons) {
   }
 }
 
+/// 1000 photons on a disc about the origin, from above.
+void add_spot(float radius, float flux, std::vector<formats::Photon>& photons) {
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const Vec2 d = sample_disc_concentric(PathRandom(1, 7).get2(i, Purpose::test));
+    photons.push_back({{radius * d.x, 0, radius * d.y}, {flux, flux, flux}, formats::encode_normal({0, 1, 0}), 0, formats::PathKind::caustic, 1});
+  }
+}
+
 /// Spots keep their light: 1000 photons of 1 W in all on a disc of radius 1 m on a floor, free, and with a thin wall through
 /// its middle. E summed over a grid of 0.02 m, a fraction of the least radius (0.16 m; the sum of a paraboloid of that width is
 /// right to 1e-3), is 1 W, and with the wall that of the photons on either side: the wall shades nothing here, it parts.
@@ -145,16 +153,10 @@ TEST(CausticLight, SpotsKeepTheirLight) {
     if (wall) scene.add_quad({0.3f, 0, 4}, {0.3f, 0, -4}, {0.3f, 1, -4}, {0.3f, 1, 4}, matte(Rgb(0.0f)));
     const SceneFrame& frame = scene.frame();
     const Tracer tracer(frame);
-    const PathRandom random(1, 7);
-    constexpr std::uint32_t kPhotons = 1000;
     std::vector<formats::Photon> photons;
+    add_spot(1, 1e-3f, photons);
     double left = 0;
-    for (std::uint32_t i = 0; i < kPhotons; ++i) {
-      const Vec2 d = sample_disc_concentric(random.get2(i, Purpose::test));
-      constexpr float kFlux = 1.0f / kPhotons;
-      photons.push_back({{d.x, 0, d.y}, {kFlux, kFlux, kFlux}, formats::encode_normal({0, 1, 0}), 0, formats::PathKind::caustic, 1});
-      left += d.x < 0.3f ? double(kFlux) : 0;
-    }
+    for (const formats::Photon& photon : photons) left += photon.position[0] < 0.3f ? 1e-3 : 0;
     const FootprintDensity density(tracer, photons, {.neighbours = 25, .max_radius = 2});
     double sum = 0, sum_left = 0, farthest = 0;
     constexpr float kStep = 0.02f;
@@ -184,10 +186,7 @@ TEST(CausticLight, IsSmoothOnlyAwayFromSpots) {
   const auto up = formats::encode_normal({0, 1, 0});
   std::vector<formats::Photon> photons;
   for (float x : {-1.5f, 1.5f}) photons.push_back({{x, 0, 0.3f}, {1, 1, 1}, up, 0, formats::PathKind::caustic, 1});
-  for (std::uint32_t i = 0; i < 1000; ++i) {
-    const Vec2 d = sample_disc_concentric(PathRandom(1, 7).get2(i, Purpose::test));
-    photons.push_back({{0.005f * d.x, 0, 0.005f * d.y}, {1, 1, 1}, up, 0, formats::PathKind::caustic, 1});
-  }
+  add_spot(0.005f, 1, photons);
   const FootprintDensity density(tracer, photons, {.neighbours = 5, .max_radius = 1, .margin = 0.1f});
   float smooth;
   EXPECT_GT(density.estimate({-1, 0, 0}, {0, 1, 0}, smooth).g, 0);
@@ -206,10 +205,7 @@ TEST(CausticLight, SpotsStaySharpInLargeScenes) {
   const SceneFrame& frame = scene.frame();
   const Tracer tracer(frame);
   std::vector<formats::Photon> photons;
-  for (std::uint32_t i = 0; i < 1000; ++i) {
-    const Vec2 d = sample_disc_concentric(PathRandom(2, 7).get2(i, Purpose::test));
-    photons.push_back({{0.01f * d.x, 0, 0.01f * d.y}, {1e-3f, 1e-3f, 1e-3f}, formats::encode_normal({0, 1, 0}), 0, formats::PathKind::caustic, 1});
-  }
+  add_spot(0.01f, 1e-3f, photons);
   const FootprintDensity density(tracer, photons, {.neighbours = 25, .max_radius = 1});
   double sum = 0;
   float smooth;
