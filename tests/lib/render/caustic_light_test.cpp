@@ -5,6 +5,7 @@
 
 #include "lib/core/halton.h"
 #include "lib/core/sampling.h"
+#include "lib/gather/point_density.h"
 #include "lib/render/photon_light.h"
 #include "tests/support/materials.h"
 #include "tests/support/photons.h"
@@ -80,7 +81,7 @@ TEST(CausticLight, KeepsItsMeanOnAStair) {
   const Tracer tracer(frame);
   const auto up = formats::encode_normal({0, 1, 0});
   constexpr int kPhotons = kSteps * 100;
-  double sum = 0;
+  double all = 0, sum = 0;   // by the k nearest of a place, by footprints
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const PathRandom random(seed, 3);
     std::vector<formats::Photon> photons;
@@ -89,15 +90,19 @@ TEST(CausticLight, KeepsItsMeanOnAStair) {
       const float x = 0.1f * kSteps * u.x, y = 0.02f * std::floor(x / 0.1f), flux = 0.2f * kSteps / kPhotons;
       photons.push_back({{x, y, 2 * u.y - 1}, {flux, flux, flux}, up, 0, formats::PathKind::caustic, 1});
     }
+    const PointDensity nearest(tracer, photons, {.neighbours = 20, .max_radius = 0.4f, .area_probes = 32});
     const FootprintDensity density(tracer, photons, {.neighbours = 20, .max_radius = 0.4f});
     for (int i = 0; i < 40; ++i) {
       const int step = 2 + i % 4;
       const Vec3 at{0.1f * (float(step) + (float(i) + 0.5f) / 40), 0.02f * float(step), -0.4f + 0.02f * float(i)};
       float radius;
+      all += double(nearest.estimate({at, {0, 1, 0}}, PathRandom(seed, std::uint64_t(i)), radius).g);
       sum += double(density.estimate(at, {0, 1, 0}, radius).g);
     }
   }
+  EXPECT_NEAR(all / 8000, 1, 0.04);
   EXPECT_NEAR(sum / 8000, 1, 0.04);
+  EXPECT_NEAR(sum / all, 1, 0.02);
 }
 
 /// Irradiance 1 straight down on a floor, by photons that fall independently and by photons spread as evenly as Halton's
