@@ -129,7 +129,7 @@ inline void FinalGather::meet(Vec3 wo, float distance, Met& met) const {
   const float cosine = dot(met.hit.normal_geometric, wo);
   met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
   if (tracer_.frame().materials[met.hit.material].textures) [[unlikely]] {
-    const SurfaceMaterial material(tracer_.frame(), met.hit, kBounceSpread * distance);
+    const SurfaceMaterial material(tracer_.frame(), met.hit);
     met.bsdf = &met.textured.emplace(material, cosine > 0);
   }
   met.wo = wo;

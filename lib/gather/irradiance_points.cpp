@@ -98,7 +98,7 @@ Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, flo
   if (!tracer.intersect({point.position + point.normal * (4 * offset), -point.normal, 0, 8 * offset, true}, hit))
     return {point.normal, {}};
   SurfacePoint there = tracer.surface_point(hit);
-  const SurfaceMaterial material(tracer.frame(), there, 0);
+  const SurfaceMaterial material(tracer.frame(), there);
   const Bsdf bsdf(material, dot(there.normal_geometric, point.normal) > 0);
   Scattering found{dot(there.normal, point.normal) < 0 ? -there.normal : there.normal, {}};
   if (bsdf.has_diffuse() && bsdf.has_specular()) found.coat = bsdf;

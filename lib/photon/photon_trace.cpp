@@ -86,8 +86,8 @@ struct Textured {
   Bsdf bsdf;
   float coverage;                            ///< share of photons that meet the surface there
 
-  Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel, float distance)
-      : material(frame, point, kBounceSpread * distance),
+  Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
+      : material(frame, point),
         bsdf(material, dot(point.normal_geometric, travel) < 0),
         coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
 };
@@ -251,7 +251,7 @@ std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions
 /// The photon arrives at a surface; false if it ends there.
 bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const {
   if (varies_[point.material]) [[unlikely]] {
-    const Textured textured(tracer_.frame(), point, path.ray.direction, distance);
+    const Textured textured(tracer_.frame(), point, path.ray.direction);
     return scatter_at(path, point, distance, textured.bsdf, textured.coverage, draw, batch);
   }
   const bool front = dot(point.normal_geometric, path.ray.direction) < 0;

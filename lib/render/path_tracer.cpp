@@ -158,7 +158,7 @@ bool follow(const RenderScene& scene, const EyeRay& eye, const PixelRandom& rand
       throughput *= 1 / survival;
     }
     last.weighed = !next.delta;
-    if (!next.delta) cone = {next.diffuse ? 0 : cone.width, std::max(cone.spread, kBounceSpread)};
+    if (next.diffuse) cone = {};
     last.position = point.position;
     last.normal = next.transmitted ? -x.normal : x.normal;
     last.light_share = next.transmitted ? x.bsdf.light_share_beyond() : 1 - x.bsdf.light_share_beyond();

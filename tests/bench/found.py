@@ -9,11 +9,12 @@ a light gets a lamp and a dim sky; in one with lights without extent no surface 
 tracer cannot find those in a mirror, and hardly in gloss or glass as smooth as that (the variance of their light goes with
 roughness^-4), so such layers may stay undecided; one scene is made rougher still (ROUGHER). Where things stand (skins, morphs,
 instances) is learnt from a few photons of a sun. The photon chain takes 12 million photons (4, if those fill 200 MB or more: in
-closed rooms each is stored many times; 36, if they fill less than 30: few meet anything), 80k points, 16 shadow rays for each, 64
-samples per pixel and 8 photons to a caustic one's footprint, not its defaults: between seeds photons and rays make most of the
-difference, and cost less than more seeds; points nearer to each other and small footprints tell the light on both sides of a narrow
-gap apart (the ground is put just below). Records are the default's. Prints a table; writes found-layers.json and found.png (path
-tracer left, photon chain right, each pair at its own exposure) to --out.
+closed rooms each is stored many times; 36, if they fill less than 30, and 108, if less than 8: few meet anything, and what few
+there are is blurred over edges), 80k points, 16 shadow rays for each, 64 samples per pixel and 8 photons to a caustic one's
+footprint, not its defaults: between seeds photons and rays make most of the difference, and cost less than more seeds; points nearer
+to each other and small footprints tell the light on both sides of a narrow gap apart (the ground is put just below). Records are the
+default's. Prints a table; writes found-layers.json and found.png (path tracer left, photon chain right, each pair at its own
+exposure) to --out.
 A first run of either way tells the variance and the cost of every layer; then as many samples per pixel of the one and seeds of
 the other are spent as bring all error bars below 1 % for the least CPU time, or the widest as low as --cpu allows. Where a layer
 would stay undecided, once more: below half of that, for four times the CPU time. An error bar is that of 95 %, by Student's t
@@ -43,7 +44,7 @@ PILOT, PILOT_SEEDS = 32, 3   # samples per pixel and seeds that tell how many ar
 MOST_SEEDS = 60
 PATIENCE = 4            # times --cpu where a layer would stay undecided
 ROUGHER = {"24_animation_pointer": 0.7}   # black but for spots of lights without extent: at 0.1 one path in 10^5 brings half of a layer
-LARGE_MAP, SMALL_MAP = 200e6, 30e6   # bytes of a third of the photons: then that is enough; three times as many do not hurt
+LARGE_MAP, SMALL_MAP, TINY_MAP = 200e6, 30e6, 8e6   # bytes of a third of the photons: then that is enough; 3, 9 times as many do not hurt
 POINTS, LIGHT_SAMPLES = "80k", 16   # irradiance points, shadow rays for each
 FRAME = 10
 FRAME_OPTIONS = ["--spp", 64, "--caustic-neighbours", 8]
@@ -138,7 +139,7 @@ class Found:
             self.by_photons(scene, self.size, photons, 1)
             size = (self.folder / "chain.photons").stat().st_size
             if size < LARGE_MAP:
-                photons = self.photons * (3 if size < SMALL_MAP else 1)
+                photons = self.photons * (9 if size < TINY_MAP else 3 if size < SMALL_MAP else 1)
             chain, row["chain_cpu_s"] = self.chains(scene, range(1, PILOT_SEEDS + 1), photons)
             pilot = path, halves, row["path_cpu_s"], chain, row["chain_cpu_s"]
             for patience in (1, PATIENCE):
