@@ -151,7 +151,7 @@ PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t 
   resolution_ = *std::max_element(largest.begin(), largest.end()) * 0x1p-22f;
   order_as_tree(std::span<Item>(items.get(), size_), kLeafSize);
   build_leaves(photons, std::span<const Item>(items.get(), size_));
-  build_nodes();
+  build_tree();
 }
 
 void PhotonIndex::build_leaves(std::span<const formats::Photon> photons, std::span<const Item> items) {
@@ -179,31 +179,14 @@ void PhotonIndex::build_leaves(std::span<const formats::Photon> photons, std::sp
   });
 }
 
-void PhotonIndex::build_nodes() {
+void PhotonIndex::build_tree() {
   std::vector<Box3> boxes(leaf_count_);
   parallel_chunks(leaf_count_, kChunk / kLeafSize, [&](std::size_t first, std::size_t last) {
     for (std::size_t j = first; j < last; ++j)
       for (std::size_t i = j * kLeafSize; i < std::min((j + 1) * kLeafSize, size_); ++i)
         boxes[j].add(position(i));
   });
-  do {
-    const std::size_t count = (boxes.size() + 7) / 8;
-    level_start_.push_back(std::uint32_t(nodes_.size()));
-    std::vector<Box3> parents(count);
-    for (std::size_t j = 0; j < count; ++j) {
-      Node node;
-      for (std::size_t c = 0; c < 8; ++c) {
-        const bool used = 8 * j + c < boxes.size();
-        for (int axis = 0; axis < 3; ++axis) {
-          node.lower[axis][c] = used ? boxes[8 * j + c].lower[axis] : kNaN;
-          node.upper[axis][c] = used ? boxes[8 * j + c].upper[axis] : kNaN;
-        }
-        if (used) parents[j].add(boxes[8 * j + c]);
-      }
-      nodes_.push_back(node);
-    }
-    boxes = std::move(parents);
-  } while (boxes.size() > 1);
+  tree_ = BoxTree(std::move(boxes));
 }
 
 formats::PathKind PhotonIndex::kind(std::size_t i) const {

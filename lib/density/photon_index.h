@@ -14,6 +14,7 @@
 
 #include "formats/photons/photons.h"
 #include "lib/core/vec.h"
+#include "lib/density/box_tree.h"
 
 namespace tempolux {
 
@@ -115,12 +116,10 @@ class PhotonIndex {
   static constexpr std::size_t kLeafSize = 32;
   struct alignas(64) Leaf { float x[kLeafSize], y[kLeafSize], z[kLeafSize]; };
   struct alignas(64) LeafFilter { std::uint32_t code[kLeafSize]; };
-  /// Bounding boxes of eight children. Level 0 has leaves as children; child c of node j is 8 j + c.
-  struct alignas(64) Node { float lower[3][8], upper[3][8]; };
 
   struct Item;
   void build_leaves(std::span<const formats::Photon> photons, std::span<const Item> items);
-  void build_nodes();
+  void build_tree();
 
   std::size_t size_ = 0, leaf_count_ = 0;
   std::unique_ptr<Leaf[]> leaves_;           // unused places hold NaN, which no comparison lets through
@@ -128,8 +127,7 @@ class PhotonIndex {
   std::unique_ptr<Rgb[]> flux_;
   std::unique_ptr<std::uint32_t[]> source_;
   std::unique_ptr<std::uint16_t[]> object_;
-  std::vector<Node> nodes_;                  // level by level, the root last
-  std::vector<std::uint32_t> level_start_;   // first node of each level
+  BoxTree tree_;
   float resolution_ = 0;
 };
 

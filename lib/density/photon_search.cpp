@@ -79,7 +79,7 @@ struct PhotonSearch {
     list.photon = found.photon_.data();
   }
 
-  __m256 box_distance2(const PhotonIndex::Node& node) const {
+  __m256 box_distance2(const BoxTree::Node& node) const {
     const auto along = [](const float* lower, const float* upper, __m256 p) {
       const __m256 d = _mm256_max_ps(_mm256_sub_ps(_mm256_load_ps(lower), p),
                                      _mm256_sub_ps(p, _mm256_load_ps(upper)));
@@ -134,8 +134,7 @@ struct PhotonSearch {
   unsigned children_within(Entry entry, std::array<std::uint64_t, 8>& keys) const {
     const std::uint32_t first = std::uint32_t(entry.key);
     const unsigned child_bits = kLeafBits + 3 * entry.level;
-    const PhotonIndex::Node& node =
-        index.nodes_[index.level_start_[entry.level] + (std::uint64_t(first) >> (child_bits + 3))];
+    const BoxTree::Node& node = index.tree_.node(entry.level, std::uint64_t(first) >> (child_bits + 3));
     const __m256 d2 = box_distance2(node);
     unsigned mask = unsigned(_mm256_movemask_ps(_mm256_cmp_ps(d2, bound, _CMP_LE_OQ)));
     alignas(32) std::array<std::uint32_t, 8> bits;
@@ -233,7 +232,7 @@ struct PhotonSearch {
     }
   }
 
-  Entry root() const { return {0, unsigned(index.level_start_.size()) - 1}; }
+  Entry root() const { return {0, unsigned(index.tree_.level_count()) - 1}; }
 };
 
 namespace {

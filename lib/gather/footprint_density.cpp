@@ -52,7 +52,7 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, std::span<const formats
     }
   });
   leaf_whole_ = std::make_unique<std::atomic<std::uint8_t>[]>(leaves);
-  build_nodes();
+  build_tree();
 }
 
 /// To the k-th of its neighbours.
@@ -64,7 +64,7 @@ float FootprintDensity::radius_of(std::size_t photon, Vec3 normal, NeighbourList
 }
 
 /// Boxes of all footprints in a subtree, with their margins.
-void FootprintDensity::build_nodes() {
+void FootprintDensity::build_tree() {
   const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
   std::vector<Box3> boxes(leaves);
   parallel_chunks(leaves, kLeavesAtOnce, [&](std::size_t first, std::size_t last) {
@@ -80,23 +80,7 @@ void FootprintDensity::build_nodes() {
       boxes[i / kLeaf].add(middle + halves);
     }
   });
-  do {
-    level_start_.push_back(nodes_.size());
-    std::vector<Box3> parents((boxes.size() + kChildren - 1) / kChildren);
-    for (std::size_t j = 0; j < parents.size(); ++j) {
-      Node node;
-      for (std::size_t c = 0; c < kChildren; ++c) {
-        const std::size_t child = kChildren * j + c;
-        for (int axis = 0; axis < 3; ++axis) {
-          node.lower[axis][c] = child < boxes.size() ? boxes[child].lower[axis] : kNaN;
-          node.upper[axis][c] = child < boxes.size() ? boxes[child].upper[axis] : kNaN;
-        }
-        if (child < boxes.size()) parents[j].add(boxes[child]);
-      }
-      nodes_.push_back(node);
-    }
-    boxes = std::move(parents);
-  } while (boxes.size() > 1);
+  tree_ = BoxTree(std::move(boxes));
 }
 
 /// Do all footprints that come near have the largest radius?
@@ -104,13 +88,14 @@ bool FootprintDensity::find_covering(Vec3 position, Vec3 normal, std::vector<Cov
   struct Entry {
     std::size_t level, node;
   };
+  constexpr std::size_t kChildren = BoxTree::kChildren;
   std::array<Entry, (kChildren - 1) * 12 + 1> stack;   // 2^31 photons have 9 levels
   std::size_t depth = 0;
   bool wide = true;
-  stack[depth++] = {level_start_.size() - 1, 0};
+  stack[depth++] = {tree_.level_count() - 1, 0};
   while (depth > 0) {
     const auto [level, number] = stack[--depth];
-    const Node& node = nodes_[level_start_[level] + number];
+    const BoxTree::Node& node = tree_.node(level, number);
     std::array<int, kChildren> inside;
     for (std::size_t c = 0; c < kChildren; ++c)   // NaN of a missing child is never inside
       inside[c] = (position.x >= node.lower[0][c]) & (position.x <= node.upper[0][c]) & (position.y >= node.lower[1][c]) &

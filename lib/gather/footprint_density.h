@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "lib/density/box_tree.h"
 #include "lib/density/photon_index.h"
 #include "lib/gather/reachable_area.h"
 #include "lib/trace/trace.h"
@@ -52,14 +53,13 @@ class FootprintDensity {
   Rgb estimate(Vec3 position, Vec3 normal, float& smooth_over) const;
 
  private:
-  static constexpr std::size_t kLeaf = 32, kChildren = 8;
+  static constexpr std::size_t kLeaf = 32;
   struct alignas(64) Leaf {
     float x[kLeaf], y[kLeaf], z[kLeaf], nx[kLeaf], ny[kLeaf], nz[kLeaf];
     float inverse_r2[kLeaf];   ///< 1/m^2
     float flat[kLeaf];         ///< (radius / height)^2 - 1 of the ellipsoid
     float narrow2[kLeaf];      ///< m^2: (radius + margin)^2 of those narrower than max_radius, else -1
   };
-  struct alignas(64) Node { float lower[3][kChildren], upper[3][kChildren]; };
   /// Found when a footprint is first asked for: most of a map's are never seen.
   struct Extent {
     float radius = 0;         ///< m; 0: not known yet
@@ -70,7 +70,7 @@ class FootprintDensity {
     float distance2;   ///< m^2, in the ellipsoid's metric
   };
   float radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const;
-  void build_nodes();
+  void build_tree();
   bool find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
   bool scan_leaf(std::size_t leaf, Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
   Extent extent_of(std::uint32_t photon) const;
@@ -84,8 +84,7 @@ class FootprintDensity {
   ReachableArea area_;
   PhotonIndex index_;
   std::unique_ptr<Leaf[]> leaves_;           ///< in the index's order; unused places hold NaN, which covers nothing
-  std::vector<Node> nodes_;                  ///< level by level, the root last; level 0 has leaves as children
-  std::vector<std::size_t> level_start_;
+  BoxTree tree_;                             ///< of footprints' boxes with their margins
   std::unique_ptr<std::atomic<Extent>[]> extents_;
   std::unique_ptr<std::atomic<std::uint8_t>[]> leaf_whole_;
 };

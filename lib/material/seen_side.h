@@ -6,6 +6,9 @@
 
 namespace tempolux {
 
+/// Cosine below which a shading normal looks away from a direction.
+inline constexpr float kLooksAway = 1e-4f;
+
 /// Normals on the side of wo (unit, away from the surface) and wo in the frame in which the material scatters. Where
 /// the shading normal looks away from wo the geometric one takes its place.
 struct SeenSide {
@@ -27,7 +30,7 @@ struct SeenSide {
  private:
   static Vec3 viewed_normal(const SurfacePoint& point, Vec3 wo, Vec3 geometric) {
     const Vec3 n = dot(point.normal, geometric) < 0 ? -point.normal : point.normal;
-    return dot(n, wo) > 1e-4f ? n : geometric;
+    return dot(n, wo) > kLooksAway ? n : geometric;
   }
 };
 

@@ -9,6 +9,7 @@
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/material/inside.h"
+#include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/texture_lookup.h"
 
@@ -26,8 +27,6 @@ constexpr float kLargestSurvival = 0.9995f;  ///< in a lossless box paths end af
 PathKind kind_after(bool diffuse_seen, bool specular_seen) {
   return diffuse_seen ? PathKind::indirect : specular_seen ? PathKind::caustic : PathKind::direct;
 }
-
-constexpr float kLooksAway = 1e-4f;   ///< cosine below which a shading normal looks away from a direction, as SeenSide has it
 
 /// A light ray arriving at a surface: normals turned to the side it comes from.
 struct Arrival {

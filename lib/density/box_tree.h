@@ -1,0 +1,29 @@
+// lib/density/box_tree.h -- boxes of boxes, eight to each, over a row of leaves that lie next to each other.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lib/core/vec.h"
+
+namespace tempolux {
+
+/// What a search descends through. The leaves' order is the caller's: those of any aligned block of 8^j are one subtree.
+struct BoxTree {
+  static constexpr std::size_t kChildren = 8;
+  /// Boxes of the children. Level 0 has leaves as children; child c of node j is number 8 j + c of the level below. Those of missing
+  /// children are NaN, which no comparison lets through.
+  struct alignas(64) Node { float lower[3][kChildren], upper[3][kChildren]; };
+
+  BoxTree() = default;
+  /// One box for each leaf, at least one.
+  explicit BoxTree(std::vector<Box3> leaves);
+
+  std::size_t level_count() const { return level_start.size(); }
+  const Node& node(std::size_t level, std::uint64_t number) const { return nodes[level_start[level] + number]; }
+
+  std::vector<Node> nodes;                  ///< level by level, the root last
+  std::vector<std::uint32_t> level_start;   ///< first node of each level
+};
+
+}  // namespace tempolux
