@@ -22,6 +22,7 @@ using formats::PathKind;
 constexpr float kInPlane = 0.25f;
 constexpr int kMostPlanes = 8;               ///< that a light may be in, one upon the other
 constexpr float kLargestSurvival = 0.9995f;  ///< in a lossless box paths end after 2000 bounces in the mean
+constexpr float kAcross = 500;               ///< pixels that an eye has for the whole scene
 
 /// Kind of a photon by the events so far (architecture.md 3).
 PathKind kind_after(bool diffuse_seen, bool specular_seen) {
@@ -79,14 +80,26 @@ struct Arrival {
   }
 };
 
+/// The shading normal as an eye sees it that has the scene in kAcross pixels, if it may be another one than at the finest level:
+/// bumps get another share of the light than their mean normal, by which they are lit where a pixel does not tell them apart
+/// (RayCone); and photons do not know yet who will look.
+std::optional<Vec3> normal_from_afar(const SceneFrame& frame, SurfacePoint point) {
+  const Material& material = frame.materials[point.material];
+  if (!material.textures || !material.textures->normal) return std::nullopt;
+  const SurfaceMaterial seen(frame, point, frame.bounds.diagonal() / kAcross);
+  return point.normal;
+}
+
 /// What only materials with textures or alpha need; bends the point's normal.
 struct Textured {
+  std::optional<Vec3> seen;                  ///< normal by which photons are stored, where that is another one
   SurfaceMaterial material;
   Bsdf bsdf;
   float coverage;                            ///< share of photons that meet the surface there
 
   Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
-      : material(frame, point),
+      : seen(normal_from_afar(frame, point)),
+        material(frame, point),
         bsdf(material, dot(point.normal_geometric, travel) < 0),
         coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
 };
@@ -251,14 +264,14 @@ std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions
 bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const {
   if (varies_[point.material]) [[unlikely]] {
     const Textured textured(tracer_.frame(), point, path.ray.direction);
-    return scatter_at(path, point, distance, textured.bsdf, textured.coverage, draw, batch);
+    return scatter_at(path, point, distance, textured.bsdf, textured.coverage, textured.seen, draw, batch);
   }
   const bool front = dot(point.normal_geometric, path.ray.direction) < 0;
-  return scatter_at(path, point, distance, bsdfs_[point.material][front], 1, draw, batch);
+  return scatter_at(path, point, distance, bsdfs_[point.material][front], 1, std::nullopt, draw, batch);
 }
 
 bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
-                              const Draw& draw, PhotonBatch& batch) const {
+                              const std::optional<Vec3>& seen, const Draw& draw, PhotonBatch& batch) const {
   const Arrival at(point, path.ray.direction);
   const bool front = dot(point.normal_geometric, at.wi) > 0;
   const bool solid = solid_[point.material];
@@ -270,8 +283,16 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
 
   // Record.
   const PathKind kind = kind_after(path.diffuse_seen, path.specular_seen);
-  if (stores_[std::size_t(kind)] && bsdf.has_lambert() && at.shading_correction > 0) {
-    Rgb stored = flux * (bsdf.arrival_weight(at.wi_local.z) * at.shading_correction);
+  float cosine = at.wi_local.z, correction = at.shading_correction;
+  if (seen) [[unlikely]] {
+    SurfacePoint there = point;
+    there.normal = *seen;
+    const Arrival smooth(there, path.ray.direction);
+    cosine = smooth.wi_local.z;
+    correction = smooth.shading_correction;
+  }
+  if (stores_[std::size_t(kind)] && bsdf.has_lambert() && correction > 0) {
+    Rgb stored = flux * (bsdf.arrival_weight(cosine) * correction);
     if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials);
     if (coverage != 1) stored *= 1 / coverage;
     record(stored, point, at.normal_geometric, kind, draw.bounce, batch.block.photons);

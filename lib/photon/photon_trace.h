@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,7 @@ struct PhotonBatch {
 ///     flux x arrival_weight(wi) x |wi.n_s| / |wi.n_g|     [W]
 /// so that  rho/pi x density  is what the Lambert lobe reflects, shading normals included [Veach 1997, 5.3]
 /// (they scatter to where the eye looks from: by the geometric normal, too, where the shading normal looks away);
+/// n_s of a normal map is what an eye sees that has the scene in 500 pixels, though scattering goes by its finest level;
 /// for a matte flat surface that is the flux that arrives. Inside solids of glass it is divided by the index
 /// squared (bsdf.h). What solids absorb on the way counts as absorbed. Of a surface of alpha mode BLEND only the
 /// share alpha of the photons take notice: divided by alpha they stand for all that arrive. Roulette keeps the flux
@@ -78,7 +80,7 @@ class PhotonTracer {
                                      Hit* hits, SurfacePoint* points, PhotonBatch& batch) const;
   bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
   bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
-                  const Draw& draw, PhotonBatch& batch) const;
+                  const std::optional<Vec3>& seen, const Draw& draw, PhotonBatch& batch) const;
 
   const Tracer& tracer_;
   const Lights& lights_;
