@@ -12,7 +12,6 @@ namespace tempolux {
 namespace {
 
 constexpr int kRim = 16;             ///< places on the rim that are looked at first
-constexpr float kFlat = 0.005f;      ///< of the radius: how far off the plane the rim of a flat disc may lie
 constexpr int kMostProbes = 32;      ///< times the probes that must arrive
 constexpr int kMostInColumn = 8;     ///< surfaces on top of each other
 
@@ -43,21 +42,52 @@ ReachableArea::ReachableArea(const Tracer& tracer) : tracer_(tracer), reach_(tra
   for (const Material& material : tracer.frame().materials) stores_.push_back(may_have_lambert(material));
 }
 
+/// The same for ways that begin in one place.
+inline bool ReachableArea::whole_from(Vec3 start, Vec3 normal, Vec3 outwards, float radius, float lift, float down) const {
+  const Vec3 rim = start + normal * lift + outwards * radius;
+  Hit hit;
+  return reach_.free(start, rim) && tracer_.intersect({rim, -normal, 0, down, true}, hit) &&
+         stores_[tracer_.frame().surfaces[hit.surface].material];
+}
+
 bool ReachableArea::whole(Vec3 position, Vec3 normal, float radius, float turn, float lift) const {
   const Frame frame(normal);
+  const Vec3 start = start_of(position, normal);
+  const float down = depth_of(radius, lift);
   for (int i = 0; i < kRim; ++i) {
     const float phi = 2 * kPi * (float(i) + turn) / float(kRim);
-    if (!whole_towards(position, normal, frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi), radius, lift)) return false;
+    if (!whole_from(start, normal, frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi), radius, lift, down)) return false;
   }
   return true;
 }
 
 bool ReachableArea::whole_towards(Vec3 position, Vec3 normal, Vec3 outwards, float radius, float lift) const {
-  const Vec3 start = position + normal * (2 * reach_.offset()), rim = start + normal * lift + outwards * radius;
-  const float down = 2 * reach_.offset() + lift + std::max(4 * reach_.offset(), kFlat * radius);
-  Hit hit;
-  return reach_.free(start, rim) && tracer_.intersect({rim, -normal, 0, down, true}, hit) &&
-         stores_[tracer_.frame().surfaces[hit.surface].material];
+  return whole_from(start_of(position, normal), normal, outwards, radius, lift, depth_of(radius, lift));
+}
+
+/// Surface that can be reached in a column from `height` above the plane to as much below it, `across` from
+/// the point, over the column's section: sum of 1 / cos of the surfaces' tilts. For the round kernel they count with the
+/// probability of its weight there over its weight in the plane, 1 - (h / height)^2 at h from it, by `u` of [0, 1): weights
+/// themselves, which differ from column to column, would make the inverse of their sum too large. Flat kernel: u = 0.
+inline float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, float height, float u) const {
+  const float half = std::max(4 * reach_.offset(), height);
+  Vec3 top = position + across + normal * half;
+  float left = 2 * half, sum = 0;
+  for (int i = 0; i < kMostInColumn && left > 0; ++i) {
+    Hit hit;
+    if (!tracer_.intersect({top, -normal, 0, left, true}, hit)) break;
+    const SurfacePoint there = tracer_.surface_point(hit);
+    const float side = dot(there.normal_geometric, normal), cosine = std::abs(side);
+    const Vec3 up = side < 0 ? -there.normal_geometric : there.normal_geometric;
+    const float off_plane = dot(there.position - position, normal);
+    if (cosine > kMinCos && stores_[there.material] && off_plane * off_plane <= (1 - u) * half * half &&
+        reach_(position, normal, there.position, up))
+      sum += 1 / cosine;
+    const float step = hit.t + 4 * reach_.offset();
+    top = top - normal * step;
+    left -= step;
+  }
+  return sum;
 }
 
 /// 1 / area that can be reached, 1/m^2; 0 if there is none. Columns along the normal are drawn over the disc
@@ -89,31 +119,6 @@ double ReachableArea::inverse(Vec3 position, Vec3 normal, float radius, int prob
   }
   if (arrived < (round ? probes : 1)) return 0;
   return double(drawn) / (double(kPi) * double(radius) * double(radius) * surface);
-}
-
-/// Surface that can be reached in a column from `height` above the plane to as much below it, `across` from
-/// the point, over the column's section: sum of 1 / cos of the surfaces' tilts. For the round kernel they count with the
-/// probability of its weight there over its weight in the plane, 1 - (h / height)^2 at h from it, by `u` of [0, 1): weights
-/// themselves, which differ from column to column, would make the inverse of their sum too large. Flat kernel: u = 0.
-float ReachableArea::column(Vec3 position, Vec3 normal, Vec3 across, float height, float u) const {
-  const float half = std::max(4 * reach_.offset(), height);
-  Vec3 top = position + across + normal * half;
-  float left = 2 * half, sum = 0;
-  for (int i = 0; i < kMostInColumn && left > 0; ++i) {
-    Hit hit;
-    if (!tracer_.intersect({top, -normal, 0, left, true}, hit)) break;
-    const SurfacePoint there = tracer_.surface_point(hit);
-    const float side = dot(there.normal_geometric, normal), cosine = std::abs(side);
-    const Vec3 up = side < 0 ? -there.normal_geometric : there.normal_geometric;
-    const float off_plane = dot(there.position - position, normal);
-    if (cosine > kMinCos && stores_[there.material] && off_plane * off_plane <= (1 - u) * half * half &&
-        reach_(position, normal, there.position, up))
-      sum += 1 / cosine;
-    const float step = hit.t + 4 * reach_.offset();
-    top = top - normal * step;
-    left -= step;
-  }
-  return sum;
 }
 
 }  // namespace tempolux

@@ -9,6 +9,7 @@
 namespace tempolux {
 
 inline constexpr float kFlattening = 10;   ///< of the ellipsoid about a place, along its normal
+inline constexpr float kFlat = 0.005f;     ///< of the radius: how far off the plane the rim of a flat disc may lie
 inline constexpr float kMinCos = 0.1f;     ///< of its normal and those of surfaces that count
 
 /// Can light that falls on one place of a surface be taken for light at another near it?
@@ -54,6 +55,10 @@ class ReachableArea {
   double inverse(Vec3 position, Vec3 normal, float radius, int probes, Kernel kernel, const PathRandom& random) const;
 
  private:
+  /// Where rays along a disc begin, and how far they look down from its rim.
+  Vec3 start_of(Vec3 position, Vec3 normal) const { return position + normal * (2 * offset()); }
+  float depth_of(float radius, float lift) const { return 2 * offset() + lift + std::max(4 * offset(), kFlat * radius); }
+  bool whole_from(Vec3 start, Vec3 normal, Vec3 outwards, float radius, float lift, float down) const;
   float column(Vec3 position, Vec3 normal, Vec3 across, float height, float u) const;
 
   const Tracer& tracer_;
