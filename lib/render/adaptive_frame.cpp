@@ -4,6 +4,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "lib/core/parallel_array.h"
 #include "lib/render/pixel_noise.h"
 
 namespace tempolux {
@@ -146,7 +147,7 @@ class AdaptiveFrame {
   LayerImage& image_;
   bool controlled_;
   float scene_size_;
-  std::vector<PixelState> pixels_;
+  ParallelArray<PixelState> pixels_;
   PixelNoise noise_;
   std::vector<Change> changes_;
   std::mutex changes_mutex_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "lib/render/pixel_light.h"
@@ -32,7 +33,7 @@ struct PixelState {
 class PixelNoise {
  public:
   /// controlled: large lights' noise is taken out (LightControl).
-  PixelNoise(const CameraView& view, const FrameOptions& options, bool controlled, std::vector<PixelState>& pixels)
+  PixelNoise(const CameraView& view, const FrameOptions& options, bool controlled, std::span<PixelState> pixels)
       : view_(view), options_(options), controlled_(controlled), first_half_((options.samples + 1) / 2), pixels_(pixels) {}
 
   int first_half() const { return first_half_; }   ///< of the first samples
@@ -83,7 +84,7 @@ class PixelNoise {
   bool controlled_;
   int first_half_;
   double picture_ = 0;   ///< mean of all pixels' first samples
-  std::vector<PixelState>& pixels_;
+  std::span<PixelState> pixels_;
 };
 
 }  // namespace tempolux

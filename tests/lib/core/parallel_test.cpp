@@ -1,5 +1,6 @@
 // Parallel loops: every index once, results in order, exceptions arrive, memory bounded.
 #include "lib/core/parallel.h"
+#include "lib/core/parallel_array.h"
 
 #include <gtest/gtest.h>
 
@@ -57,6 +58,20 @@ TEST(ParallelOrdered, AnExceptionReachesTheCaller) {
   EXPECT_THROW(parallel_ordered(100, 4, [](std::size_t) { return std::shared_ptr<void>(); },
                                 [](std::size_t i, void*) { if (i == 50) throw std::runtime_error("disk full"); }),
                std::runtime_error);
+}
+
+TEST(ParallelArray, HasEveryValueMade) {
+  struct Value {
+    double number = 7;
+    bool flag = true;
+  };
+  for (const std::size_t count : {0u, 1u, 1'000'000u}) {
+    ParallelArray<Value> values(count);
+    ASSERT_EQ(values.size(), count);
+    std::size_t made = 0;
+    for (const Value& value : std::span<Value>(values)) made += value.number == 7 && value.flag;
+    EXPECT_EQ(made, count);
+  }
 }
 
 }  // namespace
