@@ -66,4 +66,4 @@ def million_threads(bench, _):
     file, triangles = million.scene(bench)
     base = f"{bench.memory}/tempolux-bench-{os.getpid()}"
     tools = million.processes(bench, file, "96x54" if bench.quick else "960x540", base)[1:]     # scene-plan has no such phase
-    return result(bench, f"The same on {triangles} triangles, 960x540", tools, 1 if bench.quick else 3, base)
+    return result(bench, f"The same on {triangles} triangles, 960x540", tools, 1 if bench.quick else 7, base)
