@@ -83,11 +83,11 @@ struct Arrival {
 /// The shading normal as an eye sees it that has the scene in kAcross pixels, if it may be another one than at the finest level:
 /// bumps get another share of the light than their mean normal, by which they are lit where a pixel does not tell them apart
 /// (RayCone); and photons do not know yet who will look.
-std::optional<Vec3> normal_from_afar(const SceneFrame& frame, SurfacePoint point) {
+std::optional<Vec3> normal_from_afar(const SceneFrame& frame, const SurfacePoint& point) {
   const Material& material = frame.materials[point.material];
   if (!material.textures || !material.textures->normal) return std::nullopt;
-  const SurfaceMaterial seen(frame, point, frame.bounds.diagonal() / kAcross);
-  return point.normal;
+  return TextureSpot(frame, point.surface, point.triangle, point.u, point.v, frame.bounds.diagonal() / kAcross)
+      .bend(material.textures->normal, material.textures->normal_scale, point.normal, point.normal_geometric);
 }
 
 /// What only materials with textures or alpha need; bends the point's normal.
