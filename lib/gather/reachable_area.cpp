@@ -42,7 +42,7 @@ ReachableArea::ReachableArea(const Tracer& tracer) : tracer_(tracer), reach_(tra
   for (const Material& material : tracer.frame().materials) stores_.push_back(may_have_lambert(material));
 }
 
-/// The same for ways that begin in one place.
+/// whole_towards() from `start` (start_of), looking `down` metres from the rim (depth_of): worked out once for all spokes.
 inline bool ReachableArea::whole_from(Vec3 start, Vec3 normal, Vec3 outwards, float radius, float lift, float down) const {
   const Vec3 rim = start + normal * lift + outwards * radius;
   Hit hit;
