@@ -12,8 +12,8 @@
 
 namespace tempolux {
 
-/// `count` values T{}. Memory is cleared page by page where it is first written: for 100 MB that takes one thread as long as
-/// it takes to trace some 10^5 rays, and the others wait.
+/// `count` values T{}. The system clears memory page by page where it is first written: one thread would do that for all of it
+/// while the others wait.
 template <class T>
 class ParallelArray {
  public:
