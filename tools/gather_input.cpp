@@ -1,5 +1,7 @@
 #include "tools/gather_input.h"
 
+#include <utility>
+
 #include "formats/error.h"
 #include "lib/gather/cache_files.h"
 #include "lib/material/surface_material.h"
@@ -58,7 +60,8 @@ GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer
                          const PointOptions& options) {
   const SceneFrame& frame = tracer.frame();
   const bool caustic = holds(map.header.kinds, "caustic") || !lobes_of(frame).specular;
-  GatherPoints result{place_points(frame, options), point_spacing(frame, options),
+  PlacedPoints placed = place_points(frame, options);
+  GatherPoints result{std::move(placed.points), placed.spacing,
                       caustic ? "direct,caustic,indirect" : "direct,indirect", map.header.history,
                       map.header.emitted_count};
   estimate_points(tracer, lights, map.photons, shift_of(map.header.origin, frame), options, result.points);

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
+#include <numeric>
 #include <optional>
 
 #include "lib/core/parallel.h"
+#include "lib/core/parallel_array.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/core/sobol.h"
@@ -25,43 +28,54 @@ bool stores_light(const SceneFrame& frame, const Surface& surface) {
   return may_have_lambert(frame.materials[surface.material]);
 }
 
-double storing_area(const SceneFrame& frame) {
-  double area = 0;
-  for (const Surface& surface : frame.surfaces)
-    if (stores_light(frame, surface))
-      for (const auto& t : surface.primitive->triangles) area += triangle_area(surface, t);
-  return area;
+using Areas = ParallelArray<double>;
+
+/// m^2 of each of a surface's triangles.
+Areas triangle_areas(const Surface& surface) {
+  const auto& triangles = surface.primitive->triangles;
+  Areas areas(triangles.size());
+  parallel_chunks(triangles.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) areas[i] = triangle_area(surface, triangles[i]);
+  });
+  return areas;
 }
 
-/// One surface's points, both sides: a scrambled Sobol sequence along the line of its triangles' areas.
+/// The point at u.x of the way along the line of a surface's triangles' areas, of which `cumulative` is the running sum.
+/// Normal 0 if its triangle has no area.
+IrradiancePoint point_on(const Surface& surface, std::span<const double> cumulative, Vec2 u, bool back) {
+  const double along = double(u.x) * cumulative.back();
+  const auto at = std::size_t(std::upper_bound(cumulative.begin(), cumulative.end() - 1, along) - cumulative.begin());
+  const double first = at ? cumulative[at - 1] : 0, width = cumulative[at] - first;
+  const float within = width > 0 ? float(std::clamp((along - first) / width, 0.0, 0.999999)) : 0.5f;
+  const auto& t = surface.primitive->triangles[at];
+  const Vec3 a = surface.position(t[0]), b = surface.position(t[1]), c = surface.position(t[2]);
+  const Vec2 bary = sample_triangle({within, u.y});
+  IrradiancePoint point;
+  point.position = a * (1 - bary.x - bary.y) + b * bary.x + c * bary.y;
+  point.normal = normalize(cross(b - a, c - a)) * (back ? -1.0f : 1.0f);
+  point.object = surface.object;
+  return point;
+}
+
+/// Adds one surface's points, both sides: a scrambled Sobol sequence each, by area. `areas` become their running sum.
 /// `rank` tells surfaces of one object apart.
-void place_on(const Surface& surface, std::uint32_t rank, double area_per_point, std::uint64_t seed,
+void place_on(const Surface& surface, std::uint32_t rank, std::span<double> areas, double area_per_point, std::uint64_t seed,
               std::vector<IrradiancePoint>& points) {
-  const auto& triangles = surface.primitive->triangles;
-  std::vector<double> cumulative;
-  double area = 0;
-  for (const auto& t : triangles) cumulative.push_back(area += triangle_area(surface, t));
-  if (!(area > 0)) return;
-  const auto count = std::uint32_t(std::max(1.0, std::ceil(area / area_per_point)));
+  std::partial_sum(areas.begin(), areas.end(), areas.begin());
+  if (areas.empty() || !(areas.back() > 0)) return;
+  const std::size_t count = std::uint32_t(std::max(1.0, std::ceil(areas.back() / area_per_point)));
+  const auto before = std::ptrdiff_t(points.size());
+  points.resize(points.size() + 2 * count);
+  const std::span<IrradiancePoint> made(points.begin() + before, points.end());
   for (std::uint32_t side = 0; side < 2; ++side) {
     const std::uint64_t key = PathRandom(seed, surface.object).bits(rank, Purpose::points, side);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const Vec2 u = sobol_owen_2d(i, key);
-      const double along = double(u.x) * area;
-      const auto found = std::upper_bound(cumulative.begin(), cumulative.end() - 1, along);
-      const auto at = std::size_t(found - cumulative.begin());
-      const double first = at ? cumulative[at - 1] : 0, width = cumulative[at] - first;
-      const float within = width > 0 ? float(std::clamp((along - first) / width, 0.0, 0.999999)) : 0.5f;
-      const auto& t = triangles[at];
-      const Vec3 a = surface.position(t[0]), b = surface.position(t[1]), c = surface.position(t[2]);
-      const Vec2 bary = sample_triangle({within, u.y});
-      IrradiancePoint point;
-      point.position = a * (1 - bary.x - bary.y) + b * bary.x + c * bary.y;
-      point.normal = normalize(cross(b - a, c - a)) * (side == 0 ? 1.0f : -1.0f);
-      point.object = surface.object;
-      if (length2(point.normal) > 0) points.push_back(point);
-    }
+    parallel_chunks(count, 256, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i)
+        made[side * count + i] = point_on(surface, areas, sobol_owen_2d(std::uint32_t(i), key), side == 1);
+    });
   }
+  points.erase(std::remove_if(points.begin() + before, points.end(), [](const auto& p) { return !(length2(p.normal) > 0); }),
+               points.end());
 }
 
 /// Are there Lambert lobes under a coat that reflects? Then light counts by the angle it arrives at.
@@ -132,20 +146,22 @@ Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoi
 
 }  // namespace
 
-float point_spacing(const SceneFrame& frame, const PointOptions& options) {
-  const double area = storing_area(frame);
-  return area > 0 ? float(std::sqrt(area / std::max(1u, options.count))) : 1.0f;
-}
-
-std::vector<IrradiancePoint> place_points(const SceneFrame& frame, const PointOptions& options) {
-  std::vector<IrradiancePoint> points;
-  const double spacing = double(point_spacing(frame, options));
-  std::map<std::uint32_t, std::uint32_t> rank;
-  for (const Surface& surface : frame.surfaces) {
-    const std::uint32_t r = rank[surface.object]++;
-    if (stores_light(frame, surface)) place_on(surface, r, spacing * spacing, options.seed, points);
+PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) {
+  std::vector<std::optional<Areas>> areas(frame.surfaces.size());  // of those that store light
+  double whole = 0;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    if (!stores_light(frame, frame.surfaces[i])) continue;
+    for (const double area : std::span<double>(areas[i].emplace(triangle_areas(frame.surfaces[i])))) whole += area;
   }
-  return points;
+  PlacedPoints placed;
+  if (whole > 0) placed.spacing = float(std::sqrt(whole / std::max(1u, options.count)));
+  const double area_per_point = double(placed.spacing) * double(placed.spacing);
+  std::map<std::uint32_t, std::uint32_t> rank;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const std::uint32_t r = rank[frame.surfaces[i].object]++;
+    if (areas[i]) place_on(frame.surfaces[i], r, *areas[i], area_per_point, options.seed, placed.points);
+  }
+  return placed;
 }
 
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,

@@ -24,13 +24,15 @@ struct PointOptions {
   int area_probes = 32;         ///< that must arrive in a disc cut by walls or edges
 };
 
-/// Mean distance of neighbouring points, m: square root of the area each stands for; 1 where no surface stores light.
-float point_spacing(const SceneFrame& frame, const PointOptions& options);
+struct PlacedPoints {
+  std::vector<IrradiancePoint> points;
+  float spacing = 1;  ///< m, mean distance of neighbours: square root of the area each stands for; 1 where no surface stores light
+};
 
 /// Points uniform by area on both sides of every surface that has a Lambert lobe, without irradiance yet. The
 /// points of a surface depend on that surface, the seed and the spacing alone: those of static surfaces are
 /// the same at every frame of a segment, those of moving ones ride on their triangles.
-std::vector<IrradiancePoint> place_points(const SceneFrame& frame, const PointOptions& options);
+PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options);
 
 /// Fills in the irradiance of all points:
 /// - direct by light sampling, stratified shadow rays, as photons are stored: by the shading normal, under a coat times

@@ -75,7 +75,7 @@ struct Stage {
 
   std::vector<IrradiancePoint> estimate(const std::vector<formats::Photon>& photons,
                                         const PointOptions& options) const {
-    std::vector<IrradiancePoint> points = place_points(frame, options);
+    std::vector<IrradiancePoint> points = place_points(frame, options).points;
     estimate_points(tracer, lights, photons, {}, options, points);
     return points;
   }
@@ -410,7 +410,7 @@ TEST(IrradiancePoints, DirectLightCountsByWhatTheCoatLetsIn) {
     const Tracer tracer(frame);
     const Lights lights(frame, table);
     const PointOptions options{.count = 200};
-    std::vector<IrradiancePoint> points = place_points(frame, options);
+    std::vector<IrradiancePoint> points = place_points(frame, options).points;
     estimate_points(tracer, lights, {}, {}, options, points);
     for (const IrradiancePoint& point : points) {
       if (point.normal.y < 0) continue;
@@ -435,7 +435,7 @@ TEST(IrradiancePoints, DirectLightCountsByTheShadingNormal) {
     const Tracer tracer(frame);
     const Lights lights(frame, build_emission_table({&frame, 1}));
     const PointOptions options{.count = 200};
-    std::vector<IrradiancePoint> points = place_points(frame, options);
+    std::vector<IrradiancePoint> points = place_points(frame, options).points;
     estimate_points(tracer, lights, {}, {}, options, points);
     for (const IrradiancePoint& point : points) {
       if (point.normal.y > 0) {
@@ -468,7 +468,7 @@ TEST(IrradiancePoints, AreUniformByArea) {
   scene.add_quad({5, 0, 1e-3f}, {5.001f, 0, 1e-3f}, {5.001f, 0, 0}, {5, 0, 0}, matte(Rgb(0.5f)));
   std::map<std::uint32_t, int> count;
   int up = 0;
-  const std::vector<IrradiancePoint> points = place_points(scene.frame(), few(4000, 3));
+  const auto [points, spacing] = place_points(scene.frame(), few(4000, 3));
   for (const IrradiancePoint& p : points) {
     ++count[p.object];
     up += p.normal.y > 0;
@@ -477,7 +477,7 @@ TEST(IrradiancePoints, AreUniformByArea) {
   EXPECT_NEAR(count[1], 2000, 2);
   EXPECT_EQ(count[2], 2);  // one on each side at least
   EXPECT_EQ(2 * up, int(points.size()));
-  EXPECT_NEAR(point_spacing(scene.frame(), few(4000, 3)), std::sqrt(4.0f / 4000), 1e-5f);
+  EXPECT_NEAR(spacing, std::sqrt(4.0f / 4000), 1e-5f);
 }
 
 }  // namespace

@@ -44,15 +44,15 @@ struct Chain {
   Lights lights;
   Traced traced;
   PointOptions point_options;
-  std::vector<IrradiancePoint> points;
+  PlacedPoints placed;
   PointLookup lookup;
   FinalGather gather;
   RecordStore store;
 
   Chain(HandMadeScene& scene, std::uint64_t photons, std::uint32_t point_count, int rays, int light_samples = 4)
       : frame(scene.frame()), table(build_emission_table({&frame, 1})), tracer(frame), lights(frame, table),
-        traced(trace(tracer, lights, photons)), point_options(counted(point_count, light_samples)), points(estimated()),
-        lookup(points, frame.bounds, point_spacing(frame, point_options), point_reach(tracer)),
+        traced(trace(tracer, lights, photons)), point_options(counted(point_count, light_samples)), placed(estimated()),
+        lookup(placed.points, frame.bounds, placed.spacing, point_reach(tracer)),
         gather(tracer, lights, lookup, with_rays(rays)), store(frame.bounds) {}
 
   /// Records for a picture whose pixel i sees `at(i)`, seen from the side of the normal given.
@@ -86,9 +86,9 @@ struct Chain {
     options.rays = rays;
     return options;
   }
-  std::vector<IrradiancePoint> estimated() {
-    std::vector<IrradiancePoint> made = place_points(frame, point_options);
-    estimate_points(tracer, lights, traced.photons, {}, point_options, made);
+  PlacedPoints estimated() {
+    PlacedPoints made = place_points(frame, point_options);
+    estimate_points(tracer, lights, traced.photons, {}, point_options, made.points);
     return made;
   }
 };
