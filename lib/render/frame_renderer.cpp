@@ -1,13 +1,21 @@
 #include "lib/render/frame_renderer.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
 
 #include "formats/error.h"
+#include "formats/large_pages.h"
+#include "lib/core/parallel.h"
 #include "lib/render/adaptive_frame.h"
 #include "lib/render/pixel_samples.h"
 
 namespace tempolux {
 namespace {
+
+constexpr std::size_t kChunk = 4096;   ///< pixels
 
 /// Samples [first, first + count) of every pixel of one half, joined to what `image` holds already.
 void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
@@ -22,7 +30,10 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
 
 LayerImage empty_layers(const CameraView& view) {
   LayerImage image{view.width(), view.height(), 0, {}};
-  image.pixels.resize(std::size_t(view.width()) * std::size_t(view.height()));
+  const std::size_t count = std::size_t(view.width()) * std::size_t(view.height());
+  image.pixels.reserve(count);
+  formats::prefer_large_pages(image.pixels.data(), count * sizeof(Layers));
+  image.pixels.resize(count);
   return image;
 }
 
@@ -33,8 +44,11 @@ Rgb total(const Layers& layers) {
 }
 
 double mean_radiance(const LayerImage& image) {
-  double sum = 0;
-  for (const Layers& pixel : image.pixels) sum += channel_sum(Rgbd(total(pixel)));
+  std::vector<double> sums((image.pixels.size() + kChunk - 1) / kChunk);
+  parallel_chunks(image.pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) sums[first / kChunk] += channel_sum(Rgbd(total(image.pixels[p])));
+  });
+  const double sum = std::accumulate(sums.begin(), sums.end(), 0.0);
   return sum / double(std::max<std::size_t>(1, 3 * image.pixels.size()));
 }
 
@@ -103,23 +117,36 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
 }
 
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {
-  const auto add = [&](const std::string& prefix, auto&& value_of) {
-    constexpr const char* kNames[3] = {"R", "G", "B"};
-    for (int c = 0; c < 3; ++c) {
-      Channel& channel = image.add(prefix + kNames[c]);
-      for (std::size_t p = 0; p < layers.pixels.size(); ++p) channel.values[p] = value_of(layers.pixels[p])[c];
-    }
+  constexpr std::size_t kSum = kLayerCount;
+  std::vector<std::pair<std::size_t, std::size_t>> colours;  // the first of three channels, its layer
+  std::optional<std::size_t> alpha;
+  const auto add = [&](const std::string& prefix, std::size_t layer) {
+    colours.push_back({image.channels.size(), layer});
+    for (const char* name : {"R", "G", "B"}) image.add(prefix + name);
   };
   for (const std::string& name : channels) {
     if (name == "RGBA") {
-      add("", [](const Layers& pixel) { return total(pixel); });
-      Channel& alpha = image.add("A");
-      for (std::size_t p = 0; p < layers.pixels.size(); ++p) alpha.values[p] = layers.pixels[p].coverage;
+      add("", kSum);
+      alpha = image.channels.size();
+      image.add("A");
     }
     for (std::size_t l = 0; l < kLayerCount; ++l)
-      if (name == "layers" || name == kLayerNames[l])
-        add(std::string(kLayerNames[l]) + ".", [l](const Layers& pixel) { return pixel.value[l]; });
+      if (name == "layers" || name == kLayerNames[l]) add(std::string(kLayerNames[l]) + ".", l);
   }
+  parallel_chunks(layers.pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    for (const auto& [channel, layer] : colours) {
+      float *const r = image.channels[channel].values.data(), *const g = image.channels[channel + 1].values.data(),
+            *const b = image.channels[channel + 2].values.data();
+      for (std::size_t p = first; p < last; ++p) {
+        const Rgb colour = layer == kSum ? total(layers.pixels[p]) : layers.pixels[p].value[layer];
+        r[p] = colour.r;
+        g[p] = colour.g;
+        b[p] = colour.b;
+      }
+    }
+    if (alpha)
+      for (std::size_t p = first; p < last; ++p) image.channels[*alpha].values[p] = layers.pixels[p].coverage;
+  });
 }
 
 }  // namespace tempolux
