@@ -111,9 +111,10 @@ struct AlphaSurface {
   std::uint32_t surface;
 };
 
-/// What all trees of a device come from.
+/// What all trees of a device come from. The instructions are named, as processors that have wider ones round hits
+/// differently, and one ray at a time gains nothing by them; what we are compiled for has these.
 struct Forest {
-  RTCDevice device = rtcNewDevice(nullptr);
+  RTCDevice device = rtcNewDevice("isa=avx2");
   std::unordered_map<const Primitive*, SharedTree> shared_trees;
 
   Forest();

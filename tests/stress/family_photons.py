@@ -71,7 +71,8 @@ def one_point(s):
     """A spot of 1e-6 and of 1e-8 rad, by a mirror onto a plate, 3.5 m of path: 10^4 caustic photons within 3.5 um and
     35 nm of x = z = 0.3 m, where floats are 30 nm apart: the k nearest have distance 0. Flux: half of it, the mirror's
     reflectance. No density may be infinite. (Neither is hit on an edge of its triangles, from where points are moved
-    a little.)"""
+    a little.) Each of the two hits is a sum of two edges, at most 2.5 m, by weights that are known to a unit of the last
+    place or so, 2^-23: 2 x 2.5 m x 2^-23 = .6 um off the axis at most, as the rays' own directions add far less."""
     for angle in (1e-6, 1e-8):
         scene = Scene()
         scene.quad((-1, 2, -1), (1.5, 2, -1), (1.5, 2, 1), (-1, 2, 1),
@@ -90,7 +91,7 @@ def one_point(s):
         s.near(f"spot of {angle:g} rad: flux of the caustic / emitted", 0.5,
                math.fsum(r[FLUX + 1] for r in caustic) / emitted, 4 * math.sqrt(0.25 / 10000) / 0.5)
         spread = max(max(abs(x - 0.3) for x in (r[POSITION], r[POSITION + 2])) for r in caustic)
-        s.at_most(f"spot of {angle:g} rad: photons' distance from the axis, m", 3.5 * angle + 2e-7, spread)
+        s.at_most(f"spot of {angle:g} rad: photons' distance from the axis, m", 3.5 * angle + 6e-7, spread)
         largest = 0
         for camera in ("near", "wide"):
             for neighbours in (2, 50):
