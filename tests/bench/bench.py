@@ -37,7 +37,7 @@ def draw_curves(bench, peers):
     """The sweep; beside error-report's folder, what it was made with."""
     load = os.getloadavg()[0]
     print((sweep.measure(bench, peers) / "report.md").read_text())
-    made = {"machine": machine(bench.project), "load": f"{load:.1f}", "reference_samples": bench.reference_samples}
+    made = {"machine": machine(bench), "load": f"{load:.1f}", "reference_samples": bench.reference_samples}
     (bench.out / "sweep.json").write_text(json.dumps(made))
 
 
@@ -46,7 +46,7 @@ def measure(bench, name, peers, scenes):
     load = os.getloadavg()[0]
     begin = time.monotonic()
     found = FIGURES[name](bench, peers, **({"only": scenes} if name == "found" else {}))
-    found |= {"machine": machine(bench.project), "load": f"{load:.1f}", "seconds": round(time.monotonic() - begin, 1)}
+    found |= {"machine": machine(bench), "load": f"{load:.1f}", "seconds": round(time.monotonic() - begin, 1)}
     (bench.out / f"{name}.json").write_text(json.dumps(found, indent=1))
     print(results_page.table(found["header"], found["rows"]) + "".join(note + "\n" for note in found["notes"])
           + f"asked: {found['asked']}: {results_page.verdict(found['met'])} ({found['seconds']} s)", flush=True)

@@ -34,7 +34,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
 from furnish import LEAST_ROUGHNESS, Asset, furnished, roughened, with_sun
-from measure import Bench, Missing, figure, machine
+from measure import Bench, Missing, commit_of, figure
 
 LAYERS = ("emission", "specular", "direct", "caustic", "indirect")
 JUDGED = 0.001          # of the picture: layers below are listed only
@@ -303,7 +303,7 @@ def found(bench, _=None, only="", size="320x180", cpu=120, photons=12_000_000):
     if bench.quick:
         only, size, cpu, photons = only or "CornellBox|BoxDraco", bench.size, 0, 10_000
     files = {str(p.relative_to(folder)): p for p in sorted(folder.rglob("*.gl*")) if p.suffix in (".gltf", ".glb")}
-    kept, commit = bench.out / "found-layers.json", machine(bench.project).split()[-1]
+    kept, commit = bench.out / "found-layers.json", commit_of(bench.project)
     rows = json.loads(kept.read_text()) if only and kept.exists() and not bench.quick else {}
     measured = [name for name in files if re.search(only, name)]
     with tempfile.TemporaryDirectory(dir=bench.out) as temporary:

@@ -152,12 +152,21 @@ def wait_for_quiet(seconds):
     return True
 
 
-def machine(project):
-    """One line: processor, number of processors, version of the project."""
+def commit_of(project):
+    commit = subprocess.run(["git", "-C", str(project), "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
+    return commit.stdout.strip() or "unknown"
+
+
+def machine(bench):
+    """One line: processors, their kind and their speed now, version of the project. Processors of one name differ by a factor
+    of two: the speed, of one thread of bare_walk on S2, makes CPU seconds comparable."""
     model = next((line.split(":", 1)[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
                   if line.startswith("model name")), "unknown processor")
-    commit = subprocess.run(["git", "-C", str(project), "rev-parse", "--short", "HEAD"], capture_output=True, text=True)
-    return f"{len(os.sched_getaffinity(0))} x {model}, commit {commit.stdout.strip() or 'unknown'}"
+    scene, frame = bench.scene("S2")
+    photons = 20000 if bench.quick else 10**6
+    speed = median([photons / bench.program("bare_walk", scene, "--frame", frame, "--photons", photons, "--threads", 1)["cpu_s"]
+                    for _ in range(3)]) / 1e6
+    return f"{len(os.sched_getaffinity(0))} x {model}, bare walk {speed:.1f} M photons/s, commit {commit_of(bench.project)}"
 
 
 def quantity(value, digits=3):
