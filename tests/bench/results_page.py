@@ -149,7 +149,7 @@ def write(bench, page, docs, peers_source, figures, command, left_out):
     text = f"""# Results
 
 Written by `{command}` (tests/bench/bench.py); every number below comes out of it, `--only NAME` measures one part again.
-CPU seconds are user and system time of all threads; a processor's speed is named beside each figure: photons that tests/bench/bare_walk, Embree alone, sends through S2 in a CPU second of one thread. Cycles' rows: {peers_source}.
+CPU seconds are user and system time of all threads; bare walk: the processor's speed, photons that tests/bench/bare_walk, Embree alone, sends through S2 in a CPU second of one thread. Cycles' rows: {peers_source}.
 
 """
     files = {name: bench.out / f"{name}.json" for name in figures}
