@@ -26,7 +26,8 @@ struct PointOptions {
 
 struct PlacedPoints {
   std::vector<IrradiancePoint> points;
-  float spacing = 1;  ///< m, mean distance of neighbours: square root of the area each stands for; 1 where no surface stores light
+  /// m, mean distance of neighbours: square root of the area each stands for; 1 where no surface stores light.
+  float spacing = 1;
 };
 
 /// Points uniform by area on both sides of every surface that has a Lambert lobe, without irradiance yet. The

@@ -110,13 +110,13 @@ TEST(Tracer, TheStaticSurfaceWinsATie) {
   for (const Hit& one : hits) EXPECT_EQ(tracer.surface_point(one).object, 1u);
 }
 
-/// Where a ray straight down from a height of 5 m is met: by what stands, by all. In steps of a 1024th of a metre: distances
-/// of 3 to 6 m are known to a few units of the last place, 5e-7 m.
+/// Where a ray straight down from a height of 5 m is met: by what stands, by all. In steps of 2^-18 m: distances of 3 to 6 m
+/// are known to a few units of the last place, 5e-7 m; half a step is four of them.
 std::array<float, 2> heights(const Tracer& tracer) {
   const Ray down{{0.25f, 5, 0.125f}, {0, -1, 0}, 0, INFINITY};
   Hit standing, nearest;
   const bool stands = tracer.intersect_static(down, standing), any = tracer.intersect(down, nearest);
-  const auto height = [](const Hit& hit) { return std::round((5 - hit.t) * 1024) / 1024; };
+  const auto height = [](const Hit& hit) { return std::round((5 - hit.t) * 0x1p18f) * 0x1p-18f; };
   return {stands ? height(standing) : NAN, any ? height(nearest) : NAN};
 }
 
