@@ -5,6 +5,7 @@ target_include_directories(tempolux_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(tempolux_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>   # false alarms of GCC 12 on std::string (bug 105651)
+  -Winvalid-pch
   -ffp-contract=off            # the same bits on every machine of one instruction set
   -fno-math-errno -fno-trapping-math
   $<IF:$<BOOL:${TEMPOLUX_NATIVE}>,-march=native,-march=x86-64-v3>
@@ -42,6 +43,7 @@ function(tempolux_tool name)
   endif()
   add_executable(${name} ${name}.cpp)
   target_link_libraries(${name} PRIVATE tempolux_options tempolux_tool_main ${ARG_DEPENDS})
+  target_precompile_headers(${name} REUSE_FROM tempolux_tool_main)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
   add_dependencies(${name} tempolux-images)   # opened when a scene has images
   set_property(GLOBAL APPEND PROPERTY TEMPOLUX_TOOLS ${name})

@@ -15,9 +15,9 @@
 #include "lib/aqm/difference.h"
 #include "lib/image/exr_io.h"
 #include "lib/report/comparison.h"
-#include "tools/compare_inputs.h"
-#include "tools/option_words.h"
-#include "tools/tool_main.h"
+#include "tools/common/compare_inputs.h"
+#include "tools/common/option_words.h"
+#include "tools/common/tool_main.h"
 
 using namespace tempolux;
 

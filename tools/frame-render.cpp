@@ -15,12 +15,12 @@
 #include "formats/error.h"
 #include "lib/image/exr_io.h"
 #include "lib/render/frame_renderer.h"
-#include "tools/base_frame.h"
-#include "tools/frame_output.h"
-#include "tools/indirect_light.h"
-#include "tools/scene_input.h"
-#include "tools/option_words.h"
-#include "tools/tool_main.h"
+#include "tools/common/base_frame.h"
+#include "tools/common/frame_output.h"
+#include "tools/common/indirect_light.h"
+#include "tools/common/scene_input.h"
+#include "tools/common/option_words.h"
+#include "tools/common/tool_main.h"
 
 using namespace tempolux;
 

@@ -14,9 +14,9 @@
 #include "formats/error.h"
 #include "lib/gather/cache_files.h"
 #include "lib/render/cache_light.h"
-#include "tools/gather_input.h"
-#include "tools/option_words.h"
-#include "tools/tool_main.h"
+#include "tools/common/gather_input.h"
+#include "tools/common/option_words.h"
+#include "tools/common/tool_main.h"
 
 using namespace tempolux;
 

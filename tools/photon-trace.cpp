@@ -10,8 +10,8 @@
 
 #include "formats/photons/layout.h"
 #include "lib/photon/photon_map.h"
-#include "tools/scene_input.h"
-#include "tools/tool_main.h"
+#include "tools/common/scene_input.h"
+#include "tools/common/tool_main.h"
 
 using namespace tempolux;
 

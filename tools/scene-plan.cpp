@@ -19,10 +19,10 @@
 #include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/plan/plan_files.h"
-#include "tools/option_words.h"
-#include "tools/pilot.h"
-#include "tools/scene_input.h"
-#include "tools/tidy.h"
+#include "tools/common/option_words.h"
+#include "tools/common/pilot.h"
+#include "tools/common/scene_input.h"
+#include "tools/common/tidy.h"
 
 using namespace tempolux;
 

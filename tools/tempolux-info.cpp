@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "formats/error.h"
-#include "tools/info_facts.h"
-#include "tools/option_words.h"
-#include "tools/tool_main.h"
+#include "tools/common/info_facts.h"
+#include "tools/common/option_words.h"
+#include "tools/common/tool_main.h"
 
 using namespace tempolux;
 using tools::Facts;

@@ -19,7 +19,7 @@ struct ExrWriteOptions {
 
 /// Writes one scan-line EXR, single part, top line first, channels sorted by name (formats/frames/frames.md).
 /// The file is created at exactly this path, front to back without seeking (a pipe will do), and not synced
-/// or renamed: callers use an output that does (tools/output.h). No time stamp, no host name: equal images
+/// or renamed: callers use an output that does (tools/common/output.h). No time stamp, no host name: equal images
 /// give equal files, for any number of threads. Floats keep their bits, -0 and denormals included.
 ///
 /// Attributes: text as strings; numbers as doubles, framesPerSecond as OpenEXR's rational (23.976 becomes

@@ -1,4 +1,4 @@
-#include "tools/arguments.h"
+#include "tools/common/arguments.h"
 
 #include <gtest/gtest.h>
 

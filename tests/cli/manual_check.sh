@@ -11,7 +11,7 @@ for path in "$BUILD"/bin/*; do
   for section in NAME SYNOPSIS DESCRIPTION OPTIONS 'EXIT STATUS' FILES EXAMPLES 'SEE ALSO'; do
     grep -A1 "^\.SH $section\$" plain | tail -1 | grep -q '^[^.]\|^\.TP\|^\.PP' || bad "man page without $section"
   done
-  grep -A1 '^.SH DESCRIPTION' plain | tail -1 | grep -q '^\.SH' && bad "DESCRIPTION is empty: tools/manual_texts.cpp"
+  grep -A1 '^.SH DESCRIPTION' plain | tail -1 | grep -q '^\.SH' && bad "DESCRIPTION is empty: tools/common/manual_texts.cpp"
   "$path" --help | sed -n '/^Options:/,$s/^  \(-[^ ]*\).*/\1/p' | tr ',' '\n' >options
   [ "$(wc -l <options)" -gt 9 ] || bad "--help shows $(wc -l <options) options"
   while read -r option; do

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "formats/error.h"
-#include "tools/tool_main.h"
+#include "tools/common/tool_main.h"
 
 using namespace tempolux;
 

@@ -1,5 +1,5 @@
 // tests/fuzz/arguments_fuzz.cpp -- what people type: frames, patterns of names, counts, sizes.
-#include "tools/arguments.h"
+#include "tools/common/arguments.h"
 
 #include "tests/fuzz/fuzz.h"
 

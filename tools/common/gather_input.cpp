@@ -1,0 +1,96 @@
+#include "tools/common/gather_input.h"
+
+#include <utility>
+
+#include "formats/error.h"
+#include "lib/gather/cache_files.h"
+#include "lib/material/surface_material.h"
+
+namespace tempolux::tools {
+namespace {
+
+Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) {
+  return Vec3d{origin[0], origin[1], origin[2]} - frame.origin;
+}
+
+/// Is `kind` among "caustic,indirect"?
+bool holds(const std::string& kinds, const std::string& kind) {
+  return ("," + kinds + ",").find("," + kind + ",") != std::string::npos;
+}
+
+/// Light that the scene has and a file lacks is not left out without a word. `remedy`: how to make a file that has it.
+void check_kinds(Tool& tool, const std::string& file, const std::string& kinds, const std::vector<std::string>& wanted,
+                 const SceneFrame& frame, const std::string& remedy) {
+  const Lobes lobes = lobes_of(frame);
+  if (!lobes.lambert) return;
+  for (const std::string& kind : wanted) {
+    if (holds(kinds, kind)) continue;
+    const std::string lacks = file + ": holds no " + kind + " light (its kinds: " + kinds + ")";
+    if (kind != "caustic") throw InputError(lacks + ", which this scene has; " + remedy);
+    if (lobes.specular)
+      tool.warn(lacks + ", which mirrors, glass and gloss of this scene throw: it is left out; " + remedy);
+  }
+}
+
+}  // namespace
+
+GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame) {
+  tool.depends_on(file);
+  const formats::IrradpointsFile in = formats::load_irradpoints(file);
+  check_identity(tool, file, in.header.identity, frame);
+  check_kinds(tool, file, in.header.kinds, {"direct", "caustic", "indirect"}, frame, "make the points again");
+  return {from_file(in.records, shift_of(in.header.origin, frame)), float(in.header.spacing), in.header.kinds,
+          in.header.history, in.header.emitted_count};
+}
+
+formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed) {
+  tool.depends_on(file);
+  formats::PhotonMap map = formats::load_photons(file);
+  if (map.header.map != "global")
+    throw InputError(file + ": a " + map.header.map +
+                     " map is a part of the scene's light; give a global one, as photon-trace writes it");
+  check_identity(tool, file, map.header.identity, frame);
+  const std::vector<std::string> kinds = needed == LightNeeded::all ? std::vector<std::string>{"indirect", "caustic"}
+                                                                    : std::vector<std::string>{"caustic"};
+  check_kinds(tool, file, map.header.kinds, kinds, frame, "trace it with --kinds caustic,indirect");
+  return map;
+}
+
+GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
+                         const PointOptions& options) {
+  const SceneFrame& frame = tracer.frame();
+  const bool caustic = holds(map.header.kinds, "caustic") || !lobes_of(frame).specular;
+  PlacedPoints placed = place_points(frame, options);
+  GatherPoints result{std::move(placed.points), placed.spacing,
+                      caustic ? "direct,caustic,indirect" : "direct,indirect", map.header.history,
+                      map.header.emitted_count};
+  estimate_points(tracer, lights, map.photons, shift_of(map.header.origin, frame), options, result.points);
+  tool.stats().count("points", double(result.points.size()));
+  return result;
+}
+
+void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output) {
+  formats::IrradpointsHeader header;
+  header.history = points.history + tool.history_line(frame.frame);
+  header.identity = identity_of(frame);
+  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  header.spacing = double(points.spacing);
+  header.emitted_count = points.emitted_count;
+  header.kinds = points.kinds;
+  formats::IrradpointsWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  writer.write(to_file(points.points, frame));
+  writer.finish();
+  output.commit();
+}
+
+std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame,
+                         RecordStore& store) {
+  tool.depends_on(file, role);
+  const formats::IrradcacheFile in = formats::load_irradcache(file);
+  check_identity(tool, file, in.header.identity, frame);
+  store.narrow(float(in.header.least_cosine));
+  store.add(from_file(in.records, shift_of(in.header.origin, frame)));
+  return in.header.history;
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,43 @@
+// tools/common/gather_input.h -- irradiance points and records for the tools that gather: read, made, written.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "formats/photons/photons.h"
+#include "lib/gather/irradiance_points.h"
+#include "lib/irradcache/records.h"
+#include "tools/common/scene_input.h"
+
+namespace tempolux::tools {
+
+/// What a reader of photons or points takes from them.
+enum class LightNeeded { all, caustic };
+
+/// Reads the photons of a whole map made for this state of the scene (InputError otherwise, see check_identity). It
+/// must hold the kinds that the scene's surfaces call for: without indirect light it is refused, without caustic light
+/// there is a warning.
+formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed);
+
+/// Points and what they came from.
+struct GatherPoints {
+  std::vector<IrradiancePoint> points;
+  float spacing = 0;                   ///< m
+  std::string kinds;                   ///< that were estimated, or that the scene cannot have: they are 0 then
+  std::string history;                 ///< of the file they came from, or of the photons
+  std::uint64_t emitted_count = 0;
+};
+
+/// Reads a .irradpoints file made for this state of the scene, with the kinds of light it has: as read_photons.
+GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame);
+/// Makes points from the photons of a whole map with all kinds of light (read_photons).
+GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
+                         const PointOptions& options);
+/// Writes them; counts go to the statistics.
+void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output);
+
+/// Adds the records of a .irradcache file to a store; returns the file's history.
+std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame,
+                         RecordStore& store);
+
+}  // namespace tempolux::tools

@@ -1,0 +1,99 @@
+// What a run says about itself to later runs: its line of history and its make rule.
+#include <algorithm>
+#include <string>
+
+#include "tools/common/tool_state.h"
+
+namespace tempolux::tools {
+namespace {
+
+/// A word as a shell would need it; control characters, which could fake lines, become '?'.
+std::string quoted(const std::string& word) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("_.,:=+@%/#-").find(c) != std::string_view::npos ||
+           static_cast<unsigned char>(c) >= 0x80;
+  };
+  if (!word.empty() && std::ranges::all_of(word, plain)) return word;
+  std::string text = "'";
+  for (const char c : word) {
+    if (c == '\'')
+      text += "'\\''";
+    else
+      text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  }
+  return text + "'";
+}
+
+std::string without_folder(const std::string& name) {
+  const std::size_t end = name.find_last_not_of('/');
+  if (end == std::string::npos) return name;
+  const std::size_t slash = name.rfind('/', end);
+  const std::size_t begin = slash == std::string::npos ? 0 : slash + 1;
+  return name.substr(begin, end + 1 - begin);
+}
+
+/// The longest common name: "photons" of "-n,--photons".
+std::string option_name(const CLI::Option& option) {
+  if (!option.get_lnames().empty()) return "--" + option.get_lnames().front();
+  return "-" + option.get_snames().front();
+}
+
+bool has_name(const CLI::Option& option, const std::string& name) {
+  return std::ranges::find(option.get_lnames(), name) != option.get_lnames().end();
+}
+
+bool is_positional(const CLI::Option& option) {
+  return option.get_lnames().empty() && option.get_snames().empty();
+}
+
+/// A file name in a make rule.
+std::string make_word(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    if (c == ' ' || c == '#' || c == '\\' || c == ':') text += '\\';
+    if (c == '$') text += '$';
+    text += c;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string Tool::history_line(std::optional<int> frame) const {
+  std::string line = "tempolux " TEMPOLUX_VERSION " " + state_->name;
+  const auto add = [&](const CLI::Option& option) {
+    for (const std::string& value : option.results())
+      line += " " + quoted(without_folder(frame ? frame_name(value, *frame) : value));
+  };
+  const std::vector<const CLI::Option*> options = std::as_const(state_->app).get_options();
+  for (const CLI::Option* option : options)
+    if (is_positional(*option) && !state_->left_out_of_history.contains(option)) add(*option);
+  for (const CLI::Option* option : options) {
+    if (is_positional(*option) || state_->left_out_of_history.contains(option)) continue;
+    if (has_name(*option, "output")) continue;
+    if (frame && (has_name(*option, "frames") || has_name(*option, "frame"))) {
+      line += " --frame " + std::to_string(*frame);
+    } else if (option->count() > 0) {
+      line += " " + option_name(*option);
+      if (option->get_expected_max() > 0) add(*option);
+    }
+  }
+  return line + "\n";
+}
+
+std::string Tool::State::depfile_text(const std::vector<std::string>& targets) const {
+  std::vector<std::string> files = common.state_files;
+  for (const Dependency& dependency : dependencies)
+    if (dependency.role != InputRole::of_scene || common.state_files.empty()) files.push_back(dependency.file);
+  std::string rule, phony;
+  for (const std::string& target : targets) rule += (rule.empty() ? "" : " ") + make_word(target);
+  rule += ":";
+  for (const std::string& file : files) {
+    rule += " \\\n  " + make_word(file);
+    if (std::ranges::find(targets, file) == targets.end()) phony += "\n" + make_word(file) + ":\n";
+  }
+  return rule + "\n" + phony;
+}
+
+}  // namespace tempolux::tools

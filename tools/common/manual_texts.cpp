@@ -1,0 +1,84 @@
+// tools/common/manual_texts.cpp -- what the man pages say beyond the options.
+#include "tools/common/manual.h"
+
+namespace tempolux::tools {
+namespace {
+
+constexpr ManualText kTexts[] = {
+    {"scene-plan",
+     "Reads a glTF scene and a range of frames, evaluates them, and says which stages of the pipeline have work and by "
+     "which fact, which frames share their light, and what has changed since the last time: make includes its "
+     "plan.mk.\n"
+     "\n"
+     "State files are rewritten only when their content differs, so that moving the camera traces no photon again.",
+     "plan/plan.mk: make variables (formats/plan/plan.md)\n"
+     "plan/plan.json: the same for people and scripts\n"
+     "plan/state/*: one hash for each concern and frame",
+     "scene-plan room.glb --frames 0-47 -o plan\n"
+     "less plan/plan.json",
+     "photon-trace irradcache-build frame-render"},
+    {"photon-trace",
+     "Starts photon paths at the lights of a scene and records where they arrive, with flux, normal, object and kind "
+     "of "
+     "path. All that leaves the lights is stored, absorbed or escaped, and the file's end says how much of each.",
+     ".photons: photons in blocks with checksums (formats/photons/photons.md)",
+     "photon-trace room.glb --frame 12 --photons 200k --kinds caustic,indirect -o 12.photons\n"
+     "# A map for each frame of a range; the scene is read once.\n"
+     "photon-trace room.glb --frames 0-47 -o map.####.photons",
+     "scene-plan irradcache-build tempolux-info"},
+    {"irradcache-build",
+     "Spreads irradiance points over all surfaces and estimates from photons how much light arrives at each (points); "
+     "gathers indirect light in records where a camera needs them, densely where it changes (records); or both in one "
+     "run.",
+     ".photons: read (formats/photons/photons.md)\n"
+     ".irradpoints: irradiance by kind at points (formats/irradpoints/irradpoints.md)\n"
+     ".irradcache: irradiance records with gradients (formats/irradcache/irradcache.md)",
+     "irradcache-build room.glb --frame 12 --photons 12.photons --size 640x360 -o 12.irradcache\n"
+     "# In two steps, so that the points can be looked at or shared.\n"
+     "irradcache-build points room.glb --frame 12 --photons 12.photons -o 12.irradpoints\n"
+     "irradcache-build records room.glb --frame 12 --points 12.irradpoints --size 640x360 -o 12.irradcache",
+     "photon-trace frame-render tempolux-info"},
+    {"frame-render",
+     "Traces the pixels of a frame: direct light is sampled at the lights, indirect light is read from an irradiance "
+     "cache or estimated from photons, caustics from photons; or everything is path traced, which is unbiased and "
+     "slow.",
+     "frame .exr: colour, depth, normals, ids (formats/frames/frames.md)",
+     "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints -o 12.exr\n"
+     "# A reference in two independent halves, so that its noise is known.\n"
+     "frame-render room.glb --frame 12 --size 640x360 --integrator path --spp 256 --halves -o ref.exr",
+     "irradcache-build aqm-compare tempolux-info"},
+    {"aqm-compare",
+     "Says how wrong a frame or a sequence is against a reference: RMSE, relMSE, bias, PSNR, flicker. With two "
+     "independent "
+     "halves of a reference its noise is taken out.",
+     "comparison .json: the figures (formats/comparison/comparison.md)",
+     "aqm-compare 12.exr --reference-halves ref_a.exr ref_b.exr --difference wrong.png", "frame-render error-report"},
+    {"error-report",
+     "Draws error against run time: reads the statistics of the tools and the comparisons of their frames, writes "
+     "tables, "
+     "plots and one HTML page.",
+     "report/: CSV, Markdown, plots, HTML (formats/report/report.md)\n"
+     "stats .json: what a run cost (formats/stats/stats.md)",
+     "error-report --run scene=room,curve=draft,label=12 photons.json+frame.json 12.error.json -o report",
+     "aqm-compare frame-render"},
+    {"tempolux-info",
+     "Prints what a file says of itself, checks it to its end, digests its data, compares two, exports points and "
+     "makes "
+     "pictures. Files are told by their first bytes, not by their names.",
+     ".photons .irradpoints .irradcache .exr .json: read; the pages in formats/ define them",
+     "tempolux-info 12.photons\n"
+     "tempolux-info --check out/photons/*.photons\n"
+     "tempolux-info 12.exr --png 12.png\n"
+     "tempolux-info --sheet sheet.png --columns 8 out/frames/*.exr",
+     "photon-trace irradcache-build frame-render"},
+};
+
+}  // namespace
+
+ManualText manual_text(const std::string& tool) {
+  for (const ManualText& text : kTexts)
+    if (tool == text.tool) return text;
+  return {"", "", "", "", ""};
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,240 @@
+// The options all tools share, and the look of --help and --version.
+#include <link.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "formats/error.h"
+#include "tools/common/option_words.h"
+#include "tools/common/tool_state.h"
+
+namespace tempolux::tools {
+namespace {
+
+/// An option that is text on the command line and a value after `parse`; errors name the option.
+CLI::Option* parsed_option(CLI::App& app, const std::string& names, const std::string& help,
+                           const std::string& shown_default,
+                           const std::function<void(const std::string&)>& parse) {
+  const std::string first = names.substr(0, names.find(','));
+  const std::function<void(const std::string&)> named = [first, parse](const std::string& text) {
+    try {
+      parse(text);
+    } catch (const InputError& error) {
+      throw InputError(first + ": " + error.what());
+    }
+  };
+  CLI::Option* option = app.add_option_function<std::string>(names, named, help);
+  if (!shown_default.empty()) option->default_str(shown_default);
+  return option;
+}
+
+std::string format_bytes(std::uint64_t bytes) {
+  const char* const suffixes[] = {"", "KiB", "MiB", "GiB", "TiB"};
+  std::size_t power = 0;
+  while (bytes != 0 && bytes % 1024 == 0 && power < 4) bytes /= 1024, ++power;
+  return std::to_string(bytes) + suffixes[power];
+}
+
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    return "Usage: " + name + " [OPTIONS]" + positional_words(*app) + "\n";
+  }
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    constexpr std::size_t kIndent = 30, kWidth = 100;
+    std::string left = "  " + (is_positional ? option->get_single_name() : option->get_name(false, true));
+    if (!is_positional && option->get_expected_max() > 0) left += " " + value_name(*option);
+    std::string right = option->get_description();
+    if (const std::string limits = limits_of(*option); !limits.empty()) right += " (" + limits + ")";
+    if (!option->get_default_str().empty()) right += " [" + option->get_default_str() + "]";
+    if (option->get_required()) right += " (required)";
+    if (!option->get_envname().empty()) right += " (environment: " + option->get_envname() + ")";
+
+    std::string text = left;
+    std::size_t column = left.size();
+    if (column >= kIndent) text += '\n', column = 0;
+    std::istringstream words(right);
+    bool first = true;
+    for (std::string word; words >> word;) {
+      if (!first && column + 1 + word.size() > kWidth) text += '\n', column = 0, first = true;
+      if (first) text.append(kIndent - column, ' '), column = kIndent;
+      if (!first) text += ' ', ++column;
+      text += word;
+      column += word.size();
+      first = false;
+    }
+    return text + '\n';
+  }
+};
+
+/// Collects the file behind each loaded shared object, but for those of the C and C++ run time.
+int add_library(dl_phdr_info* info, std::size_t, void* names) {
+  if (!info->dlpi_name || info->dlpi_name[0] != '/') return 0;
+  std::error_code error;
+  const std::string file = std::filesystem::canonical(info->dlpi_name, error).filename().string();
+  for (const char* usual : {"libc.", "libc-", "libm.", "libm-", "libstdc++", "libgcc_s", "ld-"})
+    if (file.starts_with(usual)) return 0;
+  if (!file.empty()) *static_cast<std::string*>(names) += " " + file;
+  return 0;
+}
+
+}  // namespace
+
+std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<HelpFormatter>(); }
+
+std::string version_text(const std::string& tool) {
+  std::string libraries;
+  dl_iterate_phdr(add_library, &libraries);
+  return tool +
+         " (tempolux) " TEMPOLUX_VERSION "\ncompiler: " __VERSION__ "\nlibraries: CLI11-" CLI11_VERSION +
+         libraries + '\n';
+}
+
+void Tool::environment_options() {
+  CLI::App& app = state_->app;
+  Common& common = state_->common;
+  CLI::Option* file =
+      app.add_option(
+             "--environment", common.environment,
+             "latitude-longitude map of the light around the scene, .hdr or .exr: its middle is +Z, its top +Y; "
+             "maps made for Blender's axes want --environment-rotation 90")
+          ->type_name("FILE");
+  CLI::Option* color =
+      parsed_option(app, "--environment-color", "the same light from all around, W/m^2/sr, instead of a map", "",
+                    [&common](const std::string& text) { common.environment_color = parse_color(text); })
+          ->type_name("R,G,B")
+          ->excludes(file);
+  const auto needs_one = [file, color](const CLI::Option* option) {
+    if (option->count() > 0 && file->count() == 0 && color->count() == 0)
+      throw CLI::RequiresError(option->get_name(), "--environment or --environment-color");
+  };
+  CLI::Option* strength = app.add_option("--environment-strength", common.environment_strength,
+                                         "factor of its radiance: what a pixel of value 1 emits, W/m^2/sr")
+                              ->type_name("X")
+                              ->capture_default_str()
+                              ->check(number_between(0, 1e30));
+  CLI::Option* rotation =
+      app.add_option("--environment-rotation", common.environment_rotation_deg,
+                     "turns the map about +Y, from +Z towards +X, degrees")
+          ->type_name("DEG")
+          ->capture_default_str()
+          ->check(number_between(-1e6, 1e6));
+  app.parse_complete_callback([=] {
+    needs_one(strength);
+    needs_one(rotation);
+  });
+}
+
+void Tool::common_options(unsigned flags) {
+  CLI::App& app = state_->app;
+  Common& common = state_->common;
+  const auto left_out = [&](CLI::Option* option) {
+    state_->left_out_of_history.insert(option);
+    return option;
+  };
+  if (flags & uses_frames)
+    parsed_option(app, "--frames,--frame", "frame, or frames such as 0-47, 0-47x2 or 1,5,9", "0",
+                  [&common](const std::string& text) { common.frames = parse_frames(text); })
+        ->type_name("FRAMES");
+  if (flags & uses_camera)
+    app.add_option("--camera", common.camera, "name of the camera; auto: the first of the scene")
+        ->type_name("NAME")
+        ->capture_default_str();
+  if (flags & uses_seed) {
+    app.add_option("--seed", common.seed, "seed of the random numbers, 0 to 2^64-1")
+        ->type_name("N")
+        ->capture_default_str()
+        ->check([](const std::string& text) -> std::string {
+          std::uint64_t seed = 0;
+          const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+          const bool whole = error == std::errc{} && end == text.data() + text.size();
+          return whole ? "" : "'" + text + "' is not a whole number from 0 to 2^64-1";
+        });
+    app.add_option("--seed-mode", common.seed_mode, "fixed: one seed for all frames; frame: another for each")
+        ->type_name("MODE")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"fixed", "frame"}));
+  }
+  if (flags & uses_scene) {
+    app.add_option("--fps", common.fps, "frames per second: frame f is at f / fps seconds")
+        ->type_name("RATE")
+        ->capture_default_str()
+        ->check(number_between(1e-3, 1e6));
+    app.add_option("--segment", common.segment_length, "frames over which static means static")
+        ->type_name("FRAMES")
+        ->capture_default_str()
+        ->check(number_between(1, 1e6));
+    app.add_option("--animation", common.animation,
+                   "play only this animation of the scene; all play together if not given")
+        ->type_name("NAME");
+    app.add_option("--light-units", common.light_units,
+                   "raw: lights as they stand; spec: point, spot and sun lights divided by 683 lm/W")
+        ->type_name("UNITS")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"raw", "spec"}));
+    environment_options();
+    left_out(app.add_option("--state", common.state_files,
+                            "state files of scene-plan, listed by --depfile instead of the scene's files"))
+        ->type_name("FILE");
+    left_out(
+        app.add_flag("--allow-stale", common.allow_stale, "use inputs made for another state of the scene"));
+    left_out(app.add_option("--max-texture", common.max_texture, "refuse images of textures of more pixels on a side"))
+        ->type_name("N")
+        ->check(number_between(1, 65536))
+        ->capture_default_str();
+    app.add_option("--reduce-textures", common.reduce_textures,
+                   "reduce larger images of textures to this many pixels on a side; 0: none")
+        ->type_name("N")
+        ->check(number_between(0, 65536))
+        ->capture_default_str();
+    left_out(app.add_flag("--allow-outside", common.allow_outside,
+                          "follow file names that leave the scene's folder"));
+  }
+  left_out(app.add_option("--threads", common.threads, "threads; 0: all processors this process may use"))
+      ->type_name("N")
+      ->capture_default_str()
+      ->envname("TEMPOLUX_THREADS")
+      ->check(number_between(0, 4096));
+  left_out(bytes_option("--max-memory", common.max_memory_bytes, "limit of memory, such as 300MiB; 0: none"));
+  left_out(app.add_option("--stats", common.stats_file,
+                          "write seconds, counts and memory as JSON; -: standard output"))
+      ->type_name("FILE");
+  left_out(app.add_option("--depfile", common.dep_file, "write a make rule: outputs depend on inputs"))
+      ->type_name("FILE");
+  left_out(app.add_flag("--no-clobber", common.no_clobber, "refuse to replace an output that exists"));
+  left_out(app.add_flag("-q,--quiet", common.quiet, "no words but errors"));
+  left_out(app.add_flag("-v,--verbose", common.verbose, "say what is done and how long it took"));
+}
+
+CLI::Option* Tool::output_option(std::string& path, const std::string& help, const std::string& names) {
+  CLI::Option* option = state_->app.add_option(names, path, help)->type_name("FILE");
+  leave_out_of_history(option);
+  return option;
+}
+
+CLI::Option* Tool::count_option(const std::string& names, std::uint64_t& count, const std::string& help) {
+  return parsed_option(state_->app, names, help, format_count(count),
+                       [&count](const std::string& text) { count = parse_count(text); })
+      ->type_name("N");
+}
+
+CLI::Option* Tool::bytes_option(const std::string& names, std::uint64_t& bytes, const std::string& help) {
+  return parsed_option(state_->app, names, help, format_bytes(bytes),
+                       [&bytes](const std::string& text) { bytes = parse_bytes(text); })
+      ->type_name("SIZE");
+}
+
+CLI::Option* Tool::size_option(const std::string& names, int& width, int& height, const std::string& help) {
+  return parsed_option(state_->app, names, help, std::to_string(width) + "x" + std::to_string(height),
+                       [&width, &height](const std::string& text) { parse_size(text, width, height); })
+      ->type_name("WxH");
+}
+
+void Tool::leave_out_of_history(const CLI::Option* option) { state_->left_out_of_history.insert(option); }
+
+}  // namespace tempolux::tools

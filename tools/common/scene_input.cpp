@@ -1,0 +1,93 @@
+#include "tools/common/scene_input.h"
+
+#include "formats/error.h"
+#include "lib/scene/gltf_load.h"
+
+namespace tempolux::tools {
+
+SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : tool_(tool) {
+  const Common& common = tool.common();
+  GltfOptions options;
+  options.allow_outside = common.allow_outside;
+  options.animation = common.animation;
+  options.textures.max_side = common.max_texture;
+  if (common.reduce_textures > 0) options.textures.reduce_to = common.reduce_textures;
+  scene_ = load_gltf(path, options);
+  add_environment();
+  if (needs & light) require_lights(scene_);
+  if (needs & a_camera) scene_.camera_node(common.camera);
+  for (const std::string& warning : scene_.warnings) tool.warn(warning);
+  for (const std::string& file : scene_.files) tool.depends_on(file, InputRole::of_scene);
+  time_.fps = common.fps;
+  time_.segment_length = common.segment_length;
+  time_.light_units = common.light_units;
+  tool.say(path + ": light units " + common.light_units + ": punctual lights " +
+           (common.light_units == "spec" ? "divided by 683" : "as they stand, factor 1"));
+}
+
+SceneInput::~SceneInput() {
+  if (!scene_.images) return;
+  tool_.stats().count("textures", double(scene_.images->decoded_count()));
+  tool_.stats().count("texture_bytes", double(scene_.images->decoded_bytes()));
+}
+
+void SceneInput::add_environment() {
+  const Common& common = tool_.common();
+  const EnvironmentOptions options{common.environment_strength, common.environment_rotation_deg};
+  if (common.environment_color) {
+    const auto& color = *common.environment_color;
+    scene_.environment =
+        std::make_shared<const Environment>(uniform_environment(Rgb(color[0], color[1], color[2]), options));
+  } else if (!common.environment.empty()) {
+    scene_.environment = std::make_shared<const Environment>(load_environment(common.environment, options));
+    scene_.files.push_back(common.environment);
+  }
+  if (!scene_.environment) return;
+  for (const std::string& warning : scene_.environment->warnings) scene_.warnings.push_back(warning);
+  if (!scene_.environment->emits()) tool_.warn(scene_.environment->path + ": is black: it lights nothing");
+}
+
+void SceneInput::enter_segment(int frame) {
+  if (segment_ && frame >= segment_->segment().first && frame <= segment_->segment().last) return;
+  segment_ = std::make_unique<SegmentScene>(scene_, segment_of(scene_, frame, time_), time_);
+  emission_.reset();
+}
+
+SceneFrame SceneInput::at(int frame, bool asked) {
+  const int nearest = frame_in_animation(scene_, frame, time_);
+  if (nearest != frame && asked && !warned_range_) {
+    tool_.warn(scene_.path + ": frame " + std::to_string(frame) + " is outside the animation; using frame " +
+               std::to_string(nearest));
+    warned_range_ = true;
+  }
+  frame = nearest;
+  enter_segment(frame);
+  return segment_->at(frame);
+}
+
+const EmissionTable& SceneInput::emission(int frame) {
+  enter_segment(frame);
+  if (!emission_) emission_ = build_emission_table(scene_, segment_->segment(), time_);
+  return *emission_;
+}
+
+formats::Identity identity_of(const SceneFrame& frame) {
+  const SceneHashes& h = frame.hashes;
+  return {h.static_geometry, h.moving_geometry, h.materials, h.lights, h.media, frame.frame, frame.frame};
+}
+
+void check_identity(Tool& tool, const std::string& file, const formats::Identity& file_identity,
+                    const SceneFrame& frame) {
+  if (!file_identity.known()) {
+    tool.warn(file + ": does not say which scene it was made for; used as it is");
+    return;
+  }
+  const std::string stale = formats::stale_concerns(file_identity, identity_of(frame));
+  if (stale.empty()) return;
+  const std::string message = file + ": made for another state of the scene: " + stale + " differ at frame " +
+                              std::to_string(frame.frame);
+  if (!tool.common().allow_stale) throw InputError(message + "; make it again for this one, or pass --allow-stale");
+  tool.warn(message);
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,32 @@
+// tools/common/stats.h -- what a run did and cost, written by --stats as JSON (formats/stats/stats.md).
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace tempolux::tools {
+
+/// Call from the main thread only.
+class Stats {
+ public:
+  Stats();
+  ~Stats();
+  /// Starts a phase ("load", "build", "trace", "write" ...); ends the one before. CPU and wall seconds are
+  /// summed by name, so a phase may come again for each frame.
+  void phase(const std::string& name, bool parallel = false);
+  void end_phase();
+  void count(const std::string& name, double value);  ///< adds to counts.NAME: rays, photons, bytes ...
+  void set(const std::string& name, double value);    ///< results.NAME: its own error estimate ...
+  void set(const std::string& name, const std::string& value);
+
+  /// The text of the file. `command` is the tool's line of history.
+  std::string json(const std::string& tool, const std::string& command, int threads, int exit_code) const;
+  /// "trace 1.93 s (3.81 CPU s)" for each phase, for --verbose.
+  std::string summary() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tempolux::tools

@@ -1,0 +1,53 @@
+// tools/common/tool_state.h -- what a Tool holds; for tool_main.cpp, options.cpp and history.cpp only.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/common/tool_main.h"
+
+namespace tempolux::tools {
+
+struct Tool::State {
+  std::string name;
+  int argc;
+  char** argv;
+  CLI::App app;
+  Common common;
+  Stats stats;
+  std::set<const CLI::Option*> left_out_of_history;
+
+  struct Dependency {
+    std::string file;
+    InputRole role;
+  };
+  std::vector<Dependency> dependencies;
+
+  // Words for people come from any thread.
+  std::mutex message_mutex;
+  std::set<std::string> warnings;
+  bool bar_allowed = false, bar_shown = false;
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now(), bar_time = start;
+
+  State(std::string tool, std::string what, int count, char** values)
+      : name(std::move(tool)), argc(count), argv(values), app(std::move(what), name) {}
+
+  bool print_manual() const;
+  void parse();
+  void apply_limits() const;
+  int run(const std::function<int()>& body, const Tool& tool);
+  void print_line(const std::string& message);
+  void clear_bar();
+  std::string depfile_text(const std::vector<std::string>& targets) const;
+};
+
+/// Layout of --help: descriptions wrapped, default and "required" at their end.
+std::shared_ptr<CLI::FormatterBase> help_formatter();
+/// The lines of --version: tool, compiler, the shared libraries that are loaded.
+std::string version_text(const std::string& tool);
+
+}  // namespace tempolux::tools
