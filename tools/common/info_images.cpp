@@ -10,6 +10,7 @@
 #include "lib/image/frame_identity.h"
 #include "lib/image/preview.h"
 #include "lib/image/statistics.h"
+#include "lib/image/why_mask.h"
 #include "tools/common/info_facts.h"
 
 namespace tempolux::tools {
@@ -68,6 +69,31 @@ Facts channel_facts(const ChannelStatistics& channel) {
   return facts;
 }
 
+/// Of a mask: for each cause the pixels that have it, and the share of the picture that it is the first cause of.
+Facts cause_facts(const Image& image, const std::string& path) {
+  Facts facts = Facts::array();
+  const double pixels = double(image.pixel_count());
+  double traced = 0;
+  for (const WhyCount& cause : count_whys(whys_in(image, path))) {
+    traced += double(cause.first);
+    facts.push_back({{"cause", cause.name}, {"pixels", cause.pixels}, {"share", double(cause.first) / pixels}});
+  }
+  facts.push_back({{"cause", "all"}, {"pixels", std::uint64_t(traced)}, {"share", traced / pixels}});
+  return facts;
+}
+
+/// A mask in the colours of its causes, any other image by its layer.
+Picture picture_of(const std::string& path, const Image& image, const PreviewOptions& preview) {
+  if (preview.layer.empty() && !image.find("R") && is_why_mask(image)) return why_picture(image, whys_in(image, path));
+  return named(path, [&] { return make_picture(image, preview); });
+}
+
+/// Stops that suit it: none for a mask, whose colours are fixed.
+double stops_of(const std::string& path, const Image& image, const std::string& layer) {
+  if (layer.empty() && !image.find("R") && is_why_mask(image)) return 0;
+  return named(path, [&] { return auto_exposure_stops(image, layer); });
+}
+
 }  // namespace
 
 Facts image_facts(const std::string& path, bool allow_nan) {
@@ -80,6 +106,7 @@ Facts image_facts(const std::string& path, bool allow_nan) {
   facts["channels"] = Facts::array();
   for (const ChannelStatistics& channel : channel_statistics(image))
     facts["channels"].push_back(channel_facts(channel));
+  if (is_why_mask(image)) facts["causes"] = cause_facts(image, path);
   if (std::ranges::find(layers, "") != layers.end()) facts["auto_exposure_stops"] = auto_exposure_stops(image, "");
   facts["digest"] = digest_of(image);
   return facts;
@@ -120,7 +147,7 @@ Facts image_difference(const std::string& a, const std::string& b) {
 void write_picture(const std::string& path, const PictureOptions& options, Output& output) {
   const Image image = load_shown(path, options);
   const PreviewOptions preview{options.layer, options.exposure_stops};
-  save_png(output.temporary_path(), named(path, [&] { return make_picture(image, preview); }));
+  save_png(output.temporary_path(), picture_of(path, image, preview));
 }
 
 void write_sheet(const std::vector<std::string>& paths, const PictureOptions& options, Output& output) {
@@ -134,7 +161,7 @@ void write_sheet(const std::vector<std::string>& paths, const PictureOptions& op
     std::vector<double> stops;
     for (const std::string& path : paths) {
       const Image image = load_shown(path, options);
-      stops.push_back(named(path, [&] { return auto_exposure_stops(image, options.layer); }));
+      stops.push_back(stops_of(path, image, options.layer));
       step();
     }
     preview.exposure_stops = sequence_exposure_stops(stops);
@@ -142,7 +169,7 @@ void write_sheet(const std::vector<std::string>& paths, const PictureOptions& op
   std::vector<Picture> pictures;
   for (const std::string& path : paths) {
     const Image image = load_shown(path, options);
-    const Picture picture = named(path, [&] { return make_picture(image, preview); });
+    const Picture picture = picture_of(path, image, preview);
     pictures.push_back(contact_sheet({picture}, 1, options.tile_width));
     step();
   }
