@@ -61,7 +61,7 @@ def without_caustics(bench, image, halves):
 
 def quality(bench, _):
     """All layers of a final frame, at the demo's settings."""
-    size = "64x36" if bench.quick else "640x360"
+    size = "64x36" if bench.tiny else "640x360"
     settings = dataclasses.replace(chain.final(bench.project), caustics=True)
     try:
         bench.scene("S4")
@@ -70,7 +70,7 @@ def quality(bench, _):
     halves = bench.reference_halves("S4", size, bench.reference_samples // 8)
     rows, more, costs, rest = [], [], [], []
     runs = {layer: [] for layer in LAYERS}
-    for seed in range(1, 2 if bench.quick else 5):
+    for seed in range(1, 2 if bench.tiny else 5):
         image, stats = chain.frame(bench, "S4", seed, settings, size)
         costs.append(chain.cost(stats))
         rest.append(without_caustics(bench, image, halves))
@@ -92,7 +92,7 @@ def quality(bench, _):
     more.sort(key=lambda row: -abs(row[2]))
     found = figure("S4, a final frame at 640x360", "relMSE at most 2e-3 and bias at most 1 %, of the image without caustics",
                    ["layer", "RMSE", "relMSE", "bias", "standard error of one"], rows,
-                   None if bench.quick else relmse <= 2e-3 and abs(bias) <= 0.01,
+                   None if bench.tiny else relmse <= 2e-3 and abs(bias) <= 0.01,
                    [f"Settings of Makefile.example, {quantity(median(costs))} CPU s; against our path tracer, halves of "
                     f"{bench.reference_samples // 16} samples. relMSE of a layer would divide by the reference's noise."])
     found["more"] = {"title": "S4's image by object", "header": ["object", "pixels", "bias", "standard error",
@@ -106,16 +106,16 @@ def speed(bench, _):
     title, asked = "S4, a still frame at 320x180", "Cycles' RMSE of 256 samples (.038) in 1/20 of its CPU seconds (2.5)"
     try:
         bench.scene("S4")
-        halves = bench.reference_halves("S4") if bench.quick else bench.third_party_halves("S4")
+        halves = bench.reference_halves("S4") if bench.tiny else bench.third_party_halves("S4")
     except Missing as reason:
         return figure(title, asked, HEADER, [], None, [f"left out: {reason}"])
     rows, met = judged(bench, "S4", bench.size, halves, [(0.038, 2.5, FAST)])
-    return figure(title, asked, HEADER, rows, None if bench.quick else met, ["Median and mean of 5 seeds, everything counted."])
+    return figure(title, asked, HEADER, rows, None if bench.tiny else met, ["Median and mean of 5 seeds, everything counted."])
 
 
 def animation(bench, _):
     """A walk through the hall, as `make -f Makefile.example SCENE=...` renders it."""
-    frames, size = ("0-1", "48x28") if bench.quick else ("0-47", "640x360")
+    frames, size = ("0-1", "48x28") if bench.tiny else ("0-47", "640x360")
     title, asked = f"S4, frames {frames} at {size}, camera moving", "below 150 CPU s, all processes"
     header = ["photons", "points", "cache", "frames", "pictures to look at and all else", "CPU s in all", "a frame"]
     try:
@@ -131,7 +131,7 @@ def animation(bench, _):
     samples = mean(json.loads(file.read_text())["results"]["samples_per_pixel"] for file in (out / "frames").glob("*.json"))
     shutil.rmtree(out)
     rows = [[*map(quantity, stages), quantity(all_cpu - sum(stages)), quantity(all_cpu), quantity(all_cpu / pictures)]]
-    return figure(title, asked, header, rows, None if bench.quick else all_cpu < 150,
+    return figure(title, asked, header, rows, None if bench.tiny else all_cpu < 150,
                   [f"`make -f Makefile.example SCENE=S4_atrium.glb FRAMES={frames} SIZE={size}`, its final settings: "
                    f"{samples:.1f} samples a pixel. {load} other processes wanted a processor at its beginning."])
 

@@ -4,7 +4,7 @@
 here=$(cd "$(dirname "$0")" && pwd)
 parts=$(cd "$here" && python3 -B -c 'from required import FIGURES; print("sweep", *FIGURES)') || exit 1
 rm -rf "$2" && mkdir -p "$2" || exit 1
-python3 -B "$here/bench.py" --quick --build "$1" --out "$2/out" --results "$2/RESULTS.md" --docs "$2/docs" || exit 1
+python3 -B "$here/bench.py" --tiny --build "$1" --out "$2/out" --results "$2/RESULTS.md" --docs "$2/docs" || exit 1
 for part in $parts; do
   grep -q -e "--only $part" "$2/RESULTS.md" || { echo "RESULTS.md has no part $part"; exit 1; }
 done
@@ -13,7 +13,7 @@ for plot in $(sed -n 's/.*](\(docs[^)]*\)).*/\1/p' "$2/RESULTS.md"); do
 done
 ! find "$2/docs" -size +200k | grep . || { echo 'a figure is larger than 200 KB'; exit 1; }
 # A part that the output folder does not know stays as the page has it; where there is no page, it is said not to be measured.
-page_again() { python3 -B "$here/bench.py" --quick --build "$1" --out "$2/out" --results "$2/RESULTS.md" --docs "$2/docs" --page > "$2/page.txt"; }
+page_again() { python3 -B "$here/bench.py" --tiny --build "$1" --out "$2/out" --results "$2/RESULTS.md" --docs "$2/docs" --page > "$2/page.txt"; }
 in_full() { sed -n '/^## Error against/,$p' "$1/RESULTS.md"; }
 in_full "$2" > "$2/before.md" && rm "$2/out/start.json" "$2/out/sweep.json" && page_again "$@" && in_full "$2" | cmp - "$2/before.md" || { echo 'the page loses parts that are not measured again'; exit 1; }
 rm "$2/RESULTS.md" && page_again "$@" && grep -q 'only start` | \*\*not measured\*\*' "$2/RESULTS.md" ||
