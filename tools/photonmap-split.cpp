@@ -294,7 +294,7 @@ void run(tools::Tool& tool, const Options& options) {
 
 int main(int argc, char** argv) {
   tools::Tool tool("photonmap-split",
-                   "Divide the light of photons or irradiance points: into a low and a high part by brightness, or by kind.",
+                   "Divide light in two files: a low and a high part by brightness, or by kind of path.",
                    argc, argv);
   Options options;
   CLI::App& app = tool.app();

@@ -10,8 +10,8 @@ refuses() {   # exit 2 and these words in one line; nothing is written
   [ -e refused ] && bad "left an output: $*" && rm -f refused
 }
 room=$HERE/../../pipelines/scenes/S3_indirect_room.glb
-photon-trace "$room" --frame 1 --photons 30k -o p.photons -q || bad photons
-irradcache-build points "$room" --frame 1 --photons p.photons --point-count 4k -o p.irradpoints -q || bad points
+photon-trace "$room" --frame 1 --photons 8k -o p.photons -q || bad photons
+irradcache-build points "$room" --frame 1 --photons p.photons --point-count 1k -o p.irradpoints -q || bad points
 split="photonmap-split -q --energy 2"
 $split p.photons --low l.photons --high h.photons --stats s.json || bad 'photons divided'
 $split p.irradpoints --low l.irradpoints --high h.irradpoints || bad 'points divided'
@@ -61,7 +61,7 @@ EOF
   bad 'the order of photons changes the parts'
 
 # Pipes: standard input, a shell's /dev/fd, standard output; nothing is left behind.
-photon-trace "$room" --frame 1 --photons 30k -o - -q | $split - --low pl.photons --high ph.photons || bad pipe
+photon-trace "$room" --frame 1 --photons 8k -o - -q | $split - --low pl.photons --high ph.photons || bad pipe
 tempolux-info --diff l.photons pl.photons >/dev/null && tempolux-info --diff h.photons ph.photons >/dev/null || bad 'a pipe changes the parts'
 cat p.irradpoints | $split - --low - --high ph.irradpoints >pl.irradpoints || bad 'pipe of points'
 tempolux-info --diff l.irradpoints pl.irradpoints >/dev/null && tempolux-info --diff h.irradpoints ph.irradpoints >/dev/null || bad 'piped points'
@@ -93,7 +93,7 @@ assert chosen["kinds"] == "indirect" and rest["kinds"] == "direct,caustic", (cho
 assert chosen["photons"] + rest["photons"] == all_["photons"] and chosen["photons"] == all_["by_kind"]["indirect"]["photons"]
 assert d["kinds"] == "direct,caustic" and i["kinds"] == "indirect" and d["points"] == i["points"] == p["points"]
 EOF
-photon-trace "$room" --frame 1 --photons 30k -o - -q | photonmap-split - -q --kind indirect -o pi.photons && tempolux-info --diff pi.photons i.photons >/dev/null || bad 'kinds through a pipe'
+photon-trace "$room" --frame 1 --photons 8k -o - -q | photonmap-split - -q --kind indirect -o pi.photons && tempolux-info --diff pi.photons i.photons >/dev/null || bad 'kinds through a pipe'
 
 # A part is not taken for the whole; what cannot be divided is refused.
 refuses 'low part of the light alone' irradcache-build points "$room" --frame 1 --photons l.photons -o refused
