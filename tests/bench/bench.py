@@ -14,7 +14,7 @@ from pathlib import Path
 
 import results_page
 import sweep
-from measure import Bench, Missing, machine
+from measure import Bench, Missing, machine, walk_speed
 from required import FIGURES
 
 
@@ -40,7 +40,8 @@ def draw_curves(bench, peers):
     """The sweep; beside error-report's folder, what it was made with."""
     load = os.getloadavg()[0]
     print((sweep.measure(bench, peers) / "report.md").read_text())
-    made = {"machine": machine(bench), "load": f"{load:.1f}", "reference_samples": bench.reference_samples}
+    made = {"machine": machine(bench), "load": f"{load:.1f}", "reference_samples": bench.reference_samples,
+            "date": time.strftime("%Y-%m-%d %H:%M", time.gmtime())}
     (bench.out / "sweep.json").write_text(json.dumps(made))
 
 
@@ -49,8 +50,10 @@ def measure(bench, name, peers, args):
     more = {"found": {"only": args.scenes}, "everyscene": {"only": args.scenes, "sizes": args.sizes.split(","), "seeds": args.seeds}}
     load = os.getloadavg()[0]
     begin = time.monotonic()
+    bench.walk = walk_speed(bench)
     found = FIGURES[name](bench, peers, **more.get(name, {}))
-    found |= {"machine": machine(bench), "load": f"{load:.1f}", "seconds": round(time.monotonic() - begin, 1)}
+    found |= {"machine": machine(bench), "load": f"{load:.1f}", "seconds": round(time.monotonic() - begin, 1),
+              "date": time.strftime("%Y-%m-%d %H:%M", time.gmtime())}
     (bench.out / f"{name}.json").write_text(json.dumps(found, indent=1))
     print(results_page.table(found["header"], found["rows"]) + "".join(note + "\n" for note in found["notes"])
           + f"asked: {found['asked']}: {results_page.verdict(found['met'])} ({found['seconds']} s)", flush=True)
@@ -74,11 +77,11 @@ def main():
             print(f"left out: {reason}", flush=True)
             left_out[name] = str(reason)
     page = args.results.resolve()
-    results_page.write(bench, page, args.docs.resolve(), peers["source"], FIGURES, "python3 tests/bench/bench.py", left_out)
+    results_page.write(bench, page, args.docs.resolve(), peers, FIGURES, "python3 tests/bench/bench.py", left_out)
     print(f"wrote {args.results}")
     readme = page.with_name("README.md")
     if readme.exists():
-        readme.write_text(results_page.readme(readme.read_text(), page.read_text(), peers["cornell"]))
+        readme.write_text(results_page.readme(readme.read_text(), args.docs.resolve() / "results", peers["cornell"]))
 
 
 if __name__ == "__main__":

@@ -19,12 +19,8 @@ The limit is 1 % of the picture's mean, and 2 % of the layer where that is a ten
 import argparse
 import json
 import math
-import os
 import re
-import resource
-import shutil
 import statistics
-import subprocess
 import sys
 from pathlib import Path
 
@@ -34,77 +30,13 @@ import exr
 import pixels
 from comparing import compared
 from measure import Bench, figure, machine, percent, quantity, walk_speed
-from references import CHANNELS, Law, Reference
+from references import Law, Reference
+from shipped import STAGES, Side, Unfinished, frames_without_camera, yardstick
 
-STAGES = ("photons", "points", "cache", "frames")
 PILOT = 16                       # samples per pixel of the first path-traced picture
 OF_PICTURE, OF_LAYER, TENTH = 0.01, 0.02, 0.1
 HEADER = ["scene", "CPU s: all = photons + points + records + frame + rest", "RMSE / mean", "paths' CPU s", "speed-up", "bias of the picture",
           "layers that differ", "indirect", "dots, paths'", "tail"]
-
-
-class Unfinished(Exception):
-    """A run was refused or took longer than it may."""
-
-
-def yardstick(bench):
-    """Options of the path tracer that is compared with: without what has been added to it since it became the yardstick."""
-    known = bench.run([bench.bin / "frame-render", "--help"]).stdout
-    return ["--integrator", "path", *(["--visibility-grid", "off"] if "--visibility-grid" in known else [])]
-
-
-def frames_without_camera(bench):
-    """Does --camera auto frame a scene that has no camera?"""
-    scene = bench.out / "tmp" / "no-camera.gltf"
-    made = cases.open_scenes.Scene()
-    made.quad((-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1), made.material(0.5, 1.0))
-    made.save(scene)
-    done = subprocess.run([bench.bin / "scene-plan", scene, "-q", "-o", bench.out / "tmp" / "no-camera"], capture_output=True)
-    return done.returncode == 0
-
-
-class Side:
-    """Runs of the chain or of the path tracer on one scene at one size."""
-
-    def __init__(self, bench, case, size, patience):
-        self.bench, self.case, self.size, self.patience = bench, case, size, patience
-        self.folder = bench.out / "every" / "run"
-
-    def spend(self, command):
-        """CPU seconds of a command and all it starts; each of its processes may take `patience` of them."""
-        def limit():
-            resource.setrlimit(resource.RLIMIT_CPU, (self.patience, self.patience))
-        environment = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
-        before = os.times()
-        done = subprocess.run([str(part) for part in command], capture_output=True, text=True, env=environment, preexec_fn=limit)
-        after = os.times()
-        if done.returncode:
-            lines = [line for line in done.stderr.splitlines() if line and not line.startswith("make")]
-            raise Unfinished(lines[0] if lines else f"a process took more than {self.patience} CPU s")
-        return after.children_user - before.children_user + after.children_system - before.children_system
-
-    def chain(self, seed):
-        """(picture, CPU seconds, those of each stage)"""
-        case, name = self.case, f"{self.case.frame:04d}"
-        shutil.rmtree(self.folder, ignore_errors=True)
-        shared = " ".join(map(str, case.shared))
-        cpu = self.spend(["make", "-s", "-f", "Makefile.example", "-C", self.bench.project, f"{self.folder}/frames/{name}.exr",
-                          f"BIN={self.bench.bin}", f"OUT={self.folder}", f"SCENE={case.file.resolve()}", f"FRAMES={case.frame}",
-                          f"SIZE={self.size}", f"CAMERA={case.camera}", f"CHANNELS={','.join(CHANNELS)}", f"TIME={shared}",
-                          f"RUN=sh {Path(__file__).with_name('with_seed.sh')} {seed}",
-                          *([f"ENVIRONMENT={case.environment.resolve()}"] if case.environment else [])])
-        stages = {stage: sum(json.loads(f.read_text())["cpu_s"] for f in (self.folder / stage).glob("*.json")) for stage in STAGES}
-        image = exr.read(self.folder / "frames" / f"{name}.exr")
-        shutil.rmtree(self.folder)
-        return image, cpu, stages
-
-    def paths(self, spp, seed):
-        """(picture, CPU seconds that do not depend on the samples, those of a sample per pixel)"""
-        image, stats = self.bench.out / "tmp" / "every-path.exr", self.bench.out / "tmp" / "every-path.json"
-        cpu = self.spend([self.bench.bin / "frame-render", self.case.file, *self.case.options(), *yardstick(self.bench), "--size", self.size,
-                          "--spp", spp, "--seed", seed, "--channels", *CHANNELS, "--compression", "none", "-q", "-o", image, "--stats", stats])
-        render = sum(p["cpu_s"] for p in json.loads(stats.read_text())["phases"] if p["name"] == "render")
-        return exr.read(image), cpu - render, render / spp
 
 
 def student(freedom):
@@ -291,7 +223,7 @@ def run(bench, only, sizes, seeds, patience, reference_cpu, kept):
 def everyscene(bench, _=None, only="", sizes=("320x180",), seeds=8, patience=600, reference_cpu=600):
     """The preset against our path tracer in every scene."""
     if bench.tiny:
-        only, sizes, seeds, reference_cpu = "^S1$|^hut-50-inside-both$", (bench.size,), 2, 0
+        only, sizes, seeds, reference_cpu = "^hut-50-inside-both$", (bench.size,), 2, 0
     rows, _ = run(bench, only, sizes, seeds, patience, reference_cpu, bench.out / "every" / "rows.json")
     return figure("The preset against our path tracer in every scene",
                   "no scene slower than path tracing at equal error; median 1.5 in the open; no layer off by more than 1 %",

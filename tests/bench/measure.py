@@ -8,6 +8,9 @@ import time
 from pathlib import Path
 
 
+NORMAL_WALK = 5.0     # million photons per CPU second of one thread: walk_speed() of the machine on which the limits were set
+
+
 class Missing(Exception):
     """A measurement lacks a program or file; it is left out and the page says so."""
 
@@ -21,12 +24,18 @@ class Bench:
         self.reference_samples = 16 if tiny else reference_samples
         self.size = "48x28" if tiny else "320x180"
         self.rounds = 1 if tiny else 5
+        self.walk = None      # walk_speed() at the beginning of the part that is being measured
         shared = project / ".." / "shared" / "scenes"
         self.shared = shared if shared.is_dir() else None
         memory = Path("/dev/shm")
         self.memory = memory if os.access(memory, os.W_OK) else out
         for folder in (out, out / "frames", out / "reference", out / "tmp"):
             folder.mkdir(parents=True, exist_ok=True)
+
+    def normalised(self, cpu_s):
+        """CPU seconds as a processor would take whose bare walk makes NORMAL_WALK million photons a second; those measured, where
+        its speed is not known. Processors of one name differ by 1.8."""
+        return cpu_s * (self.walk or NORMAL_WALK) / NORMAL_WALK
 
     # ---- scenes
 
@@ -114,9 +123,9 @@ class Bench:
         return json.loads(Path(output).read_text())
 
 
-def figure(title, asked, header, rows, met, notes=()):
-    """What a function of required.py or gathering.py returns."""
-    return {"title": title, "asked": asked, "header": header, "rows": rows, "met": met, "notes": list(notes)}
+def figure(title, asked, header, rows, met, notes=(), measured=""):
+    """What a function of required.py or gathering.py returns. `measured`: the value that was asked for, in a few words."""
+    return {"title": title, "asked": asked, "header": header, "rows": rows, "met": met, "notes": list(notes), "measured": measured}
 
 
 def median(values):
@@ -162,7 +171,7 @@ def machine(bench):
     of two: the speed, of one thread of bare_walk on S2, makes CPU seconds comparable."""
     model = next((line.split(":", 1)[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
                   if line.startswith("model name")), "unknown processor")
-    speed = walk_speed(bench)
+    speed = bench.walk or walk_speed(bench)
     speed = f", bare walk {speed:.1f} M photons/s" if speed else ""
     return f"{len(os.sched_getaffinity(0))} x {model}{speed}, commit {commit_of(bench.project)}"
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import exr
 import pixels
+from shipped import CHANNELS
 
 FIRST = 64            # samples per pixel of the first halves together
-CHANNELS = ("RGBA", "layers")
 VIEW = ("worldToCamera", "worldToNDC")
 
 
