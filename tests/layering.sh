@@ -4,7 +4,7 @@ bad=0
 forbid() {  # folder, pattern of an #include it must not have, reason
   if grep -rnE --include='*.h' --include='*.cpp' "^ *#include [<\"]($2)" "$1" 2>/dev/null; then echo "^ $1: $3"; bad=1; fi
 }
-third='CLI/|OpenEXR/|Imf|Imath|OpenImageIO/|openvdb/|embree|tiny_gltf|nlohmann/|tbb/|png.h|jpeglib.h|draco/|meshoptimizer|webp/'
+third='CLI/|OpenEXR/|Imf|Imath|OpenImageIO/|openvdb/|embree|tiny_gltf|nlohmann/|tbb/|png.h|jpeglib.h'
 forbid formats "lib/|tools/|$third" 'formats needs the standard library and xxhash only'
 forbid lib 'tools/|CLI/|iostream' 'lib has no command line and prints nothing'
 forbid modules 'tools/|CLI/' 'a module knows no tool'
@@ -26,15 +26,16 @@ may density  'core'
 may irradcache 'core density'
 may gather   'core scene trace material light density irradcache'
 may render   'core image scene trace material light photon density irradcache gather'
+may warp     'core image scene trace material render'
 may aqm      'core image'
 may plan     'core scene material light'
 may report   'core image aqm'
 for folder in lib/*/; do
-  case " lib/core/ lib/image/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/photon/ lib/density/ lib/irradcache/ lib/gather/ lib/render/ lib/aqm/ lib/plan/ lib/report/ " in
+  case " lib/core/ lib/image/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/photon/ lib/density/ lib/irradcache/ lib/gather/ lib/render/ lib/warp/ lib/aqm/ lib/plan/ lib/report/ " in
     *" $folder "*) ;; *) echo "$folder: has no line in tests/layering.sh"; bad=1;; esac
 done
 # each third-party header in one file of the tree (tests and benchmarks apart; JSON and CLI: one layer)
-for header in embree3/ OpenEXR/ png.h jpeglib.h tiny_gltf draco/ meshoptimizer webp/ xxhash; do
+for header in embree3/ OpenEXR/ png.h jpeglib.h tiny_gltf xxhash; do
   files=$(grep -rlE --include='*.h' --include='*.cpp' "^ *#include [<\"]$header" formats lib tools modules 2>/dev/null)
   [ "$(echo "$files" | grep -c .)" -le 1 ] || { echo "$header is included by more than one file:" $files; bad=1; }
 done

@@ -11,12 +11,11 @@ for tool in "$1"/*; do
   libraries=$(ldd "$tool") || { echo "$tool: ldd failed"; bad=1; continue; }
   if echo "$libraries" | grep -iE 'openimageio|openvdb|opencv|ffmpeg|libav'; then echo "^ $tool links these"; bad=1; fi
   case $(basename "$tool") in
-    frame-render) images='png|jpeg';;   # writes frames
+    frame-render | ibr-warp) images='png|jpeg';;   # write frames
     aqm-compare | tempolux-info) images='jpeg';;
     *) images='png|jpeg|openexr|imath';;
   esac
   if echo "$libraries" | grep -iE "lib($images)"; then echo "^ $tool links these: they belong into tempolux-images.so"; bad=1; fi
-  if echo "$libraries" | grep -iE 'lib(draco|meshoptimizer|webp)'; then echo "^ $tool links these: they belong into tempolux-decode"; bad=1; fi
   if echo "$libraries" | grep 'not found'; then echo "^ $tool cannot be started"; bad=1; fi
 done
 echo "$count tools looked at"

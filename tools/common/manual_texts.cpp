@@ -26,19 +26,6 @@ constexpr ManualText kTexts[] = {
      "# A map for each frame of a range; the scene is read once.\n"
      "photon-trace room.glb --frames 0-47 -o map.####.photons",
      "scene-plan irradcache-build tempolux-info"},
-    {"photonmap-split",
-     "Divides the light of photons or irradiance points in two files that add up to the whole to the last bit. By "
-     "brightness: cells of a grid keep so much light as --energy or --limit allows, and of every record there the same "
-     "share goes to the high part, which can then be sampled like lamps. Or by kind of path: --kind. Cells are added up "
-     "without rounding, so neither the order of the records nor blocks nor threads matter. Photons from a pipe are kept "
-     "in a temporary file beside the low part, as they are read twice.",
-     ".photons: read and written (formats/photons/photons.md)\n"
-     ".irradpoints: read and written (formats/irradpoints/irradpoints.md)",
-     "photonmap-split 12.irradpoints --low low.irradpoints --high high.irradpoints\n"
-     "photon-trace room.glb --photons 200k -o - | photonmap-split - --low low.photons --high high.photons --energy 8\n"
-     "# One kind of light, for a stage that wants no other.\n"
-     "photonmap-split 12.photons --kind caustic -o caustic.photons --rest others.photons",
-     "photon-trace irradcache-build tempolux-info"},
     {"irradcache-build",
      "Spreads irradiance points over all surfaces and estimates from photons how much light arrives at each (points); "
      "gathers indirect light in records where a camera needs them, densely where it changes (records); or both in one "
@@ -60,6 +47,21 @@ constexpr ManualText kTexts[] = {
      "# A reference in two independent halves, so that its noise is known.\n"
      "frame-render room.glb --frame 12 --size 640x360 --integrator path --spp 256 --halves -o ref.exr",
      "irradcache-build aqm-compare tempolux-info"},
+    {"ibr-warp",
+     "Makes a frame from one or two rendered key frames: each of its pixels looks up in the keys the surface point that it shows, and takes "
+     "their colour there, layer by layer. Pixels that the keys do not give, or not well enough, are named in a mask with the cause; "
+     "frame-render traces them over the warped frame. It also writes where each pixel goes to in the next frame and came from in the "
+     "previous one.",
+     "key .exr: frames with RGBA, Z, N, id and better with the layer specular (formats/frames/frames.md)\n"
+     "flow .exr: pixel flow (formats/flow/flow.md)\n"
+     "mask .exr: pixels to trace, with causes (formats/mask/mask.md)",
+     "ibr-warp 8.exr 16.exr --scene room.glb --frame 12 -o 12.exr --mask why.exr --flow flow.exr\n"
+     "# Trace what is missing.\n"
+     "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints --base 12.exr --mask why.exr -o "
+     "12.exr\n"
+     "# Frames of another renderer, with Z and the matrices of their cameras.\n"
+     "ibr-warp left.exr --view right.exr -o warped.exr --mask why.exr",
+     "frame-render aqm-compare tempolux-info"},
     {"aqm-compare",
      "Says how wrong a frame or a sequence is against a reference: RMSE, relMSE, bias, PSNR, flicker. With two "
      "independent "

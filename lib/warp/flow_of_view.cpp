@@ -1,0 +1,120 @@
+#include "lib/warp/flow_of_view.h"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "lib/core/parallel.h"
+
+namespace tempolux {
+namespace {
+
+/// Where points are in the neighbouring frame.
+class Neighbour {
+ public:
+  Neighbour(const SceneView& here, const NeighbourView& there)
+      : here_(here), there_(there), motions_(here.frame(), *there.frame) {
+    const Affine to_there = there.camera->camera_from_world() * here.camera().world_from_camera();
+    of_object_.resize(motions_.count(), to_there);
+    for (std::uint32_t object = 0; object < of_object_.size(); ++object)
+      if (motions_.of(object).kind == ObjectMotion::Kind::moved)
+        of_object_[object] =
+            there.camera->camera_from_world() * (motions_.of(object).other_from_here * here.camera().world_from_camera());
+    still_ = to_there;
+    match_surfaces();
+  }
+
+  /// The point in the neighbour's camera space; nothing if it is not there. Infinitely far: its direction.
+  std::optional<Vec3d> follow(std::size_t pixel, Vec3d at) const {
+    const std::uint32_t object = here_.seen().object[pixel];
+    if (object == kNoObject) return still_.direction(at);
+    switch (motions_.of(object).kind) {
+      case ObjectMotion::Kind::still:
+      case ObjectMotion::Kind::moved:
+        return of_object_[object].point(at);
+      case ObjectMotion::Kind::absent:
+        return std::nullopt;
+      case ObjectMotion::Kind::deforming:
+        break;
+    }
+    const Hit& hit = here_.hits()[pixel];
+    const Surface* surface = surfaces_[hit.surface];
+    if (!surface) return std::nullopt;
+    const auto& corner = surface->primitive->triangles[hit.triangle];
+    const auto part = [&](std::size_t i, double weight) { return Vec3d(surface->position(corner[i])) * weight; };
+    const Vec3d world = part(0, 1 - double(hit.u) - double(hit.v)) + part(1, double(hit.u)) + part(2, double(hit.v)) +
+                        there_.frame->origin;
+    return there_.camera->camera_from_world().point(world);
+  }
+
+  const FrameCamera& camera() const { return *there_.camera; }
+
+ private:
+  /// Surfaces of this frame by those of the other: the same rank among those of the same node.
+  void match_surfaces() {
+    std::map<std::uint32_t, std::vector<const Surface*>> by_node;
+    for (const Surface& surface : there_.frame->surfaces) by_node[surface.node].push_back(&surface);
+    std::map<std::uint32_t, std::size_t> rank;
+    for (const Surface& surface : here_.frame().surfaces) {
+      const auto& others = by_node[surface.node];
+      const std::size_t r = rank[surface.node]++;
+      const bool fits = r < others.size() && others[r]->primitive->triangles.size() == surface.primitive->triangles.size();
+      surfaces_.push_back(fits ? others[r] : nullptr);
+    }
+  }
+
+  const SceneView& here_;
+  NeighbourView there_;
+  ObjectMotions motions_;
+  Affine still_;
+  std::vector<Affine> of_object_;
+  std::vector<const Surface*> surfaces_;
+};
+
+struct Followed {
+  Vec2 flow;
+  Vec3d there;            ///< in the neighbour's camera space
+  bool known = false;
+};
+
+Followed follow(const Neighbour& neighbour, std::size_t pixel, Vec3d at, bool infinite, RasterPoint centre) {
+  const auto there = neighbour.follow(pixel, at);
+  if (!there) return {};
+  const FrameCamera& camera = neighbour.camera();
+  const auto raster = infinite ? camera.project_direction(*there) : camera.project(*there);
+  if (!raster) return {};
+  const Vec2 flow{float(raster->x - centre.x), float(centre.y - raster->y)};
+  if (!std::isfinite(flow.x) || !std::isfinite(flow.y)) return {};
+  return {flow, *there, true};
+}
+
+}  // namespace
+
+double angular_speed(Vec3d a, Vec3d b, double fps) {
+  return 180 / std::numbers::pi * fps * std::atan2(length(cross(a, b)), dot(a, b));
+}
+
+PixelFlow flow_of_view(const SceneView& view, const NeighbourView& next, const NeighbourView& previous, double fps) {
+  const SeenSurfaces& seen = view.seen();
+  PixelFlow flow(seen.width, seen.height);
+  const Neighbour later(view, next), earlier(view, previous);
+  parallel_chunks(seen.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      const RasterPoint centre{double(p % std::size_t(seen.width)) + 0.5, double(p / std::size_t(seen.width)) + 0.5};
+      const bool nothing = !(seen.depth[p] < INFINITY);
+      if (nothing && view.camera().orthographic()) continue;
+      const Vec3d at = nothing ? view.camera().direction(centre) : view.camera().unproject(centre, double(seen.depth[p]));
+      const Followed f = follow(later, p, at, nothing, centre),
+                     b = follow(earlier, p, at, nothing, centre);
+      flow.forward[p] = f.flow;
+      flow.backward[p] = b.flow;
+      flow.valid[p] = std::uint32_t(f.known) * forward_known + std::uint32_t(b.known) * backward_known;
+      if (!view.camera().orthographic() && (f.known || b.known))
+        flow.speed[p] = float(angular_speed(at, f.known ? f.there : b.there, fps));
+    }
+  });
+  return flow;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,23 @@
+// lib/warp/flow_of_view.h -- pixel flow of a view, from the scene at its frame and at the two around it.
+#pragma once
+
+#include "lib/image/pixel_flow.h"
+#include "lib/warp/object_motion.h"
+#include "lib/warp/scene_view.h"
+
+namespace tempolux {
+
+/// The scene and its camera at a neighbouring frame.
+struct NeighbourView {
+  const SceneFrame* frame = nullptr;
+  const FrameCamera* camera = nullptr;
+};
+
+/// Flow as formats/flow/flow.md has it. Points of rigid objects follow the object's transform in double precision, those of
+/// deforming ones their triangle's corners; what is infinitely far away turns with the camera. fps: frames per second.
+PixelFlow flow_of_view(const SceneView& view, const NeighbourView& next, const NeighbourView& previous, double fps);
+
+/// Degrees per second of a point seen in directions a and b (camera space) one frame apart.
+double angular_speed(Vec3d a, Vec3d b, double fps);
+
+}  // namespace tempolux

@@ -1,0 +1,82 @@
+// lib/warp/frame_camera.h -- the camera of a frame, from its standard attributes: points to pixels and back.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "lib/core/affine.h"
+#include "lib/image/image.h"
+
+namespace tempolux {
+
+/// Where a point is in a picture.
+struct RasterPoint {
+  double x = 0, y = 0;   ///< pixels, y down; pixel centres at +0.5
+};
+
+/// A camera with a picture size. Camera space is that of the EXR attribute worldToCamera: +x right, +y up, +z into the
+/// picture, so z is the channel Z. The projection may be any that maps lines to lines: perspective, orthographic, shifted.
+class FrameCamera {
+ public:
+  /// From worldToCamera and worldToNDC as formats/frames/frames.md has them. Throws std::invalid_argument if either cannot be
+  /// undone.
+  FrameCamera(const std::array<double, 16>& world_to_camera, const std::array<double, 16>& world_to_ndc, int width,
+              int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  const Affine& camera_from_world() const { return camera_from_world_; }
+  const Affine& world_from_camera() const { return world_from_camera_; }
+  /// World space; of an orthographic camera some point on the plane that depth is counted from.
+  Vec3d eye() const { return world_from_camera_.translation; }
+
+  /// Nothing if the point (camera space) is not in front of a perspective camera.
+  std::optional<RasterPoint> project(Vec3d point) const {
+    const double w = dot(w_, point) + w_shift_;
+    if (!(w > 0)) return std::nullopt;
+    return RasterPoint{(dot(x_, point) + x_shift_) / w, (dot(y_, point) + y_shift_) / w};
+  }
+  /// Where what lies infinitely far away in this direction (camera space) is seen.
+  std::optional<RasterPoint> project_direction(Vec3d direction) const {
+    const double w = dot(w_, direction);
+    if (!(w > 0)) return std::nullopt;
+    return RasterPoint{dot(x_, direction) / w, dot(y_, direction) / w};
+  }
+  /// The point (camera space) that is seen at `at` in this depth.
+  Vec3d unproject(RasterPoint at, double depth) const {
+    if (!axes_apart_) return solve(at, depth);
+    const double w = w_.z * depth + w_shift_;
+    return {(at.x * w - x_.z * depth - x_shift_) * per_x_, (at.y * w - y_.z * depth - y_shift_) * per_y_, depth};
+  }
+  /// Of a perspective camera: the direction (camera space, z = 1) of what is seen there.
+  Vec3d direction(RasterPoint at) const { return unproject(at, 1); }
+
+  /// Depth does not shrink what is seen.
+  bool orthographic() const { return w_.z == 0; }
+  /// Area of surface that a pixel shows, m^2 up to a factor of this picture alone: point and normal in camera space. With
+  /// d the distance, c the cosine to the normal and g the angle to the axis it is d^2 cos^3 g / c = z^3 / |n . p|.
+  double area_of_pixel(Vec3d point, Vec3d normal) const;
+  /// Width of a pixel at depth 1 (perspective) or at any (orthographic), m.
+  double pixel_width() const { return pixel_width_; }
+
+  bool operator==(const FrameCamera&) const = default;
+
+ private:
+  Vec3d solve(RasterPoint at, double depth) const;
+
+  int width_, height_;
+  Affine camera_from_world_, world_from_camera_;
+  // Raster position = (x . p + x_shift, y . p + y_shift) / (w . p + w_shift), p in camera space.
+  Vec3d x_, y_, w_;
+  double x_shift_ = 0, y_shift_ = 0, w_shift_ = 0;
+  double pixel_width_ = 0;
+  bool axes_apart_ = false;              ///< x and y of the raster come from x and y alone: no solving
+  double per_x_ = 0, per_y_ = 0;
+};
+
+/// The camera that a frame says it was seen by. Throws InputError, beginning with `name`, that says which attribute is missing
+/// or cannot be undone.
+FrameCamera camera_of(const Image& image, const std::string& name);
+
+}  // namespace tempolux

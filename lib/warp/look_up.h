@@ -1,0 +1,69 @@
+// lib/warp/look_up.h -- finding in a key what another picture shows.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "lib/warp/key_frame.h"
+#include "lib/warp/object_motion.h"
+
+namespace tempolux {
+
+/// What became of a look-up; of several keys' failures the last of this list says most.
+enum class LookUp : std::uint8_t {
+  found,
+  outside,     ///< not within the key's picture, or behind it
+  hidden,      ///< within it, but the key shows something else there
+  deforming,   ///< of a surface that has another shape in the key
+  edge,        ///< the key shows it, but only in pixels that show other surfaces too
+};
+
+/// Pixels of a key whose colours, so weighted, stand for a point. Weights sum to 1.
+struct Taps {
+  int count;
+  std::array<std::uint32_t, 4> pixel;
+  std::array<float, 4> weight;
+};
+
+/// One key as a target camera at another frame makes use of it.
+class KeyView {
+ public:
+  /// camera: the key's own, or more exactly than its attributes say. key_from_target: motions of objects from the target's frame
+  /// to the key's. All references outlive this.
+  KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCamera& target, const ObjectMotions& key_from_target);
+
+  /// A point of the target to be found: `at` in the target's camera space (if it is infinitely far away, its direction).
+  struct Wanted {
+    Vec3d at;
+    SeenPoint point;
+    double area = 1;       ///< FrameCamera::area_of_pixel() there
+  };
+
+  /// Colour for a point of the target. Only
+  /// whole pixels that show the same face count. Between pixel centres colour is linear; where some of the four around are of no
+  /// use, the others share their weight; where all are, the nearest of the 16 around is taken. A position within kSamePixel of a centre is
+  /// that pixel. magnification: area of target pixels per pixel of the key (algorithms.md 1.3).
+  LookUp find(const Wanted& wanted, Taps& taps, float& magnification) const;
+
+  /// Does the target see this pixel exactly as the key did: same camera, and the object where it was?
+  bool sees_the_same(std::uint32_t object) const {
+    return same_camera_ && motions_.of(object).kind == ObjectMotion::Kind::still;
+  }
+  bool same_camera() const { return same_camera_; }
+  const KeyFrame& key() const { return key_; }
+  const ObjectMotions& motions() const { return motions_; }
+
+ private:
+  /// At a position of the key, counted in pixels from the centre of its first: of pixels that show the face.
+  LookUp gather(double cx, double cy, const SeenPoint& face, float tolerance, Taps& taps) const;
+
+  const KeyFrame& key_;
+  const FrameCamera &camera_, &target_;
+  const ObjectMotions& motions_;
+  bool same_camera_;
+  Affine still_;                       ///< key camera from target camera, of what does not move
+  std::vector<Affine> moved_;          ///< the same by object, of those that do; empty: nothing moves
+};
+
+}  // namespace tempolux

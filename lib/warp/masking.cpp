@@ -1,0 +1,105 @@
+#include "lib/warp/masking.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/parallel.h"
+
+namespace tempolux {
+namespace {
+
+// Beyond which a difference is not noise: three, and half as much again as interpolated pixels share their neighbours' noise: linear
+// interpolation leaves each (2/3)^2 of the variance on the average, and the mean over all of them the whole.
+constexpr double kStandardErrors = 3 * 1.5;
+constexpr int kReach = 2;               // pixels on each side over which light is averaged
+
+std::array<int, 3> place_of(const std::vector<std::string>& names, const std::string& prefix) {
+  std::array<int, 3> at{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto found = std::find(names.begin(), names.end(), prefix + "RGB"[c]);
+    if (found == names.end()) return {-1, -1, -1};
+    at[c] = int(found - names.begin());
+  }
+  return at;
+}
+
+float luminance_at(const float* colour, const std::array<int, 3>& at) {
+  return luminance(Rgb(colour[at[0]], colour[at[1]], colour[at[2]]));
+}
+
+}  // namespace
+
+Masking::Masking(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options,
+                 const std::vector<std::string>& names)
+    : target_(target), keys_(keys), options_(options), rgb_(place_of(names, "")), specular_(place_of(names, "specular.")) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const WarpKey& key : keys)
+    for (std::size_t p = 0; p < key.view->key().seen().pixel_count(); ++p, ++count)
+      sum += double(luminance_at(key.view->key().colour(p), rgb_));
+  dark_ = float(0.1 * sum / double(count));
+}
+
+float Masking::luminance_of(const float* colour) const { return luminance_at(colour, rgb_); }
+float Masking::specular(const float* colour) const { return luminance_at(colour, specular_); }
+
+bool Masking::specular_matters(std::size_t pixel, const float* colour, const float* first, const float* second) const {
+  if (specular_[0] < 0) return !target_.gloss.empty() && target_.gloss[pixel] != 0;
+  const float least = float(options_.specular_share) * std::max(luminance_of(colour), dark_);
+  if (!(specular(colour) > least)) return false;
+  return !first || !second || std::abs(specular(first) - specular(second)) > least;
+}
+
+bool Masking::edge_agrees(const float* first, const float* second) const {
+  if (!first || !second) return false;
+  const float least = float(options_.edge_share) * std::max(0.5f * (luminance_of(first) + luminance_of(second)), dark_);
+  for (const int c : rgb_)
+    if (std::abs(first[c] - second[c]) > least) return false;
+  return true;
+}
+
+std::uint32_t Masking::of_moved_pixel(std::size_t pixel, const float* colour, const float* first, const float* second) const {
+  std::uint32_t why = 0;
+  if (target_.speed && double((*target_.speed)[pixel]) < options_.slow_deg_per_s) why |= formats::why_slow;
+  if (specular_matters(pixel, colour, first, second)) why |= formats::why_specular;
+  return why;
+}
+
+bool Masking::light_may_differ() const {
+  return std::any_of(keys_.begin(), keys_.end(), [](const WarpKey& key) { return key.light_may_differ; });
+}
+
+void Masking::mark_changed_light(const std::array<std::vector<float>, 2>& light, std::vector<std::uint32_t>& why) const {
+  const int width = target_.seen->width, height = target_.seen->height;
+  const auto given = [&](std::size_t k, std::size_t p) { return k < keys_.size() && light[k][p] >= 0; };
+  parallel_chunks(std::size_t(height), 16, [&](std::size_t first, std::size_t last) {
+    for (int y = int(first); y < int(last); ++y)
+      for (int x = 0; x < width; ++x) {
+        const std::size_t p = std::size_t(y) * std::size_t(width) + std::size_t(x);
+        if (!given(0, p) || !given(1, p)) {
+          // One key alone: nothing says that its light is that of this frame.
+          for (std::size_t k = 0; k < keys_.size(); ++k)
+            if (given(k, p) && keys_[k].light_may_differ) why[p] |= formats::why_changed_light;
+          continue;
+        }
+        // Mean and standard error of the difference over the pixels around that both keys give.
+        double sum = 0, squares = 0, both = 0;
+        int n = 0;
+        for (int ny = std::max(y - kReach, 0); ny <= std::min(y + kReach, height - 1); ++ny)
+          for (int nx = std::max(x - kReach, 0); nx <= std::min(x + kReach, width - 1); ++nx) {
+            const std::size_t q = std::size_t(ny) * std::size_t(width) + std::size_t(nx);
+            if (!given(0, q) || !given(1, q)) continue;
+            const double a = double(light[0][q]), b = double(light[1][q]);
+            sum += a - b;
+            squares += (a - b) * (a - b);
+            both += 0.5 * (a + b);
+            ++n;
+          }
+        const double mean = sum / n, variance = n > 1 ? std::max(0.0, (squares - sum * mean) / (n - 1)) : 0;
+        const double least = options_.light_share * std::max(both / n, double(dark_));
+        if (std::abs(mean) > std::max(least, kStandardErrors * std::sqrt(variance / n))) why[p] |= formats::why_changed_light;
+      }
+  });
+}
+
+}  // namespace tempolux

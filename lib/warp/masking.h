@@ -1,0 +1,46 @@
+// lib/warp/masking.h -- which warped pixels are not to be trusted although keys give them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lib/warp/warp.h"
+
+namespace tempolux {
+
+class Masking {
+ public:
+  /// All references outlive this.
+  Masking(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options,
+          const std::vector<std::string>& names);
+
+  /// Causes of a pixel that is not the same in target and key: slow, specular. candidates: of both keys, or nullptr if one does not
+  /// give the whole pixel.
+  std::uint32_t of_moved_pixel(std::size_t pixel, const float* colour, const float* first, const float* second) const;
+
+  /// Do the keys agree about a pixel that is composed of several surfaces?
+  bool edge_agrees(const float* first, const float* second) const;
+
+  /// Does any key show what other light may shine upon? Else mark_changed_light() has nothing to do.
+  bool light_may_differ() const;
+  /// Marks pixels around which the two keys' light differs, and those that one key alone gives if its light may not be the target's.
+  /// light: by key and pixel, luminance of what it gives; < 0: it does not give the whole pixel.
+  void mark_changed_light(const std::array<std::vector<float>, 2>& light, std::vector<std::uint32_t>& why) const;
+
+  float luminance_of(const float* colour) const;
+
+ private:
+  bool specular_matters(std::size_t pixel, const float* colour, const float* first, const float* second) const;
+  float specular(const float* colour) const;
+
+  const WarpTarget& target_;
+  std::span<const WarpKey> keys_;
+  const WarpOptions& options_;
+  std::array<int, 3> rgb_{-1, -1, -1}, specular_{-1, -1, -1};   ///< where the channels are; -1: absent
+  float dark_ = 0;                                              ///< a tenth of the keys' mean luminance
+};
+
+}  // namespace tempolux

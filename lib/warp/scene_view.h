@@ -1,0 +1,43 @@
+// lib/warp/scene_view.h -- what a camera sees of the scene at a frame: at pixel centres and between them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lib/render/camera_view.h"
+#include "lib/trace/trace.h"
+#include "lib/warp/seen_surfaces.h"
+
+namespace tempolux {
+
+class SceneView {
+ public:
+  /// Both outlive this. Traces a ray through the centre of each pixel.
+  SceneView(const Tracer& tracer, const CameraView& view);
+
+  const FrameCamera& camera() const { return camera_; }
+  const SeenSurfaces& seen() const { return seen_; }
+  /// What was hit, by pixel.
+  const std::vector<Hit>& hits() const { return hits_; }
+  const SceneFrame& frame() const { return tracer_.frame(); }
+
+  /// The same for any raster positions, points[i] of at[i].
+  void look(std::span<const RasterPoint> at, SeenPoint* points) const;
+
+  /// By pixel, 1: the material has a lobe that mirrors, shines or lets through.
+  std::vector<std::uint8_t> gloss() const;
+
+  /// Of the groups Z, N and id those that are named: the same bits as frame-render's data channels.
+  void add_channels(const std::vector<std::string>& groups, Image& image) const;
+
+ private:
+  SeenPoint point_of(const Hit& hit, const Ray& ray) const;
+
+  const Tracer& tracer_;
+  const CameraView& view_;
+  FrameCamera camera_;
+  SeenSurfaces seen_;
+  std::vector<Hit> hits_;
+};
+
+}  // namespace tempolux

@@ -1,0 +1,64 @@
+// lib/warp/seen_surfaces.h -- what a picture shows: depth, object and normal by pixel, and where surfaces end.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lib/core/vec.h"
+#include "lib/image/image.h"
+#include "lib/warp/frame_camera.h"
+
+namespace tempolux {
+
+inline constexpr std::uint32_t kNoObject = 0xffffffffu;   ///< id.object where nothing is seen
+
+/// Of the point that the ray through each pixel's centre meets. Nothing met: depth +inf, object kNoObject, normal 0.
+struct SeenSurfaces {
+  int width = 0, height = 0;
+  std::vector<float> depth;              ///< Z, m
+  std::vector<std::uint32_t> object;     ///< empty: not known
+  std::vector<Vec3> normal;              ///< unit, world space; empty: not known
+
+  std::size_t pixel_count() const { return depth.size(); }
+  std::uint32_t object_at(std::size_t p) const {
+    return !object.empty() ? object[p] : std::isfinite(depth[p]) ? 0 : kNoObject;
+  }
+  Vec3 normal_at(std::size_t p) const { return normal.empty() ? Vec3{} : normal[p]; }
+};
+
+/// One point that a picture shows, to be found in another.
+struct SeenPoint {
+  float depth = 0;
+  std::uint32_t object = kNoObject;
+  Vec3 normal;                           ///< world space; 0: not known
+};
+
+/// How far two depths of one smooth surface may be apart within a pixel, as a share of the depth: two pixels' width along the
+/// surface, at least a thousandth. `facing` is |n . r| of the surface, `pixel_angle` a pixel's width at depth 1 (algorithms.md
+/// 1.3); of facing at least .05 counts, as normals interpolated over a mesh turn away farther than its triangles do.
+inline float depth_tolerance(float pixel_angle, float facing) {
+  return std::max(1e-3f, 2 * pixel_angle / std::max(facing, 0.05f));
+}
+
+/// Cosine below which two normals belong to two faces: their irradiance differs (algorithms.md 1.6).
+inline constexpr float kSameFace = 0.9f;
+
+/// Are two points, at most a pixel or two apart in a picture, on one face of one object? tolerance: of depths, relative.
+inline bool same_face(const SeenPoint& a, const SeenPoint& b, float tolerance) {
+  if (a.object != b.object) return false;
+  if (!(a.depth < INFINITY && b.depth < INFINITY)) return a.depth == b.depth;
+  if (!(std::abs(a.depth - b.depth) <= tolerance * a.depth)) return false;
+  const bool known = length2(a.normal) > 0 && length2(b.normal) > 0;
+  return !known || dot(a.normal, b.normal) >= kSameFace;
+}
+
+/// By pixel, 1: the pixel's whole area shows the face that its centre shows, as far as the centres of the 8 around it tell.
+/// What is narrower than a pixel may lie between two centres unseen.
+std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCamera& camera);
+
+/// Depth, object and normal from the channels of a frame: Z, or what other programs call it (depth.Z, VIEW.Depth.Z, 1e10 for
+/// nothing); id.object and N if they are there. Throws InputError, beginning with `name`, if there is no depth.
+SeenSurfaces seen_in(const Image& image, const std::string& name);
+
+}  // namespace tempolux

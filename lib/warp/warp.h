@@ -1,0 +1,67 @@
+// lib/warp/warp.h -- a frame between key frames, from their pixels; and which of its pixels must be traced.
+//
+// The target's own depth is known (its rays are traced, or it is read), so pixels are fetched, not thrown: each target
+// pixel looks up the point it shows in every key. There are no cracks where a key is magnified, and no ghosts: what a
+// key shows instead of the point is not taken. docs/methods/warping.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "formats/mask/why.h"
+#include "lib/warp/look_up.h"
+
+namespace tempolux {
+
+/// The picture to make.
+struct WarpTarget {
+  const FrameCamera* camera = nullptr;
+  const SeenSurfaces* seen = nullptr;
+  /// What is seen between pixel centres; empty: not known, then pixels with an edge are masked.
+  std::function<void(std::span<const RasterPoint>, SeenPoint*)> look;
+  const std::vector<float>* speed = nullptr;     ///< deg/s by pixel; nullptr: not known, none is slow
+  std::vector<std::uint8_t> gloss;               ///< by pixel, 1: a surface that mirrors or lets light through; empty: not known
+};
+
+/// A key of the frame, and how far away in time it is.
+struct WarpKey {
+  const KeyView* view = nullptr;
+  double frames_away = 0;                        ///< >= 0
+  bool cut_off = false;                          ///< a cut lies between: nothing of it is taken
+  bool light_may_differ = false;                 ///< what lights or shades the scene is not the same as in the target's frame
+};
+
+struct WarpOptions {
+  /// Light by mirror, glass and gloss matters if it is more than this share of a pixel's light, and the keys do not agree about
+  /// it to this share. A pixel counts as no darker than a tenth of the picture's mean, as in relMSE.
+  double specular_share = 0.02;
+  /// A pixel composed of several surfaces is believed if both keys give it alike, to this share of its light; a key shows what lies at an edge,
+  /// a contact's shadow above all, only from a pixel's distance.
+  double edge_share = 0.05;
+  double slow_deg_per_s = 1.41;                  ///< pixels that move, but less, are masked; see slow_speed.h
+  double most_magnified = 4;                     ///< target pixels per pixel of the key
+  /// The keys' light differs if its mean over 5x5 pixels does by more than 3 of its standard errors and this share.
+  double light_share = 0.02;
+  bool separate = false;                         ///< keep what each key alone gives
+};
+
+struct WarpedFrame {
+  std::vector<std::string> names;                ///< of the colour channels, ascending
+  std::size_t stride = 0;                        ///< floats from pixel to pixel, at least as many as names
+  std::vector<float> colour;                     ///< pixel after pixel, in the order of `names`; 0 where nothing was found
+  std::vector<std::uint32_t> why;                ///< sums of formats::Why
+  /// With WarpOptions::separate: what each key alone gives, laid out as `colour`. Where it does not give the whole pixel it is what
+  /// was composed: comparing two candidates finds no difference there.
+  std::vector<std::vector<float>> candidates;
+};
+
+/// Composites one or two keys; both need the same colour channels (std::invalid_argument). Weights of keys that show a point:
+/// nearness in time over magnification, where that is above 1. All layers are weighted alike; where all parts of RGB are there
+/// their sum is RGB to the bit, as in rendered frames. Pixels that no key has are 0 and masked.
+WarpedFrame warp(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options);
+
+}  // namespace tempolux

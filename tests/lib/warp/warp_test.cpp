@@ -1,0 +1,263 @@
+// Frames warped from painted keys: what must come out is known for every pixel.
+#include "tests/lib/warp/warp_fixture.h"
+
+namespace tempolux::test {
+namespace {
+
+using formats::why_border, formats::why_changed_light, formats::why_edge, formats::why_occlusion, formats::why_specular,
+    formats::why_undersampled;
+
+const PlacedCamera kMiddle = camera_at({0, 1, 1.9});
+
+/// A paint that no two neighbouring pixels share: any interpolation shows.
+Rgb speckled(Vec3d p, std::uint32_t object) {
+  return {float(std::sin(900 * p.x) + 2), float(std::sin(700 * p.y) + 2), float(object) + float(std::sin(800 * p.z))};
+}
+
+TEST(Warp, ToItsOwnFrameIsTheSameToTheBit) {
+  const Cornell room;
+  const View view(room, kMiddle);
+  const Image key = painted(view, speckled);
+  const Warped warped(view, {{view, key, 0}});
+  for (std::size_t p = 0; p < key.pixel_count(); ++p) {
+    ASSERT_EQ(warped.colour(p), (Rgb{key.find("R")->values[p], key.find("G")->values[p], key.find("B")->values[p]})) << p;
+    ASSERT_EQ(warped.frame.why[p], 0u);
+  }
+}
+
+/// Two equal keys, the camera standing: the weights of the blend leave their bits alone. Where the box moved the key is of no use.
+TEST(Warp, WhatStandsKeepsItsBitsBetweenTwoKeys) {
+  const Cornell before(9), now(10), after(11);
+  const View a(before, kMiddle), view(now, kMiddle), b(after, kMiddle);
+  const auto paint = [](Vec3d p, std::uint32_t object) { return object == 8 ? Rgb(1.0f) : speckled(p, object); };
+  const Image key_a = painted(a, paint), key_b = painted(b, paint), truth = painted(view, paint);
+  const Warped warped(view, {{a, key_a}, {b, key_b}});
+  int still = 0;
+  for (std::size_t p = 0; p < truth.pixel_count(); ++p) {
+    if (warped.frame.why[p] != 0 || view.seen.seen().object[p] == 8) continue;
+    const bool same_in_both = key_a.find("id.object")->ids[p] != 8 && key_b.find("id.object")->ids[p] != 8;
+    if (!same_in_both) continue;
+    const float found = warped.colour(p).r, expected = truth.find("R")->values[p];
+    bool near_the_box = false;
+    for (int y = int(p) / 96 - 1; y <= int(p) / 96 + 1; ++y)
+      for (int x = int(p) % 96 - 1; x <= int(p) % 96 + 1; ++x)
+        if (x >= 0 && y >= 0 && x < 96 && y < 72)
+          for (const View* seen : {&a, static_cast<const View*>(&view), &b})
+            near_the_box |= seen->seen.seen().object[std::size_t(y * 96 + x)] == 8;
+    if (!near_the_box) {
+      ++still;
+      ASSERT_EQ(found, expected) << p;
+    }
+  }
+  EXPECT_GT(still, 5000);
+}
+
+/// The camera comes nearer by half: each pixel of the key stands for two on a side. Every pixel of the wall is given, and shows what the wall is
+/// painted with there. Beside edges the nearest of 16 pixels is taken, at most 2 away: 2 x .033 m of a paint that changes by .22 per m.
+TEST(Warp, NoCracksWhereAKeyIsMagnified) {
+  const Cornell room;
+  const View far(room, camera_at({0.2, 1.3, 1.9})), near(room, camera_at({0.2, 1.3, 0.4}));
+  const Image key = painted(far, smooth_paint), truth = painted(near, smooth_paint);
+  const Warped warped(near, {{far, key}}, {.slow_deg_per_s = 0, .most_magnified = 64});
+  const std::vector<std::uint8_t> whole = whole_pixels(near.seen.seen(), near.seen.camera());
+  int wall = 0, masked = 0;
+  for (std::size_t p = 0; p < truth.pixel_count(); ++p) {
+    const Vec3d at = world_at(near, p);
+    if (std::abs(at.z + 1.4) > 1e-4 || !whole[p] || at.x < 0.3) continue;   // to the right of what may hide it
+    ++wall;
+    if (warped.frame.why[p] == why_edge) {   // within a pixel of the key from an edge, all around
+      ++masked;
+      continue;
+    }
+    EXPECT_EQ(warped.frame.why[p], 0u) << p;
+    EXPECT_NEAR(warped.colour(p).r, truth.find("R")->values[p], 0.02) << p;
+  }
+  EXPECT_GT(wall, 1000);
+  EXPECT_LT(masked, wall / 20);
+  // 3.3 m against 1.8: 3.4 times the area. With a limit of 2 all of it is masked, and said to be undersampled.
+  const Warped limited(near, {{far, key}}, {.slow_deg_per_s = 0, .most_magnified = 2});
+  for (std::size_t p = 0; p < truth.pixel_count(); ++p)
+    if (std::abs(world_at(near, p).z + 1.4) < 1e-4 && whole[p] && world_at(near, p).x > 0.3) {
+      EXPECT_TRUE(limited.frame.why[p] == why_undersampled || limited.frame.why[p] == why_edge);
+    }
+}
+
+/// Seen from the side the tall box uncovers wall that the key does not show. What is not masked has the colour of its own object: blue
+/// is the object's number, and nothing of another one comes in, at edges neither.
+TEST(Warp, NoGhostsWhereDepthsDisagree) {
+  const Cornell room;
+  const View left(room, camera_at({-0.4, 1, 1.9})), right(room, camera_at({0.4, 1, 1.9}));
+  const Image key = painted(left, smooth_paint), truth = painted(right, smooth_paint);
+  const Warped warped(right, {{left, key}});
+  const std::vector<std::uint8_t> whole = whole_pixels(right.seen.seen(), right.seen.camera());
+  int occluded = 0, outside = 0;
+  for (std::size_t p = 0; p < truth.pixel_count(); ++p) {
+    occluded += (warped.frame.why[p] & why_occlusion) != 0;
+    outside += (warped.frame.why[p] & why_border) != 0;
+    if (warped.frame.why[p] != 0) continue;
+    EXPECT_TRUE(whole[p]) << p;   // one key alone is not believed at edges
+    EXPECT_NEAR(warped.colour(p).b, truth.find("B")->values[p], 1e-5) << p;
+    EXPECT_NEAR(warped.colour(p).r, truth.find("R")->values[p], 0.03) << p;
+  }
+  EXPECT_GT(occluded, 100);
+  EXPECT_GT(outside, 300);     // .8 m to the side, of 2.4 m that the wall shows
+  // A second key from the other side knows what the first one lacks.
+  const View beyond(room, camera_at({0.6, 1, 1.9}));
+  const Warped both(right, {{left, key}, {beyond, painted(beyond, smooth_paint)}});
+  int left_over = 0;
+  for (const std::uint32_t why : both.frame.why) left_over += (why & (why_occlusion | why_border)) != 0;
+  EXPECT_LT(left_over, (occluded + outside) / 10);
+}
+
+/// An edge pixel is composed of the shares of its surfaces: blue, the object's number, averaged over 64 x 64 positions in the pixel. Eight
+/// positions, each row and column once, miss a straight edge's share by 1/8 at most.
+TEST(Warp, EdgesAreComposedFromWhatLiesBesideThem) {
+  const Cornell room;
+  const View key_view(room, camera_at({0.02, 1, 1.9})), view(room, kMiddle);
+  const View other(room, camera_at({-0.02, 1, 1.9}));
+  const Warped warped(view, {{key_view, painted(key_view, smooth_paint)}, {other, painted(other, smooth_paint)}});
+  const std::vector<std::uint8_t> whole = whole_pixels(view.seen.seen(), view.seen.camera());
+  int edges = 0, masked = 0;
+  for (std::size_t p = 0; p < whole.size(); ++p) {
+    if (whole[p]) continue;
+    ++edges;
+    if (warped.frame.why[p] != 0) {
+      ++masked;
+      continue;
+    }
+    double mean = 0, low = 99, high = 0;
+    for (int i = 0; i < 64; ++i) {
+      std::array<RasterPoint, 64> at;
+      std::array<SeenPoint, 64> points;
+      for (int j = 0; j < 64; ++j) at[std::size_t(j)] = {double(p % 96) + (i + 0.5) / 64, double(p / 96) + (j + 0.5) / 64};
+      view.seen.look(at, points.data());
+      for (const SeenPoint& point : points) {
+        mean += double(point.object) / 4096;
+        low = std::min(low, double(point.object));
+        high = std::max(high, double(point.object));
+      }
+    }
+    EXPECT_NEAR(warped.colour(p).b, mean, 0.126 * (high - low) + 1e-5) << p;
+  }
+  EXPECT_GT(edges, 300);
+  EXPECT_LT(masked, edges / 2);   // where a shadow, or here another paint, begins at the edge: they are traced
+}
+
+/// A rigid object takes its colours along: painted in its own space, it looks the same wherever it is.
+TEST(Warp, AMovingObjectIsFollowed) {
+  const Cornell before(8), now(14);
+  const View a(before, kMiddle), view(now, kMiddle);
+  const auto own = [](const Cornell& room) {
+    const Affine node_from_world = inverse(room.frame.world_from_node[8]);
+    return Paint([node_from_world](Vec3d p, std::uint32_t object) {
+      const Vec3d q = object == 8 ? node_from_world.point(p) : p;
+      return Rgb{float(1 + q.x), float(1 + q.y), float(1 + q.z)};
+    });
+  };
+  const Image key = painted(a, own(before)), truth = painted(view, own(now));
+  const Warped warped(view, {{a, key}});
+  int box = 0;
+  for (std::size_t p = 0; p < truth.pixel_count(); ++p) {
+    if (view.seen.seen().object[p] != 8 || warped.frame.why[p] != 0) continue;
+    const Rgb c = warped.colour(p);
+    ++box;
+    // Beside an edge the nearest of 16 pixels is taken: at most two pixels away along the face, in either view.
+    const Vec3d to_eye = normalize(Vec3d{0, 1, 1.9} - world_at(view, p));
+    const double facing = std::abs(dot(to_eye, Vec3d(view.seen.seen().normal[p])));
+    const double near = 3 * view.seen.camera().pixel_width() * double(view.seen.seen().depth[p]) / std::max(facing, 0.05);
+    EXPECT_NEAR(c.r, truth.find("R")->values[p], near) << p;
+    EXPECT_NEAR(c.g, truth.find("G")->values[p], near) << p;
+    EXPECT_NEAR(c.b, truth.find("B")->values[p], near) << p;
+  }
+  EXPECT_GT(box, 100);
+}
+
+/// Light that differs between the keys by a fifth, under noise of a tenth per pixel, is noticed over 25 pixels: 7 standard errors of
+/// .1 sqrt(2)/5. Equal light under the same noise is not, but for the 3 in 1000 pixels
+/// beyond 3 standard errors; beside them those that one key alone shows, at the left and the right border, 2 of 96 columns.
+TEST(Warp, ChangedLightIsTold) {
+  const Cornell room;
+  const View view(room, kMiddle), a(room, camera_at({0.02, 1, 1.9})), b(room, camera_at({-0.02, 1, 1.9}));
+  const auto lit = [](double light, int seed) {
+    return Paint([light, seed, n = 0](Vec3d, std::uint32_t) mutable {
+      const double noise = 0.2 * std::sqrt(3.0) * (PathRandom(std::uint64_t(seed), 1).get1(std::uint32_t(n++), Purpose::test) - 0.5);
+      return Rgb(float(light + noise));
+    });
+  };
+  const auto share = [&](double light_of_b, bool may_differ) {
+    const Warped warped(view, {{a, painted(a, lit(1, 1)), 1, false, may_differ}, {b, painted(b, lit(light_of_b, 2)), 1, false, may_differ}});
+    int changed = 0;
+    for (const std::uint32_t why : warped.frame.why) changed += (why & why_changed_light) != 0;
+    return double(changed) / double(warped.frame.why.size());
+  };
+  EXPECT_GT(share(1.2, true), 0.8);
+  EXPECT_LT(share(1.0, true), 0.05);
+  EXPECT_EQ(share(1.2, false), 0);   // the plan says that no light changes
+}
+
+TEST(Warp, SpecularLightThatMattersIsMasked) {
+  const Cornell room;
+  const View view(room, kMiddle), a(room, camera_at({0.02, 1, 1.9})), b(room, camera_at({-0.02, 1, 1.9}));
+  const auto key = [](const View& from, float gloss) {
+    Image image = painted(from, [](Vec3d, std::uint32_t) { return Rgb(1.0f); });
+    for (const char* name : {"specular.R", "specular.G", "specular.B"})
+      for (float& value : image.add(name).values) value = gloss;
+    return image;
+  };
+  const auto masked = [&](float gloss_a, float gloss_b) {
+    const Warped warped(view, {{a, key(a, gloss_a)}, {b, key(b, gloss_b)}});
+    int count = 0;
+    for (const std::uint32_t why : warped.frame.why) count += (why & why_specular) != 0;
+    return double(count) / double(warped.frame.why.size());
+  };
+  EXPECT_GT(masked(0.2f, 0.4f), 0.9);
+  EXPECT_LT(masked(0.3f, 0.3f), 0.1);   // both keys agree: what is mirrored looks the same; but one key alone is not believed
+  EXPECT_EQ(masked(0.005f, 0.018f), 0);   // below a fiftieth of the light
+}
+
+/// All layers are there: their sum is RGB to the bit, after warping too.
+TEST(Warp, LayersStillAddUp) {
+  const Cornell room;
+  const View view(room, kMiddle), a(room, camera_at({0.03, 1, 1.9})), b(room, camera_at({-0.02, 1, 1.9}));
+  const auto layered = [](const View& from) {
+    Image image = painted(from, smooth_paint);
+    for (const std::string c : {"R", "G", "B"}) {
+      std::vector<float> direct(image.pixel_count()), indirect(image.pixel_count()), &sum = image.find(c)->values;
+      for (std::size_t p = 0; p < sum.size(); ++p) {
+        direct[p] = 0.3f * sum[p];
+        indirect[p] = 0.61f * sum[p];
+        sum[p] = direct[p] + indirect[p];
+      }
+      image.add("direct." + c).values = direct;
+      image.add("indirect." + c).values = indirect;
+    }
+    return image;
+  };
+  const Warped warped(view, {{a, layered(a)}, {b, layered(b)}});
+  ASSERT_EQ(warped.frame.names, (std::vector<std::string>{"A", "B", "G", "R", "direct.B", "direct.G", "direct.R", "indirect.B",
+                                                          "indirect.G", "indirect.R"}));
+  for (std::size_t p = 0; p < warped.frame.why.size(); ++p) {
+    const float* c = &warped.frame.colour[p * warped.frame.stride];
+    for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(c[1 + i], c[4 + i] + c[7 + i]);
+    if (warped.frame.why[p] == 0) {
+      ASSERT_EQ(c[0], 1.0f);
+    }
+  }
+}
+
+TEST(Warp, NothingCrossesACut) {
+  const Cornell room;
+  const View view(room, kMiddle), a(room, camera_at({0.02, 1, 1.9}));
+  const auto white = [](Vec3d, std::uint32_t) { return Rgb(1.0f); };
+  const auto grey = [](Vec3d, std::uint32_t) { return Rgb(0.5f); };
+  const Warped one(view, {{a, painted(a, white)}, {view, painted(view, grey), 1, true}});
+  for (std::size_t p = 0; p < one.frame.why.size(); ++p)
+    if (one.frame.why[p] == 0) {
+      ASSERT_EQ(one.colour(p), Rgb(1.0f));
+    }
+  const Warped none(view, {{view, painted(view, grey), 1, true}});
+  for (std::size_t p = 0; p < none.frame.why.size(); ++p) ASSERT_EQ(none.frame.why[p], why_border);
+}
+
+}  // namespace
+}  // namespace tempolux::test
