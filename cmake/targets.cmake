@@ -45,7 +45,7 @@ function(tempolux_tool name)
   target_link_libraries(${name} PRIVATE tempolux_options tempolux_tool_main ${ARG_DEPENDS})
   target_precompile_headers(${name} REUSE_FROM tempolux_tool_main)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
-  add_dependencies(${name} tempolux-images)   # opened when a scene has images
+  add_dependencies(${name} tempolux-images tempolux-decode)   # opened when a scene has images, started when it is packed
   set_property(GLOBAL APPEND PROPERTY TEMPOLUX_TOOLS ${name})
 endfunction()
 
@@ -60,7 +60,7 @@ function(tempolux_test source)
   # gtest and sign conversions inside test literals: noise, not findings
   target_compile_options(${name} PRIVATE -Wno-conversion -Wno-sign-conversion)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
-  add_dependencies(${name} tempolux-images)
+  add_dependencies(${name} tempolux-images tempolux-decode)
   add_test(NAME ${test} COMMAND ${name} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}/tests)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)

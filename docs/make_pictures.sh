@@ -34,6 +34,18 @@ $draw points "$work/photons.csv" "$work/frame.json" $out/photon-trace.png 0.02
 $draw points "$work/points.csv" "$work/frame.json" $out/irradcache-build-points.png 0.08
 $draw dots "$work/records.csv" "$work/frame.json" $out/frame-render.png $out/irradcache-build-records.png
 
+# Where light is bright: a room lit by indirect light alone.
+room=pipelines/scenes/S3_indirect_room.glb
+"$bin/photon-trace" $room --frame 1 --photons 200k --kinds indirect,caustic -o "$work/p.photons"
+"$bin/irradcache-build" $room --frame 1 --photons "$work/p.photons" --size 320x180 --keep-points "$work/p.irradpoints" -o "$work/c.irradcache"
+"$bin/frame-render" $room --frame 1 --size 320x180 --irradcache "$work/c.irradcache" --points "$work/p.irradpoints" --channels RGBA,id \
+  -o "$work/room.exr"
+"$info" --png "$work/room.png" "$work/room.exr"
+"$info" --json "$work/room.exr" > "$work/room.json"
+"$bin/photonmap-split" "$work/p.irradpoints" --energy 2 --low "$work/low.irradpoints" --high "$work/high.irradpoints"
+"$info" --export csv -o "$work/high.csv" "$work/high.irradpoints"
+$draw dots "$work/high.csv" "$work/room.json" "$work/room.png" $out/photonmap-split.png
+
 # Its error, and error against time of path tracing.
 "$bin/frame-render" $scene --frame 12 --size 320x180 --integrator path --spp 512 --halves -o "$work/r.exr"
 compare() { "$bin/aqm-compare" "$@" --reference-halves "$work/r_a.exr" "$work/r_b.exr" -q; }

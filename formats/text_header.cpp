@@ -26,6 +26,8 @@ bool is_hash(std::string_view text) {
 
 bool is_printable(std::string_view text) { return std::none_of(text.begin(), text.end(), is_control); }
 
+bool is_part(std::string_view text) { return text.empty() || text == "low" || text == "high"; }
+
 std::string_view fault_of_common(const std::array<double, 3>& origin, const Identity& identity) {
   for (double x : origin)
     if (!std::isfinite(x)) return "origin is not finite";

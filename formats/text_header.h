@@ -55,6 +55,9 @@ CommonKeys common_keys(Header& header) {
 /// What is wrong with origin and identity, as reader and writer both see it; "" if nothing.
 std::string_view fault_of_common(const std::array<double, 3>& origin, const Identity& identity);
 
+/// Is it the value of a key `part`? "" stands for no such line: the file holds all light.
+bool is_part(std::string_view text);
+
 /// What became of one line.
 enum class Line { good, bad_value, unknown_key };
 

@@ -57,7 +57,7 @@ add_test(NAME cli.no_heavy_libraries COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cli/
 if(TEMPOLUX_BENCH)
   set(short ${CMAKE_BINARY_DIR}/tests/bench-short)
   add_test(NAME bench.short COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/bench/short_check.sh ${CMAKE_BINARY_DIR} ${short})
-  set_tests_properties(bench.short PROPERTIES TIMEOUT 300)
+  set_tests_properties(bench.short PROPERTIES TIMEOUT 600)
 endif()
 
 # Stiff and extreme cases, short form; with sanitizers what a case costs is not judged.

@@ -14,6 +14,7 @@
 
 #include "formats/error.h"
 #include "lib/image/exr_io.h"
+#include "lib/render/coverage_channel.h"
 #include "lib/render/frame_renderer.h"
 #include "tools/common/base_frame.h"
 #include "tools/common/frame_output.h"
@@ -89,12 +90,14 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("render", true);
   frame_options.seed = tool.common().seed_for_frame(number);
   frame_options.diffuse_light = light.get();
+  frame_options.sample_halves = wants_sample_halves(options.channels);
   frame_options.progress = [&](double fraction) { tool.progress(fraction); };
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
   tool.stats().phase("data channels", true);
   Image image{options.width, options.height, {}, {}, {}, {}};
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
+  add_coverage_channel(scene, view, options.channels, image);
   tool.stats().phase("write");
   const ExrWriteOptions exr{options.half_float, options.compression == "none" ? ExrWriteOptions::Compression::none
                                                                               : ExrWriteOptions::Compression::zip};
@@ -206,7 +209,8 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--max-spp", options.frame.max_samples, "never more samples than this for --target-error")
       ->capture_default_str()->check(tools::number_between(1, 1 << 24));
   app.add_option("--channels", options.channels,
-                 "RGBA, layers (or emission, specular, direct, caustic, indirect), Z, N, P, id, albedo, motion")
+                 "RGBA, layers (or emission, specular, direct, caustic, indirect), Z, N, P, id, albedo, motion, "
+                 "coverage, variance, diffuse.variance, samples")
       ->delimiter(',')->type_name("NAMES")->default_str("RGBA,Z,N,id");
   app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")
       ->type_name("FILE");

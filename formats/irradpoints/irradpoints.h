@@ -44,6 +44,7 @@ struct IrradpointsHeader {
   std::uint64_t emitted_count = 0;  ///< photon paths behind caustic and indirect; 0: none
   /// Kinds that were estimated, in this order; the others are not in the file.
   std::string kinds = "direct,caustic,indirect";
+  std::string part;  ///< "low" or "high": holds that part of the light alone (photonmap-split); "": all of it
 };
 
 /// Closing totals: exact sums over the points of each kind's irradiance [W/m^2], rounded once. Times

@@ -14,7 +14,7 @@
 
 namespace tempolux::formats::irradpoints {
 
-inline constexpr Format kFormat{{"\x89TIRPT\r\n", 8}, ".irradpoints", "irradcache-build points"};
+inline constexpr Format kFormat{{"\x89TIRPT\r\n", 8}, ".irradpoints", "irradcache-build points", 1, 1};
 inline constexpr std::string_view kBlockMark = "IRPT";
 inline constexpr std::size_t kPointSize = 24, kIrradianceSize = 12, kEndBodySize = 80;
 
@@ -38,11 +38,15 @@ constexpr std::size_t point_size(unsigned kinds) {
   return kPointSize + kIrradianceSize * ((kinds & 1) + ((kinds >> 1) & 1) + ((kinds >> 2) & 1));
 }
 
+/// The version a file with this header has: the oldest that knows its keys.
+Format format_of(const IrradpointsHeader& header);
+
 /// The text of a header. std::invalid_argument if a value is out of range.
 std::string header_text(const IrradpointsHeader& header);
 
-/// Parses a text; unknown keys pass if `allow_unknown`. Nothing if the header is good.
-std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown,
+/// Parses the text of a file of version 1.minor; keys that we do not know pass if it is later than ours. Nothing if the
+/// header is good.
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor,
                                              IrradpointsHeader& header);
 
 /// Why a point is refused (irradpoints.md, section 3); "" if it is good. The predicate of the format.

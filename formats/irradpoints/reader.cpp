@@ -54,7 +54,7 @@ IrradpointsTotals read_totals(ContainerReader& in, const IrradpointsTotals& sums
 IrradpointsFile load_irradpoints(const std::string& path) {
   ContainerReader in(path, kFormat);
   IrradpointsFile file;
-  in.expect_good(parse_header_text(in.text(), in.later_minor(), file.header));
+  in.expect_good(parse_header_text(in.text(), in.minor(), file.header));
   const unsigned kinds = kinds_of(file.header.kinds);
   file.records.reserve(in.bytes().size() / point_size(kinds));
   PointSums sums;

@@ -15,7 +15,7 @@ struct IrradpointsWriter::State {
   std::uint64_t count = 0;
 
   State(ContainerWriter::Sink sink, const IrradpointsHeader& header)
-      : out(std::move(sink), kFormat, header_text(header)), kinds(kinds_of(header.kinds)) {}
+      : out(std::move(sink), format_of(header), header_text(header)), kinds(kinds_of(header.kinds)) {}
   void write_block(std::span<const IrradiancePointRecord> points);
 };
 

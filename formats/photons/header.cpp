@@ -35,6 +35,7 @@ std::string_view fault_of(const PhotonHeader& h) {
   if (h.map != "global" && h.map != "static" && h.map != "dynamic")
     return "map is not global, static or dynamic";
   if (parse_kinds(h.kinds) == 0) return "kinds is not a list of direct, caustic, indirect, volume";
+  if (!is_part(h.part)) return "part is not low or high";
   if (h.columns >= kColumnsNames.size()) return "columns are not known";
   if (h.group_count < 1 || h.group_count > kMaxGroupCount) return "groups is not in 1 .. 16777216";
   if (const std::string_view fault = fault_of_common(h.origin, h.identity); !fault.empty()) return fault;
@@ -45,7 +46,7 @@ std::string_view fault_of(const PhotonHeader& h) {
   return "";
 }
 
-constexpr std::uint16_t kEmissionSince = 1;  ///< minor version
+constexpr std::uint16_t kEmissionSince = 1, kPartSince = 2;  ///< minor versions
 
 /// Takes one line's value into the header.
 Line take_line(std::string_view key, std::string_view value, std::uint16_t minor, PhotonHeader& h) {
@@ -57,6 +58,7 @@ Line take_line(std::string_view key, std::string_view value, std::uint16_t minor
         std::uint32_t(std::find(kColumnsNames.begin(), kColumnsNames.end(), value) - kColumnsNames.begin());
     return Line::good;
   }
+  if (key == "part" && minor >= kPartSince) return h.part = value, result(!value.empty());
   if (key == "groups") return result(parse_numbers(value, &h.group_count, 1));
   if (key == "emitted") return result(parse_numbers(value, &h.emitted_count, 1));
   if (key == "emission" && minor >= kEmissionSince) return h.identity.emission = value, result(!value.empty());
@@ -69,7 +71,7 @@ Line take_line(std::string_view key, std::string_view value, std::uint16_t minor
 
 Format format_of(const PhotonHeader& h) {
   Format format = kFormat;
-  format.minor = h.identity.emission.empty() ? 0 : kEmissionSince;
+  format.minor = !h.part.empty() ? kPartSince : !h.identity.emission.empty() ? kEmissionSince : 0;
   return format;
 }
 
@@ -78,6 +80,7 @@ std::string header_text(const PhotonHeader& h) {
   if (const std::string_view fault = fault_of(h); !fault.empty()) text.refuse(fault);
   text.line("map", h.map);
   text.line("kinds", h.kinds);
+  if (!h.part.empty()) text.line("part", h.part);
   text.line("columns", kColumnsNames[h.columns]);
   text.origin(h.origin);
   text.line("groups", text_of(h.group_count));

@@ -13,7 +13,7 @@
 
 namespace tempolux::formats::photons {
 
-inline constexpr Format kFormat{{"\x89TPHOT\r\n", 8}, ".photons", "photon-trace", 1, 1};
+inline constexpr Format kFormat{{"\x89TPHOT\r\n", 8}, ".photons", "photon-trace", 1, 2};
 inline constexpr std::uint32_t kMaxGroupCount = 1u << 24;
 inline constexpr std::string_view kBlockMark = "PHOT", kLedgerMark = "LEDG";
 inline constexpr std::size_t kBlockHeadSize = 16, kLedgerEntrySize = 76, kEndBodySize = 104;

@@ -53,6 +53,7 @@ struct PhotonHeader {
   std::uint64_t emitted_count = 0;            ///< paths started, over all groups
   std::string map = "global";                 ///< "global", "static" or "dynamic" (there flux may be < 0)
   std::string kinds = "direct,caustic,indirect";  ///< which kinds were stored
+  std::string part;  ///< "low" or "high": holds that part of the light alone (photonmap-split); "": all of it
   /// Of an overlay: the file it changes, and that file's digest. Groups not in this file come from the base.
   std::string base_name, base_digest;
 };

@@ -55,13 +55,43 @@ bool jpeg_size(Bytes bytes, ImageHeader& header) {
   return false;
 }
 
+std::uint32_t little_endian(Bytes bytes, std::size_t at, int count) {
+  std::uint32_t value = 0;
+  for (int i = count - 1; i >= 0; --i) value = value << 8 | bytes[at + std::size_t(i)];
+  return value;
+}
+
+/// Size in the first chunk of the RIFF container: of a lossy frame (RFC 6386, 9.1), of a lossless one, or of the canvas
+/// (Google's "WebP Container Specification" and "WebP Lossless Bitstream").
+bool webp_size(Bytes bytes, ImageHeader& header) {
+  if (bytes.size() < 30) return false;
+  if (starts_with(bytes, "VP8 "sv, 12)) {
+    if (!starts_with(bytes, "\x9d\x01\x2a"sv, 23)) return false;
+    header.width = int(little_endian(bytes, 26, 2) & 0x3fffu);
+    header.height = int(little_endian(bytes, 28, 2) & 0x3fffu);
+    return true;
+  }
+  if (starts_with(bytes, "VP8L"sv, 12)) {
+    if (bytes[20] != 0x2f) return false;
+    const std::uint32_t bits = little_endian(bytes, 21, 4);
+    header.width = int(bits & 0x3fffu) + 1;
+    header.height = int(bits >> 14 & 0x3fffu) + 1;
+    header.has_alpha = (bits >> 28 & 1u) != 0;
+    return true;
+  }
+  if (!starts_with(bytes, "VP8X"sv, 12)) return false;
+  header.width = int(little_endian(bytes, 24, 3)) + 1;
+  header.height = int(little_endian(bytes, 27, 3)) + 1;
+  header.has_alpha = (bytes[20] & 0x10u) != 0;
+  return true;
+}
+
 struct OtherFormat {
   std::string_view head;
   std::size_t at;
   const char* name;
 };
-constexpr std::array kOtherFormats{OtherFormat{"WEBP", 8, "WebP"},
-                                   OtherFormat{"\xabKTX"sv, 0, "KTX"},
+constexpr std::array kOtherFormats{OtherFormat{"\xabKTX"sv, 0, "KTX"},
                                    OtherFormat{"DDS ", 0, "DDS"},
                                    OtherFormat{"GIF8", 0, "GIF"},
                                    OtherFormat{"BM", 0, "BMP"},
@@ -82,13 +112,18 @@ ImageHeader read_image_header(Bytes bytes, const std::string& place) {
   } else if (starts_with(bytes, "\xff\xd8\xff"sv)) {
     header.format = ImageHeader::Format::jpeg;
     found = jpeg_size(bytes, header);
+  } else if (starts_with(bytes, "RIFF"sv) && starts_with(bytes, "WEBP"sv, 8)) {
+    header.format = ImageHeader::Format::webp;
+    found = webp_size(bytes, header);
   } else {
     for (const OtherFormat& other : kOtherFormats)
       if (starts_with(bytes, other.head, other.at))
-        fail(std::string("is ") + other.name + "; textures must be PNG or JPEG: convert it");
-    fail("is neither PNG nor JPEG; textures must be one of them");
+        fail(std::string("is ") + other.name + "; textures must be PNG, JPEG or WebP: convert it");
+    fail("is neither PNG nor JPEG nor WebP; textures must be one of them");
   }
-  const char* name = header.format == ImageHeader::Format::png ? "PNG" : "JPEG";
+  const char* name = header.format == ImageHeader::Format::png    ? "PNG"
+                     : header.format == ImageHeader::Format::jpeg ? "JPEG"
+                                                                  : "WebP";
   if (!found) fail(std::string("no size in its header; the ") + name + " is damaged or cut short");
   if (header.width < 1 || header.height < 1) fail(std::string("a ") + name + " without pixels");
   return header;

@@ -1,4 +1,4 @@
-// lib/image/encoded_image.h -- PNG and JPEG files in memory: their size without decoding, and their pixels.
+// lib/image/encoded_image.h -- PNG, JPEG and WebP files in memory: their size without decoding, and their pixels.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace tempolux {
 
-/// A PNG or JPEG file in memory, not decoded.
+/// A PNG, JPEG or WebP file in memory, not decoded.
 struct EncodedImage {
   std::string place;  ///< where it comes from, for messages
   std::vector<unsigned char> bytes;
@@ -17,12 +17,13 @@ struct EncodedImage {
 };
 
 struct ImageHeader {
-  enum class Format { png, jpeg };
+  enum class Format { png, jpeg, webp };
   Format format = Format::png;
   int width = 0, height = 0;  ///< px, at least 1
+  bool has_alpha = false;     ///< of a WebP
 };
 
-/// Format and size of a PNG or JPEG file from its first bytes; nothing is decoded, nothing allocated. Throws InputError
+/// Format and size of a PNG, JPEG or WebP file from its first bytes; nothing is decoded, nothing allocated. Throws InputError
 /// "PLACE: ..." for other formats (naming those we know) and for a damaged header.
 ImageHeader read_image_header(std::span<const unsigned char> bytes, const std::string& place);
 
@@ -35,7 +36,7 @@ struct CodedPixels {
 };
 
 /// Decodes an image. What the file says about its colour space (gAMA, iCCP, ...) is not looked at: glTF 2.0, 3.8.2,
-/// leaves that to the texture. Throws InputError "PLACE: ..." for a damaged or truncated file, one whose size is not
+/// leaves that to the texture. WebP is decoded by a helper process (lib/core/unpack.h). Throws InputError "PLACE: ..." for a damaged or truncated file, one whose size is not
 /// what the header said or over max_pixels, and for JPEG in CMYK.
 CodedPixels decode_image(const EncodedImage& image, std::uint64_t max_pixels);
 

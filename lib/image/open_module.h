@@ -4,12 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace tempolux {
+#include "lib/core/module_folders.h"
 
-/// Folders in which modules are looked for, best first, relative to the running program (/proc/self/exe):
-/// ../lib/tempolux and its variants where it is installed, ../modules in a build tree. The environment is not
-/// read.
-std::vector<std::string> default_module_folders();
+namespace tempolux {
 
 /// The address of `symbol` in the module `file`, which is opened if this is its first use and stays. Thread-safe.
 /// `purpose` begins every message, as "FILE: reading jpeg"; `remedy` ends the one for a module that is in none of the

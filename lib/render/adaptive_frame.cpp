@@ -65,6 +65,7 @@ class AdaptiveFrame {
                       [&](int s) { return controlled_ ? &control[s < a ? 0 : 1] : nullptr; },
                       [&](int s, std::uint32_t surface, const Layers& sample) {
                         (s < a ? first : second).add(sample);
+                        if (SampleHalves* halves = image_.halves_of(pixel)) halves->add(s, n, sample);
                         if (s == 0) state.surface = surface;
                       });
     });
@@ -100,7 +101,7 @@ class AdaptiveFrame {
     PixelSum sum;
     with_light(pixel, sparse, [&](const DiffuseLight* light) {
       sum = sample_pixel(scene_, view_, options_.seed, light, pixel, x, y, first, count / lights, lights, counts,
-                         controlled_ ? &control : nullptr);
+                         controlled_ ? &control : nullptr, image_.halves_of(pixel));
       sum.stand_for(lights);
       join(sum, first, count, image_.pixels[pixel]);
     });

@@ -12,7 +12,8 @@ namespace tempolux {
 namespace {
 
 const std::vector<std::string> kGroups{"RGBA", "layers", "emission", "specular", "direct", "caustic", "indirect",
-                                       "Z", "N", "P", "id", "albedo", "motion"};
+                                       "Z", "N", "P", "id", "albedo", "motion",
+                                       "coverage", "variance", "diffuse.variance", "samples"};
 
 bool asked(const std::vector<std::string>& channels, const char* name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();

@@ -22,18 +22,19 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
                  int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
   const int first = image.samples;
   for_each_pixel(view, options, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    join(sample_pixel(scene, view, seed, options.diffuse_light, pixel, x, y, first, count, 1, counts), first, count,
-         image.pixels[pixel]);
+    join(sample_pixel(scene, view, seed, options.diffuse_light, pixel, x, y, first, count, 1, counts, nullptr, image.halves_of(pixel)),
+         first, count, image.pixels[pixel]);
   });
   image.samples += count;
 }
 
-LayerImage empty_layers(const CameraView& view) {
-  LayerImage image{view.width(), view.height(), 0, {}};
+LayerImage empty_layers(const CameraView& view, const FrameOptions& options) {
+  LayerImage image{view.width(), view.height(), 0, {}, {}};
   const std::size_t count = std::size_t(view.width()) * std::size_t(view.height());
   image.pixels.reserve(count);
   formats::prefer_large_pages(image.pixels.data(), count * sizeof(Layers));
   image.pixels.resize(count);
+  if (options.sample_halves) image.sample_halves.resize(count);
   return image;
 }
 
@@ -57,6 +58,7 @@ void join_halves(RenderedFrame& frame) {
   const LayerImage &a = frame.half[0], &b = frame.half[1];
   frame.mean = a;
   frame.mean.samples = a.samples + b.samples;
+  for (std::size_t p = 0; p < frame.mean.sample_halves.size(); ++p) frame.mean.sample_halves[p] += b.sample_halves[p];
   double difference2 = 0;
   for (std::size_t p = 0; p < a.pixels.size(); ++p) {
     Layers& mean = frame.mean.pixels[p];
@@ -74,16 +76,16 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
   RenderedFrame frame;
   const bool halves = options.halves || options.target_error > 0;
   if (!halves && options.pixel_error > 0) {
-    frame.mean = empty_layers(view);
+    frame.mean = empty_layers(view, options);
     render_adaptive(scene, view, options, frame);
   } else if (!halves) {
-    frame.mean = empty_layers(view);
+    frame.mean = empty_layers(view, options);
     render_pass(scene, view, options.seed, options, options.samples, frame.mean, frame.rays, options.progress);
   } else {
     // The second half's seed is far from any user's seeds.
     const std::uint64_t seeds[2] = {options.seed, options.seed ^ 0x68616c665f74776full};
-    frame.half[0] = empty_layers(view);
-    frame.half[1] = empty_layers(view);
+    frame.half[0] = empty_layers(view, options);
+    frame.half[1] = empty_layers(view, options);
     int count = std::max(1, options.samples / 2);
     for (;;) {
       for (int h = 0; h < 2; ++h)
@@ -117,6 +119,7 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
 }
 
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {
+  if (!layers.sample_halves.empty()) add_variance_channels(layers.sample_halves, channels, image);
   constexpr std::size_t kSum = kLayerCount;
   std::vector<std::pair<std::size_t, std::size_t>> colours;  // the first of three channels, its layer
   std::optional<std::size_t> alpha;

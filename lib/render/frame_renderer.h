@@ -8,6 +8,7 @@
 #include "lib/image/image.h"
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
+#include "lib/render/pixel_variance.h"
 
 namespace tempolux {
 
@@ -25,6 +26,7 @@ struct FrameOptions {
   /// those call for, and its neighbours what that takes from it: no bias of the mean around it. See adaptive_frame.h.
   double pixel_error = 0;
   int adaptive_limit = 1024;
+  bool sample_halves = false;           ///< keep LayerImage::sample_halves
   const DiffuseLight* diffuse_light = nullptr;
   std::vector<std::uint8_t> mask;       ///< by pixel, 0: leave it out; empty: all pixels
   std::function<void(double)> progress; ///< called with [0, 1]; may be empty
@@ -34,6 +36,8 @@ struct FrameOptions {
 struct LayerImage {
   int width = 0, height = 0, samples = 0;
   std::vector<Layers> pixels;           ///< width * height, top row first
+  std::vector<SampleHalves> sample_halves;   ///< of the same pixels; empty unless asked for
+  SampleHalves* halves_of(std::size_t pixel) { return sample_halves.empty() ? nullptr : &sample_halves[pixel]; }
 };
 
 struct RenderedFrame {
@@ -55,7 +59,7 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
 void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, Image& image);
 
 /// Adds to `image` the colour channels asked for: "RGBA", "layers" or a layer's name. The sum of the layers
-/// in the order of kLayerNames, in float32, is R G B exactly.
+/// in the order of kLayerNames, in float32, is R G B exactly. Of add_variance_channels() what was kept.
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image);
 
 /// Data channels of one ray through each pixel's centre: "Z", "N", "P", "id", "albedo", "motion" (forward

@@ -109,10 +109,13 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint
 
 inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const DiffuseLight* light,
                              std::size_t pixel, int x, int y, int first, int count, int lights, RayCounts& counts,
-                             LightControl* control = nullptr) {
+                             LightControl* control = nullptr, SampleHalves* halves = nullptr) {
   PixelSum sum;
   for_each_sample(scene, view, seed, light, pixel, x, y, first, count, lights, counts, [&](int) { return control; },
-                  [&](int, std::uint32_t, const Layers& sample) { sum.add(sample); });
+                  [&](int s, std::uint32_t, const Layers& sample) {
+                    sum.add(sample);
+                    if (halves) halves->add(s - first, count, sample, lights);
+                  });
   return sum;
 }
 

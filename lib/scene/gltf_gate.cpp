@@ -15,6 +15,7 @@
 #include "formats/error.h"
 #include "lib/scene/gltf_extensions.h"
 #include "lib/scene/gltf_json.h"
+#include "lib/scene/gltf_unpack.h"
 
 namespace tempolux::gltf {
 namespace {
@@ -30,7 +31,9 @@ const std::set<std::string> kKnown{"KHR_lights_punctual",    "KHR_materials_emis
                                    "KHR_mesh_quantization",  "KHR_materials_transmission",
                                    "KHR_materials_volume",   "KHR_materials_unlit",
                                    "KHR_texture_transform",  "EXT_mesh_gpu_instancing",
-                                   "KHR_animation_pointer"};
+                                   "KHR_animation_pointer",  "KHR_draco_mesh_compression",
+                                   "EXT_meshopt_compression", "KHR_meshopt_compression",
+                                   "EXT_texture_webp"};
 
 [[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what) {
   throw InputError(file + ": " + place + ": " + what);
@@ -269,9 +272,13 @@ std::string checked_data_uri(const std::string& uri, std::uint64_t length, const
 void approve_buffer(Json& buffer, std::size_t index, const std::string& path, const Container& container,
                     const GltfOptions& options, Gated& gated) {
   const std::string place = "buffers[" + std::to_string(index) + "]";
+  ByteRange range{path, 0, 0};
+  if (is_stand_in(buffer) && (index != 0 || container.bin.length == 0)) {
+    gated.buffers.push_back(range);
+    return;
+  }
   const std::uint64_t length = buffer["byteLength"].get<std::uint64_t>();
   if (length == 0) fail(path, place + ".byteLength", "is 0");
-  ByteRange range{path, 0, 0};
   if (!buffer.contains("uri")) {
     if (index != 0 || container.bin.length == 0)
       fail(path, place, "has no uri, and there is no binary chunk for it");
@@ -359,6 +366,7 @@ Gated pass_gate(const std::string& path, const GltfOptions& options) {
     for (std::size_t i = 0; i < document["buffers"].size(); ++i)
       approve_buffer(document["buffers"][i], i, path, container, options, gated);
   check_total(path, options, gated);
+  unpack_packed(document, path, options, gated);
   for (std::size_t i = 0; i < array_of(document, "images").size(); ++i)
     gated.images.push_back(approve_image(document["images"][i], i, path, options));
   document.erase("images");

@@ -2,8 +2,8 @@
 //
 // tinygltf is a parser, not a validator: it recurses as deep as the JSON nests, opens any path a URI names
 // and takes wrong types for missing ones. So the JSON is parsed here first, with limits, checked, and handed
-// on rewritten: images, extras (but those of nodes, kept beside) and unknown extensions gone, every buffer's URI
-// replaced by the name of a byte range that the gate has approved.
+// on rewritten: images, extras (but those of nodes, kept beside) and unknown extensions gone, packed geometry unpacked,
+// every buffer's URI replaced by the name of a byte range that the gate has approved.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace tempolux::gltf {
 
-/// Bytes of a regular file that hold one buffer.
+/// Bytes of a regular file that hold one buffer; without a path those of Gated::unpacked.
 struct ByteRange {
   std::string path;
   std::uint64_t offset = 0, length = 0;
@@ -45,6 +45,7 @@ struct Gated {
   std::vector<ByteRange> buffers;     ///< by index of the buffer; length 0: a data URI
   std::vector<GatedImage> images;     ///< by index of the image
   std::vector<std::string> files;     ///< the scene file and every file a buffer lies in, each once
+  std::vector<unsigned char> unpacked;  ///< what Draco or meshopt had packed (gltf_unpack.h); a buffer of its own
   std::uint64_t byte_count = 0;       ///< size of the JSON and of all buffers
   std::vector<std::string> warnings;  ///< what the file has and nothing here reads
   std::vector<PointerChannel> pointers;
@@ -57,7 +58,7 @@ std::string buffer_name(std::size_t index);
 /// Reads the JSON of a .gltf or .glb file (told apart by content) and checks, in this order: size, GLB
 /// chunks, nesting (64 levels) and number of JSON values, types of all properties that are read, version,
 /// required extensions, and where URIs lead: relative, inside the scene's folder (symbolic links resolved),
-/// regular files that are long enough. Throws InputError.
+/// regular files that are long enough. Packed geometry is unpacked last. Throws InputError.
 Gated pass_gate(const std::string& path, const GltfOptions& options);
 
 /// Reads a range; throws InputError if the file ends first.

@@ -184,6 +184,11 @@ const Rules kLight{{"name", Type::string},   {"type", Type::string, kRequired},
                    {"color", Type::numbers}, {"intensity", Type::number},
                    {"range", Type::number},  {"spot", Type::object, false, &kSpot}};
 const Rules kLights{{"lights", Type::objects, kRequired, &kLight}};
+const Rules kDraco{{"bufferView", Type::index, kRequired}, {"attributes", Type::index_map, kRequired}};
+const Rules kMeshopt{{"buffer", Type::index, kRequired},    {"byteOffset", Type::size}, {"byteLength", Type::size, kRequired},
+                     {"byteStride", Type::size, kRequired}, {"mode", Type::string, kRequired},
+                     {"count", Type::size, kRequired},      {"filter", Type::string}};
+const Rules kWebp{{"source", Type::index, kRequired}};
 const Rules kRootExtensions{{"KHR_lights_punctual", Type::object, false, &kLights}};
 const Rules kRoot{{"asset", Type::object, kRequired, &kAsset},
                   {"extensionsUsed", Type::strings},
@@ -362,6 +367,16 @@ const Json& array_of(const Json& document, const char* key) {
 }
 
 void check_types(Json& document, const std::string& file) { check_object(document, kRoot, "", file); }
+
+void check_draco(Json& extension, const std::string& place, const std::string& file) {
+  check_object(extension, kDraco, place, file);
+}
+void check_meshopt(Json& extension, const std::string& place, const std::string& file) {
+  check_object(extension, kMeshopt, place, file);
+}
+void check_webp(Json& extension, const std::string& place, const std::string& file) {
+  check_object(extension, kWebp, place, file);
+}
 
 void prune(Json& document, const std::set<std::string>& known, std::set<std::string>& unknown,
            const std::string& file) {

@@ -21,6 +21,12 @@ const Json& array_of(const Json& document, const char* key);
 /// there; whole numbers written with a fraction (3.0) become integers. Throws InputError naming the place.
 void check_types(Json& document, const std::string& file);
 
+/// The same for an extension's object at `place`: KHR_draco_mesh_compression of a primitive, EXT_ and
+/// KHR_meshopt_compression of a bufferView, EXT_texture_webp of a texture.
+void check_draco(Json& extension, const std::string& place, const std::string& file);
+void check_meshopt(Json& extension, const std::string& place, const std::string& file);
+void check_webp(Json& extension, const std::string& place, const std::string& file);
+
 /// Removes all `extras` and all extensions whose name is not in `known`, which tinygltf would copy into
 /// values of 200 bytes each; the names found go to `unknown`. Throws InputError if the known ones hold more
 /// than a million values.

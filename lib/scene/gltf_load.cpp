@@ -45,7 +45,10 @@ std::string same_name(const std::string& name, void*) { return name; }
 
 bool read_buffer(std::vector<unsigned char>* out, std::string*, const std::string& name, void* gated) {
   const ByteRange* range = range_named(name, gated);
-  if (range) *out = read_range(*range);
+  if (range && range->path.empty())
+    *out = std::move(static_cast<Gated*>(gated)->unpacked);  // each buffer is read once
+  else if (range)
+    *out = read_range(*range);
   return range != nullptr;
 }
 

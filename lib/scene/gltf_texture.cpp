@@ -1,10 +1,12 @@
 // lib/scene/gltf_texture.cpp -- what textures refer to: images, samplers, transforms of texture coordinates.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/scene/base64.h"
 #include "lib/scene/gltf_gate.h"
 #include "lib/scene/gltf_model.h"
 
@@ -12,28 +14,6 @@ namespace tempolux::gltf {
 namespace {
 
 using tinygltf::Value;
-
-std::vector<unsigned char> from_base64(Import& import, const std::string& text, const std::string& place) {
-  std::vector<unsigned char> bytes;
-  bytes.reserve(text.size() / 4 * 3);
-  std::uint32_t group = 0, bits = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    const int digit = c >= 'A' && c <= 'Z'   ? c - 'A'
-                      : c >= 'a' && c <= 'z' ? c - 'a' + 26
-                      : c >= '0' && c <= '9' ? c - '0' + 52
-                      : c == '+'             ? 62
-                      : c == '/'             ? 63
-                                             : -1;
-    if (digit < 0) import.fail(place, "holds characters that are not base64");
-    group = (group << 6 | std::uint32_t(digit)) & 0xffffffu;
-    if ((bits += 6) >= 8) {
-      bits -= 8;
-      bytes.push_back(static_cast<unsigned char>(group >> bits & 0xffu));
-    }
-  }
-  return bytes;
-}
 
 /// Bytes of an image; a file of its own joins Scene::files.
 std::vector<unsigned char> image_bytes(Import& import, const GatedImage& image, const std::string& place) {
@@ -46,7 +26,11 @@ std::vector<unsigned char> image_bytes(Import& import, const GatedImage& image, 
     const auto first = import.model.buffers[std::size_t(view.buffer)].data.begin() + std::ptrdiff_t(view.byteOffset);
     return {first, first + std::ptrdiff_t(view.byteLength)};
   }
-  if (image.path.empty()) return from_base64(import, image.base64, place);
+  if (image.path.empty()) {
+    std::optional<std::vector<unsigned char>> decoded = base64_bytes(image.base64);
+    if (!decoded) import.fail(place, "holds characters that are not base64");
+    return std::move(*decoded);
+  }
   std::vector<unsigned char> bytes = read_whole(image.path, import.options->max_file_bytes);
   std::vector<std::string>& files = import.scene.files;
   if (std::find(files.begin(), files.end(), image.path) == files.end()) files.push_back(image.path);
@@ -145,7 +129,7 @@ Texture read_texture(Import& import, const TextureUse& use, const std::string& p
   }
   if (source.source < 0)
     import.fail(texture_place,
-                "names no PNG or JPEG image; convert its textures with `gltf-transform png IN.glb OUT.glb`");
+                "names no PNG, JPEG or WebP image; convert its textures with `gltf-transform png IN.glb OUT.glb`");
   if (std::size_t(source.source) >= import.gated->images.size())
     import.fail(texture_place + ".source", "image " + std::to_string(source.source) + " does not exist");
   texture.image = image_of(import, std::size_t(source.source));

@@ -2,17 +2,18 @@
 
 Functions as in required.py.
 """
-import dataclasses
 import json
 import math
 import shutil
-import struct
 import sys
+from pathlib import Path
 
-import chain
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
+import exr
 from chain import Settings
 from estimate import spent
 from measure import Missing, figure, median, percent, quantity, running_processes
+from shipped import preset
 
 LAYERS = (None, "emission", "direct", "specular", "caustic", "indirect")
 FAST = Settings(300000, ("--point-count", "4k", "--light-samples", 2), ("--rays", 50, "--error-bound", 0.6),
@@ -24,29 +25,11 @@ def mean(values):
     return sum(values) / len(values)
 
 
-def read(bench, file):
-    """Values of all pixels by channel."""
-    sys.path.insert(0, str(bench.project / "tests" / "lib" / "image"))
-    from read_frame import FORMAT, SIZE, Frame, unzip
-    frame = Frame(file)
-    planes = {name: [] for name, _ in frame.channels}
-    line = frame.width * sum(SIZE[kind] for _, kind in frame.channels)
-    for first in range(0, frame.height, frame.lines):
-        (at,) = struct.unpack_from("<Q", frame.data, frame.table + 8 * (first // frame.lines))
-        size = struct.unpack_from("<ii", frame.data, at)[1]
-        samples, offset = unzip(frame.data[at + 8:at + 8 + size], line * min(frame.lines, frame.height - first)), 0
-        while offset < len(samples):
-            for name, kind in frame.channels:
-                planes[name] += struct.unpack_from(f"<{frame.width}{FORMAT[kind]}", samples, offset)
-                offset += SIZE[kind] * frame.width
-    return planes
-
-
 def without_caustics(bench, image, halves):
     """(MSE, relMSE, bias) of the image without its caustic layer as aqm-compare has them: with a and b the halves without
     theirs and r their mean, the mean of (x - a)(x - b), of that over r^2 + (mean r / 10)^2, channels averaged, and
     mean x / mean r - 1."""
-    frames = [read(bench, file) for file in (image, *halves)]
+    frames = [exr.read(file).channels for file in (image, *halves)]
     x, a, b = ([[v - w for v, w in zip(f[c], f[f"caustic.{c}"])] for c in "RGB"] for f in frames)
     squares, scales, total = [0.0] * len(x[0]), [0.0] * len(x[0]), 0.0
     mine = sum(map(sum, x)) / 3
@@ -61,8 +44,7 @@ def without_caustics(bench, image, halves):
 
 def quality(bench, _):
     """All layers of a final frame, at the demo's settings."""
-    size = "64x36" if bench.quick else "640x360"
-    settings = dataclasses.replace(chain.final(bench.project), caustics=True)
+    size = "64x36" if bench.tiny else "640x360"
     try:
         bench.scene("S4")
     except Missing as reason:
@@ -70,9 +52,9 @@ def quality(bench, _):
     halves = bench.reference_halves("S4", size, bench.reference_samples // 8)
     rows, more, costs, rest = [], [], [], []
     runs = {layer: [] for layer in LAYERS}
-    for seed in range(1, 2 if bench.quick else 5):
-        image, stats = chain.frame(bench, "S4", seed, settings, size)
-        costs.append(chain.cost(stats))
+    for seed in range(1, 2 if bench.tiny else 5):
+        image, cpu = preset(bench, "S4", seed, size)
+        costs.append(cpu)
         rest.append(without_caustics(bench, image, halves))
         for layer in LAYERS:
             runs[layer].append(bench.compare(image, halves, image.with_name(f"{image.stem}-{layer}.json"), layer,
@@ -92,7 +74,7 @@ def quality(bench, _):
     more.sort(key=lambda row: -abs(row[2]))
     found = figure("S4, a final frame at 640x360", "relMSE at most 2e-3 and bias at most 1 %, of the image without caustics",
                    ["layer", "RMSE", "relMSE", "bias", "standard error of one"], rows,
-                   None if bench.quick else relmse <= 2e-3 and abs(bias) <= 0.01,
+                   None if bench.tiny else relmse <= 2e-3 and abs(bias) <= 0.01,
                    [f"Settings of Makefile.example, {quantity(median(costs))} CPU s; against our path tracer, halves of "
                     f"{bench.reference_samples // 16} samples. relMSE of a layer would divide by the reference's noise."])
     found["more"] = {"title": "S4's image by object", "header": ["object", "pixels", "bias", "standard error",
@@ -106,18 +88,18 @@ def speed(bench, _):
     title, asked = "S4, a still frame at 320x180", "Cycles' RMSE of 256 samples (.038) in 1/20 of its CPU seconds (2.5)"
     try:
         bench.scene("S4")
-        halves = bench.reference_halves("S4") if bench.quick else bench.third_party_halves("S4")
+        halves = bench.reference_halves("S4") if bench.tiny else bench.third_party_halves("S4")
     except Missing as reason:
         return figure(title, asked, HEADER, [], None, [f"left out: {reason}"])
     rows, met = judged(bench, "S4", bench.size, halves, [(0.038, 2.5, FAST)])
-    return figure(title, asked, HEADER, rows, None if bench.quick else met, ["Median and mean of 5 seeds, everything counted."])
+    return figure(title, asked, HEADER, rows, None if bench.tiny else met, ["Median and mean of 5 seeds, everything counted."])
 
 
 def animation(bench, _):
     """A walk through the hall, as `make -f Makefile.example SCENE=...` renders it."""
-    frames, size = ("0-1", "48x28") if bench.quick else ("0-47", "640x360")
-    title, asked = f"S4, frames {frames} at {size}, camera moving", "below 150 CPU s, all processes"
-    header = ["photons", "points", "cache", "frames", "pictures to look at and all else", "CPU s in all", "a frame"]
+    frames, size = ("0-1", "48x28") if bench.tiny else ("0-47", "640x360")
+    title, asked = f"S4, frames {frames} at {size}, camera moving", "below 150 normalised CPU s, all processes"
+    header = ["photons", "points", "cache", "frames", "pictures to look at and all else", "CPU s in all", "a frame", "normalised in all"]
     try:
         scene, _ = bench.scene("S4")
     except Missing as reason:
@@ -130,8 +112,8 @@ def animation(bench, _):
     pictures = len(list((out / "frames").glob("*.exr")))
     samples = mean(json.loads(file.read_text())["results"]["samples_per_pixel"] for file in (out / "frames").glob("*.json"))
     shutil.rmtree(out)
-    rows = [[*map(quantity, stages), quantity(all_cpu - sum(stages)), quantity(all_cpu), quantity(all_cpu / pictures)]]
-    return figure(title, asked, header, rows, None if bench.quick else all_cpu < 150,
+    rows = [[*map(quantity, stages), quantity(all_cpu - sum(stages)), quantity(all_cpu), quantity(all_cpu / pictures), quantity(bench.normalised(all_cpu))]]
+    return figure(title, asked, header, rows, None if bench.tiny else bench.normalised(all_cpu) < 150,
                   [f"`make -f Makefile.example SCENE=S4_atrium.glb FRAMES={frames} SIZE={size}`, its final settings: "
                    f"{samples:.1f} samples a pixel. {load} other processes wanted a processor at its beginning."])
 

@@ -4,6 +4,7 @@
     make -f Makefile.example bench                       everything, about two hours on two idle cores
     python3 tests/bench/bench.py --only threads,start    some parts again; the page keeps the others
     python3 tests/bench/bench.py --page                  the page alone, from what was measured before
+    python3 tests/bench/everyscene.py --quick            a dozen scenes in some minutes, to compare two programs
 """
 import argparse
 import json
@@ -13,7 +14,7 @@ from pathlib import Path
 
 import results_page
 import sweep
-from measure import Bench, Missing, machine
+from measure import Bench, Missing, machine, walk_speed
 from required import FIGURES
 
 
@@ -25,10 +26,12 @@ def options():
     parser.add_argument("--results", type=Path, default=project / "RESULTS.md", help="the page [RESULTS.md]")
     parser.add_argument("--docs", type=Path, default=project / "docs", help="folder of its figures [docs]")
     parser.add_argument("--only", default=",".join(["sweep", *FIGURES]), help="parts, by comma: [%(default)s]")
-    parser.add_argument("--scenes", default="", help="part found: regular expression, these files alone; the others as measured before")
+    parser.add_argument("--scenes", default="", help="parts found, everyscene: regular expression, these scenes alone; the others as measured before")
+    parser.add_argument("--sizes", default="320x180", help="part everyscene: by comma [320x180]")
+    parser.add_argument("--seeds", type=int, default=8, help="part everyscene: seeds of the chain [8]")
     parser.add_argument("--reference-samples", type=int, default=2048,
                         help="per pixel, of each reference; 8192 for errors below 0.001 [2048]")
-    parser.add_argument("--quick", action="store_true", help="tiny sizes: does every script still run?")
+    parser.add_argument("--tiny", action="store_true", help="tiny sizes: does every script still run?")
     parser.add_argument("--page", action="store_true", help="measure nothing, write the page")
     return project, parser.parse_args()
 
@@ -37,16 +40,20 @@ def draw_curves(bench, peers):
     """The sweep; beside error-report's folder, what it was made with."""
     load = os.getloadavg()[0]
     print((sweep.measure(bench, peers) / "report.md").read_text())
-    made = {"machine": machine(bench), "load": f"{load:.1f}", "reference_samples": bench.reference_samples}
+    made = {"machine": machine(bench), "load": f"{load:.1f}", "reference_samples": bench.reference_samples,
+            "date": time.strftime("%Y-%m-%d %H:%M", time.gmtime())}
     (bench.out / "sweep.json").write_text(json.dumps(made))
 
 
-def measure(bench, name, peers, scenes):
+def measure(bench, name, peers, args):
     """One required figure; kept as JSON."""
+    more = {"found": {"only": args.scenes}, "everyscene": {"only": args.scenes, "sizes": args.sizes.split(","), "seeds": args.seeds}}
     load = os.getloadavg()[0]
     begin = time.monotonic()
-    found = FIGURES[name](bench, peers, **({"only": scenes} if name == "found" else {}))
-    found |= {"machine": machine(bench), "load": f"{load:.1f}", "seconds": round(time.monotonic() - begin, 1)}
+    bench.walk = walk_speed(bench)
+    found = FIGURES[name](bench, peers, **more.get(name, {}))
+    found |= {"machine": machine(bench), "load": f"{load:.1f}", "seconds": round(time.monotonic() - begin, 1),
+              "date": time.strftime("%Y-%m-%d %H:%M", time.gmtime())}
     (bench.out / f"{name}.json").write_text(json.dumps(found, indent=1))
     print(results_page.table(found["header"], found["rows"]) + "".join(note + "\n" for note in found["notes"])
           + f"asked: {found['asked']}: {results_page.verdict(found['met'])} ({found['seconds']} s)", flush=True)
@@ -54,7 +61,7 @@ def measure(bench, name, peers, scenes):
 
 def main():
     project, args = options()
-    bench = Bench(args.build.resolve(), args.out.resolve(), project, args.quick, args.reference_samples)
+    bench = Bench(args.build.resolve(), args.out.resolve(), project, args.tiny, args.reference_samples)
     peers = json.loads((Path(__file__).parent / "peers.json").read_text())
     left_out = {}
     for name in [] if args.page else args.only.split(","):
@@ -63,18 +70,18 @@ def main():
             if name == "sweep":
                 draw_curves(bench, peers["peers"])
             elif name in FIGURES:
-                measure(bench, name, peers["peers"], args.scenes)
+                measure(bench, name, peers["peers"], args)
             else:
                 raise SystemExit(f"--only: no part is called '{name}'; there are sweep,{','.join(FIGURES)}")
         except Missing as reason:
             print(f"left out: {reason}", flush=True)
             left_out[name] = str(reason)
     page = args.results.resolve()
-    results_page.write(bench, page, args.docs.resolve(), peers["source"], FIGURES, "python3 tests/bench/bench.py", left_out)
+    results_page.write(bench, page, args.docs.resolve(), peers, FIGURES, "python3 tests/bench/bench.py", left_out)
     print(f"wrote {args.results}")
     readme = page.with_name("README.md")
     if readme.exists():
-        readme.write_text(results_page.readme(readme.read_text(), page.read_text(), peers["cornell"]))
+        readme.write_text(results_page.readme(readme.read_text(), args.docs.resolve() / "results", peers["cornell"]))
 
 
 if __name__ == "__main__":

@@ -53,7 +53,7 @@ def frame(bench, name, seed, settings, size=None, fresh=False):
     """(frame with layers and ids, statistics files of all processes), made once for each program and setting; `fresh`:
     made and timed again in any case."""
     size = size or bench.size
-    if bench.quick:
+    if bench.tiny:
         settings = dataclasses.replace(settings, photons=settings.photons // 20, points=("--point-count", "1k"))
     scene, number = bench.scene(name)
     tools = [bench.bin / tool for tool in ("photon-trace", "irradcache-build", "frame-render")]

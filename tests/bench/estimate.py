@@ -50,7 +50,7 @@ def compared(bench, scene, frames, size):
 def estimate(bench, _):
     """scene-plan --estimate against a run of Makefile.example."""
     rows, ratios, notes = [], [], []
-    for name, frames, size in [("S1", "0", "48x28")] if bench.quick else CASES:
+    for name, frames, size in [("S1", "0", "48x28")] if bench.tiny else CASES:
         try:
             row, both = compared(bench, bench.scene(name)[0], frames, size)
         except Missing as reason:
@@ -61,7 +61,7 @@ def estimate(bench, _):
     notes.append("Final settings of Makefile.example; all processes of make.")
     return figure("Time and disk said before a run, against what it took", "scene-plan --estimate within a factor of 2",
                   ["scene", "frames", "size", "CPU s said", "taken", "ratio", "MB said", "taken", "ratio"], rows,
-                  all(0.5 <= r <= 2 for r in ratios) if rows and not bench.quick else None, notes)
+                  all(0.5 <= r <= 2 for r in ratios) if rows and not bench.tiny else None, notes)
 
 
 def main():

@@ -300,11 +300,11 @@ def found(bench, _=None, only="", size="320x180", cpu=120, photons=12_000_000):
     folder = bench.project / ".." / "shared" / "scenes" / "found" / "gltf"
     if not folder.is_dir():
         raise Missing("../shared/scenes/found/gltf is absent")
-    if bench.quick:
+    if bench.tiny:
         only, size, cpu, photons = only or "CornellBox|BoxDraco", bench.size, 0, 10_000
     files = {str(p.relative_to(folder)): p for p in sorted(folder.rglob("*.gl*")) if p.suffix in (".gltf", ".glb")}
     kept, commit = bench.out / "found-layers.json", commit_of(bench.project)
-    rows = json.loads(kept.read_text()) if only and kept.exists() and not bench.quick else {}
+    rows = json.loads(kept.read_text()) if only and kept.exists() and not bench.tiny else {}
     measured = [name for name in files if re.search(only, name)]
     with tempfile.TemporaryDirectory(dir=bench.out) as temporary:
         work = Found(bench, Path(temporary), size, cpu, photons)
@@ -315,7 +315,7 @@ def found(bench, _=None, only="", size="320x180", cpu=120, photons=12_000_000):
             kept.write_text(json.dumps(rows, indent=1))
         rows = {name: rows[name] for name in files if name in rows}
         rendered = [name for name, row in rows.items() if row["exit"] == 0]
-        for name in rendered[::max(1, len(rendered) // 5)][:0 if bench.quick else 5]:
+        for name in rendered[::max(1, len(rendered) // 5)][:0 if bench.tiny else 5]:
             if name in measured or "same_bytes" not in rows[name]:
                 rows[name]["same_bytes"] = work.same_for_threads(files[name])
         pictures = [picture for name in rendered for picture in work.shown(files[name])]
@@ -335,7 +335,7 @@ def found(bench, _=None, only="", size="320x180", cpu=120, photons=12_000_000):
                   "all render or are refused by name; means of layers within 1.5 %; the same bytes for any number of threads",
                   ["file, layer", "", "path tracer, mean", "photon chain, mean", "chain / path - 1, error bar", "CPU s, path tracer and chain"],
                   [line for name, row in rows.items() for line in table_rows(name, row)],
-                  good if len(rows) == len(files) and not bench.quick else None, notes)
+                  good if len(rows) == len(files) and not bench.tiny else None, notes)
 
 
 def main():

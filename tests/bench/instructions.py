@@ -22,7 +22,7 @@ IMAGES = ("OpenImageIO", "OpenEXR", "libpng", "libjpeg")
 def before(bench):
     """Folder of the old tools."""
     folder = bench.out / "before" / BEFORE
-    if bench.quick:
+    if bench.tiny:
         return bench.bin
     if not (folder / "build" / "bin" / "frame-render").exists():
         if subprocess.run(["git", "-C", str(bench.project), "cat-file", "-e", BEFORE], capture_output=True).returncode != 0:
@@ -111,9 +111,9 @@ HEADER = ["on S2", f"instructions, {BEFORE}", "now", "change", "at most 1 % more
 
 def instructions(bench, _):
     """Instructions on a scene without texture, gloss, glass, environment, against the tools of before there were any."""
-    rows, met = table(before(bench), bench.bin, bench.scene("S2")[0], bench.quick)
+    rows, met = table(before(bench), bench.bin, bench.scene("S2")[0], bench.tiny)
     return figure("What a scene does not use: instructions, against the tools before textures, rough glass and environments",
-                  "at most 1 % more of every tool; OpenImageIO never loaded", HEADER, rows, None if bench.quick else met,
+                  "at most 1 % more of every tool; OpenImageIO never loaded", HEADER, rows, None if bench.tiny else met,
                   ["callgrind, one thread. More gather rays are traced where light is uneven than then, for the sake of their "
                    "error, and in packets: records are judged per ray."])
 

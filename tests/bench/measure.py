@@ -8,6 +8,9 @@ import time
 from pathlib import Path
 
 
+NORMAL_WALK = 5.0     # million photons per CPU second of one thread: walk_speed() of the machine on which the limits were set
+
+
 class Missing(Exception):
     """A measurement lacks a program or file; it is left out and the page says so."""
 
@@ -15,18 +18,24 @@ class Missing(Exception):
 class Bench:
     """Where things are, how much is to be measured, and what has been run."""
 
-    def __init__(self, build, out, project, quick, reference_samples):
+    def __init__(self, build, out, project, tiny, reference_samples):
         self.bin, self.programs = build / "bin", build / "tests" / "bench"
-        self.out, self.project, self.quick = out, project, quick
-        self.reference_samples = 16 if quick else reference_samples
-        self.size = "48x28" if quick else "320x180"
-        self.rounds = 1 if quick else 5
+        self.out, self.project, self.tiny = out, project, tiny
+        self.reference_samples = 16 if tiny else reference_samples
+        self.size = "48x28" if tiny else "320x180"
+        self.rounds = 1 if tiny else 5
+        self.walk = None      # walk_speed() at the beginning of the part that is being measured
         shared = project / ".." / "shared" / "scenes"
         self.shared = shared if shared.is_dir() else None
         memory = Path("/dev/shm")
         self.memory = memory if os.access(memory, os.W_OK) else out
         for folder in (out, out / "frames", out / "reference", out / "tmp"):
             folder.mkdir(parents=True, exist_ok=True)
+
+    def normalised(self, cpu_s):
+        """CPU seconds as a processor would take whose bare walk makes NORMAL_WALK million photons a second; those measured, where
+        its speed is not known. Processors of one name differ by 1.8."""
+        return cpu_s * (self.walk or NORMAL_WALK) / NORMAL_WALK
 
     # ---- scenes
 
@@ -44,8 +53,8 @@ class Bench:
         """Cycles' reference of a scene, two files."""
         file, frame = self.scene(name)
         halves = [self.shared / "ref" / f"{file.stem}_f{frame:04d}_{h}.exr" for h in "ab"] if self.shared else []
-        if self.quick or not halves or not all(h.exists() for h in halves):
-            raise Missing("the references of ../shared/scenes are absent" if not self.quick else "short form")
+        if self.tiny or not halves or not all(h.exists() for h in halves):
+            raise Missing("the references of ../shared/scenes are absent" if not self.tiny else "short form")
         return halves
 
     # ---- programs
@@ -97,7 +106,7 @@ class Bench:
     def reference_halves(self, name, size=None, samples=None):
         """Our own reference, two files. Kept when tools change: unbiased is unbiased; remove the folder to renew it."""
         scene, frame = self.scene(name)
-        samples = 16 if self.quick else samples or self.reference_samples
+        samples = 16 if self.tiny else samples or self.reference_samples
         options = ["--frame", frame, "--size", size or self.size, "--integrator", "path", "--halves", "--spp",
                    samples, "--seed", 1000003, "--channels", "RGBA,layers,id"]
 
@@ -114,9 +123,9 @@ class Bench:
         return json.loads(Path(output).read_text())
 
 
-def figure(title, asked, header, rows, met, notes=()):
-    """What a function of required.py or gathering.py returns."""
-    return {"title": title, "asked": asked, "header": header, "rows": rows, "met": met, "notes": list(notes)}
+def figure(title, asked, header, rows, met, notes=(), measured=""):
+    """What a function of required.py or gathering.py returns. `measured`: the value that was asked for, in a few words."""
+    return {"title": title, "asked": asked, "header": header, "rows": rows, "met": met, "notes": list(notes), "measured": measured}
 
 
 def median(values):
@@ -162,15 +171,20 @@ def machine(bench):
     of two: the speed, of one thread of bare_walk on S2, makes CPU seconds comparable."""
     model = next((line.split(":", 1)[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines()
                   if line.startswith("model name")), "unknown processor")
-    photons, speed = 20000 if bench.quick else 10**6, ""
+    speed = bench.walk or walk_speed(bench)
+    speed = f", bare walk {speed:.1f} M photons/s" if speed else ""
+    return f"{len(os.sched_getaffinity(0))} x {model}{speed}, commit {commit_of(bench.project)}"
+
+
+def walk_speed(bench):
+    """Million photons that the bare walk sends through S2 in a CPU second of one thread; None where it is not built."""
+    photons = 20000 if bench.tiny else 10**6
     try:
         scene, frame = bench.scene("S2")
-        seconds = [bench.program("bare_walk", scene, "--frame", frame, "--photons", photons, "--threads", 1)["cpu_s"]
-                   for _ in range(3)]
-        speed = f", bare walk {photons / median(seconds) / 1e6:.1f} M photons/s"
+        return photons / 1e6 / median([bench.program("bare_walk", scene, "--frame", frame, "--photons", photons, "--threads", 1)["cpu_s"]
+                                       for _ in range(3)])
     except Missing:   # what was measured is not lost for it
-        pass
-    return f"{len(os.sched_getaffinity(0))} x {model}{speed}, commit {commit_of(bench.project)}"
+        return None
 
 
 def quantity(value, digits=3):

@@ -11,6 +11,7 @@ import gathering
 import instructions
 import million
 from estimate import estimate
+from everyscene import everyscene
 from found import found
 from two_threads import million_threads, threads
 from measure import Missing, big, figure, median, percent, quantity, timed, wait_for_quiet
@@ -19,11 +20,11 @@ from measure import Missing, big, figure, median, percent, quantity, timed, wait
 def path_tracer(bench, peers):
     """CPU seconds times squared error of our path tracer, over Cycles' of the same samples."""
     rows, notes, judged = [], [], []
-    samples, rounds = (4, 1) if bench.quick else (64, 5)
-    for name in ["S2"] if bench.quick else ["S2", "S3", "S4"]:
+    samples, rounds = (4, 1) if bench.tiny else (64, 5)
+    for name in ["S2"] if bench.tiny else ["S2", "S3", "S4"]:
         try:
             scene, frame = bench.scene(name)
-            halves = bench.reference_halves(name) if bench.quick else bench.third_party_halves(name)
+            halves = bench.reference_halves(name) if bench.tiny else bench.third_party_halves(name)
         except Missing as reason:
             if name == "S4":
                 notes.append(f"{name} left out: {reason}")
@@ -45,7 +46,7 @@ def path_tracer(bench, peers):
         judged.append((name, ratio))
         rows.append([name, samples, quantity(median(cpu)), quantity(math.sqrt(max(0, mean))),
                      quantity(peer["cpu_s"]) if peer else "-", quantity(peer["rmse"]) if peer else "-", quantity(ratio)])
-    met = None if bench.quick else all(ratio <= 1.5 for name, ratio in judged if name in ("S2", "S4"))
+    met = None if bench.tiny else all(ratio <= 1.5 for name, ratio in judged if name in ("S2", "S4"))
     return figure("Path tracer against Cycles", "CPU x MSE at most 1.5x of Cycles' on S2 (S4 too)",
                   ["scene", "samples", "CPU s", "RMSE", "Cycles CPU s", "Cycles RMSE", "CPU x MSE, ours / Cycles"], rows, met,
                   notes + ["MSE: mean over the seeds; CPU: median. Cycles' rows were measured on another day."])
@@ -54,7 +55,7 @@ def path_tracer(bench, peers):
 def photon_rate(bench, _):
     """photon-trace against the bare walk; what recording and the file cost of it."""
     scene, frame = bench.scene("S2")
-    photons = 20000 if bench.quick else 4 * 10**6
+    photons = 20000 if bench.tiny else 4 * 10**6
     output = bench.memory / f"tempolux-bench-{os.getpid()}.photons"
     common = [scene, "--frame", frame, "--photons", photons, "--threads", 2]
     sides = {"photon-trace": [], "to /dev/null": [], "nothing recorded": [], "bare walk": [],
@@ -87,17 +88,17 @@ def photon_rate(bench, _):
     same = abs(rays[0] / rays[1] - 1) < 0.01
     return figure("Photon tracing against a bare rtcIntersect1 walk", "at least 0.5 of its photon rate",
                   ["", "CPU s", "M photons per CPU s", "rate / robust bare walk", "rate / bare walk"], rows,
-                  None if bench.quick else ratio >= 0.5 and same, notes)
+                  None if bench.tiny else ratio >= 0.5 and same, notes)
 
 
 def photon_growth(bench, _):
     """Seconds and memory from 1M to 64M photons."""
     scene, frame = bench.scene("S2")
-    counts = [10**5, 2 * 10**5] if bench.quick else [10**6, 4 * 10**6, 16 * 10**6, 64 * 10**6]
+    counts = [10**5, 2 * 10**5] if bench.tiny else [10**6, 4 * 10**6, 16 * 10**6, 64 * 10**6]
     output = bench.memory / f"tempolux-bench-{os.getpid()}.photons"
     notes, runs = [], {count: [] for count in counts}
     try:
-        for _ in range(1 if bench.quick else 3):
+        for _ in range(1 if bench.tiny else 3):
             for count in counts:
                 free = os.statvfs(output.parent)
                 fits = free.f_bavail * free.f_frsize > 128 * count
@@ -116,12 +117,12 @@ def photon_growth(bench, _):
     met = all(abs(s / seconds[0] - 1) <= 0.1 and abs(m / memory[0] - 1) <= 0.1 for s, m in zip(seconds, memory))
     return figure("Photon tracing, growth", "time linear within 10 %, peak memory constant within 10 %",
                   ["photons", "CPU s", "CPU s per million", "over the first", "peak memory, MiB", "over the first"], rows,
-                  None if bench.quick else met, notes)
+                  None if bench.tiny else met, notes)
 
 
 def nearest(bench, _):
     """Exact k-nearest against nanoflann, by tests/bench/nearest."""
-    found = bench.program("nearest", *(["20000", "2000", "1"] if bench.quick else ["1000000", "100000", "5"]))
+    found = bench.program("nearest", *(["20000", "2000", "1"] if bench.tiny else ["1000000", "100000", "5"]))
     rows = []
     for key, title in (("k50", "k = 50"), ("k50_bounded", "k = 50, radius bounded"), ("k100", "k = 100"),
                        ("k100_bounded", "k = 100, radius bounded"), ("k50_random_order", "k = 50, queries in random order")):
@@ -132,17 +133,17 @@ def nearest(bench, _):
     met = found["k50"]["sorted_ratio"] >= 1.2 and found["k50_bounded"]["sorted_ratio"] >= 1.6
     return figure("Exact k nearest photons against nanoflann", "1.2x; 1.6x with a radius bound",
                   ["queries", "nanoflann, M per s", "ours, M per s", "ratio", "ratio, results sorted"], rows,
-                  None if bench.quick else met, [f"{found['photons']} photons, {found['queries']} queries in Morton order, one "
+                  None if bench.tiny else met, [f"{found['photons']} photons, {found['queries']} queries in Morton order, one "
                   "thread, CPU time; the better of two leaf sizes of nanoflann."])
 
 
 def start(bench, _):
     """--help of every tool, and what it links."""
     rows, met = [], True
-    quiet = bench.quick or wait_for_quiet(60)
+    quiet = bench.tiny or wait_for_quiet(60)
     tools = sorted(path for path in bench.bin.iterdir() if os.access(path, os.X_OK) and path.is_file())
     for path in tools:
-        times = [timed([path, "--help"]) for _ in range(3 if bench.quick else 20)]
+        times = [timed([path, "--help"]) for _ in range(3 if bench.tiny else 20)]
         linked = bench.run(["ldd", path]).stdout
         heavy = [name for name in ("OpenImageIO", "openvdb") if name in linked]
         wall, cpu = median([t[0] for t in times]), median([t[1] for t in times])
@@ -155,12 +156,12 @@ def start(bench, _):
 
 def reading(bench, _):
     """Reading and writing a .photons file, by tests/bench/photons_io."""
-    found = bench.program("photons_io", "--photons", 20000 if bench.quick else 4000000, "--file",
+    found = bench.program("photons_io", "--photons", 20000 if bench.tiny else 4000000, "--file",
                           bench.memory / f"tempolux-bench-{os.getpid()}.photons")
     rows = [[what, quantity(found[f"{kind}_gb_per_s"]), quantity(found[f"raw_{kind}_gb_per_s"]), quantity(found[f"{kind}_ratio"])]
             for what, kind in (("reading", "read"), ("writing", "write"))]
     return figure("A .photons file against its bytes", "reading at least 0.5 of read() into fresh memory",
-                  ["", "GB/s", "bare bytes, GB/s", "ratio"], rows, None if bench.quick else found["read_ratio"] >= 0.5,
+                  ["", "GB/s", "bare bytes, GB/s", "ratio"], rows, None if bench.tiny else found["read_ratio"] >= 0.5,
                   [f"{found['photons']} photons, one thread, CPU time, checksums verified; "
                    f"checksum alone {found['crc_folded_gb_per_s']:.0f} GB/s."])
 
@@ -198,6 +199,6 @@ def object_table(objects):
              percent(o["share_of_squared_error"], 1)] for o in seen]
 
 
-FIGURES = {"path-tracer": path_tracer, "photon-rate": photon_rate, "photon-growth": photon_growth, "nearest": nearest,
+FIGURES = {"everyscene": everyscene, "path-tracer": path_tracer, "photon-rate": photon_rate, "photon-growth": photon_growth, "nearest": nearest,
            "threads": threads, "start": start} | demo.FIGURES | {"estimate": estimate, "reading": reading, "references": references,
            "found": found} | gathering.FIGURES | million.FIGURES | {"million-threads": million_threads} | instructions.FIGURES

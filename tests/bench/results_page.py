@@ -1,9 +1,15 @@
-"""RESULTS.md and its figures, from what the measurements left in the output folder, and what is not there from the page as it
-was. Nothing is typed by hand."""
+"""RESULTS.md, one page, and docs/results, a file for each part: from what the measurements left in the output folder, and where that
+has nothing or something older, from those files as they were. Nothing is typed by hand."""
 import json
 import re
 import shutil
-import subprocess
+
+from judged_code import MOST_CHANGES, changes_since
+
+LINES = 200            # of RESULTS.md at most
+VERDICTS = {"not judged here": None, "met": True, "**missed**": False}
+HEAD = re.compile(r"# (?P<title>.*)\n\n`.* --only \S+` · (?P<machine>.*) · load [^·\n]*(?: · (?P<date>\S+ \S+))?\n\n"
+                  r"Asked: (?P<asked>.*)\. (?P<said>.*)\.(?: Measured: (?P<measured>.*)\.)?\n")
 
 
 def table(header, rows):
@@ -15,11 +21,15 @@ def verdict(met):
     return "not judged here" if met is None else "met" if met else "**missed**"
 
 
+# ---- a part's own file
+
 def section(name, found, command):
+    """Text of docs/results/NAME.md; HEAD reads its beginning."""
     if "text" in found:
         return found["text"]
-    text = f"### {found['title']}\n\n`{command} --only {name}` · {found['machine']} · load {found['load']}\n\n"
-    text += f"Asked: {found['asked']}. {verdict(found['met']).capitalize()}.\n\n" + table(found["header"], found["rows"])
+    text = f"# {found['title']}\n\n`{command} --only {name}` · {found['machine']} · load {found['load']} · {found.get('date', '- -')}\n\n"
+    measured = f" Measured: {found['measured']}." if found.get("measured") else ""
+    text += f"Asked: {found['asked']}. {verdict(found['met']).capitalize()}.{measured}\n\n" + table(found["header"], found["rows"])
     for note in found["notes"]:
         text += f"\n{note}\n"
     if "more" in found:
@@ -28,50 +38,45 @@ def section(name, found, command):
     return text + "\n"
 
 
-CURVES, FIGURES_IN_FULL = "## Error against run time\n", "## Figures in full\n"
-VERDICTS = {"not judged here": None, "met": True, "**missed**": False}
+def kept(file):
+    """What an earlier run wrote of a part; None if nothing."""
+    if not file.exists():
+        return None
+    text = file.read_text()
+    head = HEAD.match(text)
+    if not head:
+        raise SystemExit(f"{file}: its head is not as section() writes it; measure the part again, or remove the file")
+    said = head["said"].lower() if head["said"].lower() in VERDICTS else head["said"]
+    return {**head.groupdict(), "met": VERDICTS[said], "text": text, "measured": head["measured"] or ""}
 
 
-def kept(page):
-    """What an earlier page says of parts that the output folder does not know: {name: what section() was given, and its text}."""
-    if not page.exists():
-        return {}
-    sections = re.split(r"^(?=### )", page.read_text().partition(FIGURES_IN_FULL)[2], flags=re.M)
-    found = {}
-    for text in sections[1:]:
-        head = re.match(r"### (.*)\n\n`.* --only (\S+)` · (.*) · load .*\n\nAsked: (.*)\. (.*)\.\n", text)
-        if not head:
-            raise SystemExit(f"{page}: cannot keep '{text.splitlines()[0]}': its head is not as section() writes it")
-        title, name, machine, asked, said = head.groups()
-        found[name] = {"title": title, "machine": machine, "asked": asked, "text": text.rstrip("\n") + "\n\n",
-                       "met": VERDICTS.get(said, VERDICTS.get(said.lower()))}
-    return found
+def latest(bench, docs, name):
+    """The newer of the last measurement here and what the page's file has, good or bad."""
+    file, before = bench.out / f"{name}.json", kept(docs / "results" / f"{name}.md")
+    here = json.loads(file.read_text()) if file.exists() else None
+    if not here or not before:
+        return here or before
+    return before if (before["date"] or "") > here.get("date", "") else here
 
 
-def kept_curves(page):
-    """The curves of an earlier page; "" if it has none."""
-    text = page.read_text() if page.exists() else ""
-    begin, end = text.find(CURVES), text.find(FIGURES_IN_FULL)
-    return text[begin:end] if 0 <= begin < end else ""
+# ---- curves
 
-
-def curves(bench, docs, page, command):
-    """error-report's tables, its plots copied to docs; as they were, if there are none."""
-    report = bench.out / "report"
-    if not (bench.out / "sweep.json").exists():
-        return kept_curves(page)
-    made = json.loads((bench.out / "sweep.json").read_text())
-    docs.mkdir(parents=True, exist_ok=True)
+def curves(bench, docs, command):
+    """Writes docs/results/curves.md and copies the plots, if the sweep has been measured here."""
+    report, made = bench.out / "report", bench.out / "sweep.json"
+    if not made.exists():
+        return
+    made = json.loads(made.read_text())
     for old in docs.glob("error-*.svg"):
         old.unlink()
     for plot in report.glob("*.svg"):
         shutil.copy(plot, docs / plot.name)
-    link = str(docs.relative_to(page.parent)) if docs.is_relative_to(page.parent) else str(docs)
     text = (report / "report.md").read_text().split("\n", 1)[1]
-    text = re.sub(r"\]\(([^)]*\.svg)\)", rf"]({link}/\1)", text)
+    text = re.sub(r"\]\(([^)]*\.svg)\)", r"](../\1)", text)
     text = re.sub(r"^### (.*)\n\n((?:\|.*\n)+)", long_tables, text, flags=re.M)
-    return CURVES + f"""
-`{command} --only sweep` · {made['machine']} · load {made['load']}; every run: report/report.csv in its output folder
+    (docs / "results" / "curves.md").write_text(f"""# Error against run time
+
+`{command} --only sweep` · {made['machine']} · load {made['load']} · {made.get('date', '- -')}; every run: report/report.csv in its output folder
 
 Each scene is swept over samples per pixel (path tracing), over photons that are looked up directly (photon-trace, then
 frame-render with 16 samples per pixel), and over the parameters of final gathering with the irradiance cache
@@ -81,41 +86,7 @@ path-traced reference of {made["reference_samples"]} samples per pixel, whose no
 processes, loading and writing included. A Monte Carlo curve falls with slope -0.5; one that flattens has reached its bias,
 or the noise of what is not swept (the 16 samples of direct light). With k fixed more photons shrink only the blur; with k
 growing as their cube root (100 at 10^5) both noise and blur fall.
-""" + text + "\n"
-
-
-MARKS = "<!-- written by tests/bench/bench.py from RESULTS.md and peers.json -->\n", "<!-- end -->\n"
-
-
-DEMO_MARKS = "<!-- written by tests/bench/bench.py, --only demo -->\n", "<!-- end of demo -->\n"
-
-
-def demo_cost(text, page):
-    """The README's text with the cost of its demo as the page has it; as it is if either lacks it."""
-    begin, end = (text.find(mark) for mark in DEMO_MARKS)
-    found = {quality: re.search(rf"^### The demo\n(?:[^#|].*\n|\n|\| quality.*\n|\|---.*\n|\| final .*\n)*?\| {quality} \| (\S+) \| (\S+) \| (\S+) \|",
-                                page, re.M) for quality in ("final", "draft")}
-    if begin < 0 or end < 0 or not all(found.values()):
-        return text
-    frame, whole, disk = found["final"].groups()
-    return (text[:begin] + DEMO_MARKS[0] + f"A frame costs {frame} CPU seconds (draft: {found['draft'].group(1)}), all 48 together "
-            f"{whole} CPU seconds and {disk} GB of disk.\n" + text[end:])
-
-
-def readme(text, page, peers):
-    """The README's text with the cost of its demo and its rows of the Cornell box, which are those of the page `page`; as it is
-    where either lacks them."""
-    text = demo_cost(text, page)
-    begin, end = (text.find(mark) for mark in MARKS)
-    ours = re.search(r"^### Classic Cornell box.*\n(?:[^|#].*\n|\n)*\| scene.*\n\|---.*\n((?:\|.*\n)+)", page, re.M)
-    if begin < 0 or end < 0 or not ours:
-        return text
-    rows = []
-    for line in ours.group(1).splitlines():
-        _scene, _asked, rmse, cpu, bias, _reached, settings = (cell.strip() for cell in line.strip("|").split("|"))
-        rows.append([f"tempolux, {settings}", cpu, rmse.replace("0.", ".", 1), bias.split(" +-")[0]])
-    rows += [[peer["work"], peer["cpu_s"], peer["rmse"], peer["bias"]] for peer in peers]
-    return text[:begin] + MARKS[0] + table(["", "CPU s", "RMSE", "bias"], rows) + text[end:]
+""" + text)
 
 
 def long_tables(match):
@@ -125,37 +96,127 @@ def long_tables(match):
     return f"<details><summary>{heading}</summary>\n\n{rows}\n</details>\n"
 
 
-def age(bench, machine):
-    """The commit of a measurement, and how many since then have changed what is measured."""
-    commit = machine.rsplit(" ", 1)[-1]
-    log = subprocess.run(["git", "-C", str(bench.project), "log", "--oneline", f"{commit}..HEAD", "--", "formats", "lib", "tools",
-                          "Makefile.example"], capture_output=True, text=True)
-    if log.returncode != 0:
-        return f"{commit}, age unknown"
-    newer = len(log.stdout.splitlines())
-    return f"{commit}, {newer} changes ago" if newer else commit
+def plots(docs, page):
+    """The plots side by side, and where their numbers are."""
+    found = sorted(docs.glob("error-*.svg"))
+    if not found or not (docs / "results" / "curves.md").exists():
+        return "## Error against run time\n\nNot measured: `--only sweep`\n\n"
+    folder = docs.relative_to(page.parent) if docs.is_relative_to(page.parent) else docs
+    made = re.search(r"commit (\S+)", (docs / "results" / "curves.md").read_text())
+    return (f"## Error against run time\n\nAll runs, slopes and floors: [curves.md]({folder}/results/curves.md), at commit "
+            f"{made.group(1) if made else 'unknown'}.\n\n" + "\n".join(f"![{plot.stem}]({folder}/{plot.name})" for plot in found) + "\n\n")
 
 
-def summary(bench, found, figures, left_out, command):
+# ---- the README
+
+MARKS = "<!-- written by tests/bench/bench.py from RESULTS.md and peers.json -->\n", "<!-- end -->\n"
+DEMO_MARKS = "<!-- written by tests/bench/bench.py, --only demo -->\n", "<!-- end of demo -->\n"
+PEERS_NOISE = 0.002    # of the reference that the peers' errors are against
+
+
+def demo_cost(text, results):
+    """The README's text with the cost of its demo; as it is if either lacks it."""
+    begin, end = (text.find(mark) for mark in DEMO_MARKS)
+    page = (results / "demo.md").read_text() if (results / "demo.md").exists() else ""
+    found = {quality: re.search(rf"^\| {quality} \| (\S+) \| (\S+) \| (\S+) \|", page, re.M) for quality in ("final", "draft")}
+    if begin < 0 or end < 0 or not all(found.values()):
+        return text
+    frame, whole, disk = found["final"].groups()
+    return (text[:begin] + DEMO_MARKS[0] + f"A frame costs {frame} CPU seconds (draft: {found['draft'].group(1)}), all 48 together "
+            f"{whole} CPU seconds and {disk} GB of disk.\n" + text[end:])
+
+
+def beside_peers(results, peers):
+    """Rows of the classic Cornell box, ours and others': CPU seconds, error with the noise of a reference such as theirs and without,
+    bias. Others' errors without it are at least what taking off PEERS_NOISE leaves: their reference's noise is that or less."""
+    file = results / "cornell.md"
+    ours = re.findall(r"^\| PC \|(.*)\|$", file.read_text(), re.M) if file.exists() else []
+    rows = []
+    for line in ours:
+        _asked, rmse, cpu, bias, _reached, settings = (cell.strip() for cell in line.split("|"))
+        raw = (float(rmse) ** 2 + PEERS_NOISE ** 2) ** 0.5
+        rows.append([f"tempolux, {settings}", cpu, f"{raw:.4f}"[1:], f"{float(rmse):.5f}"[1:], bias.split(" +-")[0]])
+    for peer in peers:
+        least = [max(0.0, float(v) ** 2 - PEERS_NOISE ** 2) ** 0.5 for v in peer["rmse"].split(" / ")]
+        rows.append([peer["work"], peer["cpu_s"], peer["rmse"], "at least " + " / ".join(f"{v:.4f}"[1:] for v in least), peer["bias"]])
+    return table(["", "CPU s", "RMSE, raw", "RMSE without the reference's noise", "bias"], rows) if ours else ""
+
+
+def readme(text, results, peers):
+    """The README's text with the cost of its demo and its rows of the Cornell box, which are those of the folder `results`; as it is
+    where either lacks them."""
+    text = demo_cost(text, results)
+    begin, end = (text.find(mark) for mark in MARKS)
+    rows = beside_peers(results, peers)
+    return text[:begin] + MARKS[0] + rows + text[end:] if begin >= 0 and end >= 0 and rows else text
+
+
+# ---- the page
+
+def said(bench, name, found):
+    """(verdict, commit of the measurement and its age). A verdict on code that has changed too often since is expired."""
+    commit = found["machine"].rsplit(" ", 1)[-1]
+    newer = changes_since(bench.project, commit, name)
+    if newer is None:
+        return verdict(found["met"]), f"{commit}, age unknown"
+    text = verdict(found["met"])
+    if newer > MOST_CHANGES and found["met"] is not None:
+        text = f"expired ({text})"
+    return text, f"{commit}, {newer} changes ago" if newer else commit
+
+
+def summary(bench, found, figures, left_out, command, link):
     """A row for each required figure, those too that have not been measured."""
-    rows = [[f["title"], f["asked"], verdict(f["met"]), "; not again: ".join(filter(None, (age(bench, f["machine"]), left_out.get(name))))] if f else
-            [figures[name].__doc__.splitlines()[0].rstrip("."), f"`{command} --only {name}`", "**not measured**",
-             left_out.get(name, "")] for name, f in found.items()]
-    return "## Required figures\n\n" + table(["what", "asked", "verdict", "at commit"], rows) + "\n"
+    rows = []
+    for name, f in found.items():
+        if not f:
+            rows.append([figures[name].__doc__.splitlines()[0].rstrip("."), f"`{command} --only {name}`", "", "**not measured**",
+                         left_out.get(name, "")])
+            continue
+        judged, when = said(bench, name, f)
+        rows.append([f"[{f['title']}]({link}/{name}.md)", f["asked"], f.get("measured", ""), judged,
+                     "; not again: ".join(filter(None, (when, left_out.get(name))))])
+    return "## Required figures\n\n" + table(["what", "asked", "measured", "verdict", "at commit"], rows) + "\n"
 
 
-def write(bench, page, docs, peers_source, figures, command, left_out):
-    """`left_out`: why a part was not measured this time."""
+def write(bench, page, docs, peers, figures, command, left_out):
+    """The page and all files beside it. `left_out`: why a part was not measured this time. `peers`: of peers.json."""
+    results = docs / "results"
+    results.mkdir(parents=True, exist_ok=True)
+    curves(bench, docs, command)
+    found = {name: latest(bench, docs, name) for name in figures}
+    for name, f in found.items():
+        if f:
+            (results / f"{name}.md").write_text(section(name, f, command).rstrip("\n") + "\n")
+    link = results.relative_to(page.parent) if results.is_relative_to(page.parent) else results
+    expired = sum(said(bench, name, f)[0].startswith("expired") for name, f in found.items() if f)
     text = f"""# Results
 
-Written by `{command}` (tests/bench/bench.py); every number below comes out of it, `--only NAME` measures one part again.
-CPU seconds are user and system time of all threads; bare walk: the processor's speed, photons that tests/bench/bare_walk, Embree alone, sends through S2 in a CPU second of one thread. Cycles' rows: {peers_source}.
+Written by `{command}` (tests/bench/bench.py); every number comes out of it, `--only NAME` measures one part again. Details: {link}, a file for each part.
+
+CPU seconds are user and system time of all threads and processes. Normalised: x (bare walk measured in the same run, million photons
+per CPU second of one thread: tests/bench/bare_walk, Embree alone on S2) / 5; absolute limits are in these, comparisons are of one run. Rows called
+preset are the shipped ones, the same for every scene; a row with settings of its own says so. A verdict is the latest run's; it expires after {MOST_CHANGES} changes
+of the code that it judges ({expired} have).
 
 """
-    files = {name: bench.out / f"{name}.json" for name in figures}
-    before = kept(page)
-    found = {name: json.loads(file.read_text()) if file.exists() else before.get(name) for name, file in files.items()}
-    text += summary(bench, found, figures, left_out, command)
-    text += curves(bench, docs, page, command) or f"{CURVES}\nNot measured: `{command} --only sweep`\n\n"
-    text += FIGURES_IN_FULL + "\n" + "".join(section(name, f, command) for name, f in found.items() if f)
-    page.write_text(text.rstrip("\n") + "\n")
+    text += summary(bench, found, figures, left_out, command, link)
+    every = bench_notes(found.get("everyscene"))
+    if every:
+        text += f"## Every scene, preset final against our path tracer\n\n{every}\n"
+    rows = beside_peers(results, peers["cornell"])
+    if rows:
+        text += f"## Beside other renderers: classic Cornell box, 256x256\n\nOthers: {peers['source_cornell']}.\n\n{rows}\n"
+    text += plots(docs, page)
+    text = text.rstrip("\n") + "\n"
+    if text.count("\n") > LINES:
+        raise SystemExit(f"{page}: {text.count(chr(10))} lines, more than {LINES}: shorten what results_page.py puts there")
+    page.write_text(text)
+
+
+def bench_notes(found):
+    """The sentences of part everyscene, as a list."""
+    if not found:
+        return ""
+    notes = found["notes"] if "notes" in found else re.findall(r"^(?!\||#|`|Asked:|<)(\S.*)$", found["text"], re.M)
+    return "".join(f"- {note}\n" for note in notes)

@@ -15,11 +15,11 @@ LAYERS = {"S1": [None, "indirect"], "S2": [None, "indirect"], "S3": [None]}   # 
 
 
 def photon_counts(bench):
-    return [10**4, 10**5] if bench.quick else [10**4, 3 * 10**4, 10**5, 3 * 10**5, 10**6, 3 * 10**6, 10**7]
+    return [10**4, 10**5] if bench.tiny else [10**4, 3 * 10**4, 10**5, 3 * 10**5, 10**6, 3 * 10**6, 10**7]
 
 
 def sample_counts(bench):
-    return [1, 4] if bench.quick else [1, 2, 4, 8, 16, 32, 64, 128, 256]
+    return [1, 4] if bench.tiny else [1, 2, 4, 8, 16, 32, 64, 128, 256]
 
 
 def growing_neighbours(photons):
@@ -30,7 +30,7 @@ def growing_neighbours(photons):
 def photon_run(bench, name, photons, neighbours, seed):
     """photon-trace, then frame-render that looks the map up directly; frame and the statistics of both."""
     scene, frame = bench.scene(name)
-    samples = 2 if bench.quick else 16
+    samples = 2 if bench.tiny else 16
     options = ["--photons", photons, "--neighbours", neighbours, "--spp", samples, "--seed", seed, "--size", bench.size]
 
     def make(stem):
@@ -72,7 +72,7 @@ def gathering_curves(bench):
     the error bound also with other rules for radii (--radii, --free-radii)."""
     def run(settings_of):
         return lambda name, x, seed: chain.frame(bench, name, seed, settings_of(x))
-    short = bench.quick
+    short = bench.tiny
     return [
         ("gathering, all together", [0, 1] if short else range(6), run(together)),
         ("gathering, photons", [10**4, 2 * 10**4] if short else [10**4, 3 * 10**4, 10**5, 3 * 10**5, 10**6],
@@ -102,12 +102,12 @@ def curves(bench):
 def measure(bench, peers):
     """Runs every point, has error-report draw the curves; the folder of the report."""
     runs, points = [], []
-    for name in (["S1"] if bench.quick else FRAMES):
+    for name in (["S1"] if bench.tiny else FRAMES):
         halves = bench.reference_halves(name)
         for curve, values, make in curves(bench):
             print(f"  {name}: {curve}", flush=True)
             for x in values:
-                for seed in ([1] if bench.quick or (curve == "path tracing" and x > 16) or curve.startswith("gathering") or x > 10**5
+                for seed in ([1] if bench.tiny or (curve == "path tracing" and x > 16) or curve.startswith("gathering") or x > 10**5
                              else [1, 2]):
                     image, stats = make(name, x, seed)
                     for layer in LAYERS[name]:

@@ -27,7 +27,7 @@ def compared(bench, tools, rounds):
 
 
 def result(bench, title, tools, rounds, base):
-    quiet = True if bench.quick else wait_for_quiet(120)
+    quiet = True if bench.tiny else wait_for_quiet(120)
     load = os.getloadavg()[0]
     try:
         rows, met = compared(bench, tools, rounds)
@@ -40,7 +40,7 @@ def result(bench, title, tools, rounds, base):
     return figure(title, "1.8x in wall time",
                   ["", "1 thread, wall s", "2 threads, wall s", "ratio", "CPU s of 2 threads / 1",
                    "other phases, share of elapsed time with 2 threads"], rows,
-                  met if quiet and not bench.quick else None, notes)
+                  met if quiet and not bench.tiny else None, notes)
 
 
 def threads(bench, _):
@@ -48,11 +48,11 @@ def threads(bench, _):
     scene, frame = bench.scene("S2")
     base = f"{bench.memory}/tempolux-bench-{os.getpid()}"
     photon_map, points, cache, image = (f"{base}.{end}" for end in ("photons", "irradpoints", "irradcache", "exr"))
-    photons = 20000 if bench.quick else 2 * 10**6
+    photons = 20000 if bench.tiny else 2 * 10**6
     render = ["frame-render", scene, "--frame", frame, "--size", bench.size, "-o", image]
     tools = [("photon-trace", ["photon-trace", scene, "--frame", frame, "--photons", photons, "-o", photon_map]),
              ("irradcache-build points", ["irradcache-build", "points", scene, "--frame", frame, "--photons", photon_map,
-                                          *(["--point-count", "2k"] if bench.quick else []), "-o", points]),
+                                          *(["--point-count", "2k"] if bench.tiny else []), "-o", points]),
              ("irradcache-build records", ["irradcache-build", "records", scene, "--frame", frame, "--points", points, "--size",
                                            bench.size, "-o", cache]),
              ("frame-render, cache", [*render, "--irradcache", cache, "--points", points]),
@@ -65,5 +65,5 @@ def million_threads(bench, _):
     """The same on a million triangles at 960x540."""
     file, triangles = million.scene(bench)
     base = f"{bench.memory}/tempolux-bench-{os.getpid()}"
-    tools = million.processes(bench, file, "96x54" if bench.quick else "960x540", base)[1:]     # scene-plan has no such phase
-    return result(bench, f"The same on {triangles} triangles, 960x540", tools, 1 if bench.quick else 7, base)
+    tools = million.processes(bench, file, "96x54" if bench.tiny else "960x540", base)[1:]     # scene-plan has no such phase
+    return result(bench, f"The same on {triangles} triangles, 960x540", tools, 1 if bench.tiny else 7, base)

@@ -18,6 +18,9 @@ aqm-compare in/x.exr --reference-halves in/r_a.exr in/r_b.exr -q --json in/e.jso
 each_tool() {
   "$1" scene-plan scene-plan "$scene" --frames 0-5 -o plan
   "$1" photon-trace photon-trace "$mirror" --photons 100k -o a.photons
+  "$1" photonmap-split photonmap-split "$in/p.irradpoints" --low a.irradpoints --high b.irradpoints
+  "$1" photonmap-split-photons photonmap-split "$in/p.photons" --energy 2 --low a.photons --high b.photons
+  "$1" photonmap-split-kinds photonmap-split "$in/p.photons" --kind caustic -o a.photons --rest b.photons
   "$1" irradcache-build irradcache-build "$mirror" --photons "$in/p.photons" --point-count 1k --rays 50 --size 64x36 \
     --keep-points a.irradpoints -o a.irradcache
   "$1" irradcache-build-records irradcache-build records "$mirror" --points "$in/p.irradpoints" --records "$in/c.irradcache" \

@@ -154,6 +154,12 @@ def make_points():
         for i, q in enumerate(p.points):
             q.irradiance = {kind: (i + 0.5, 3 * i, 1e-3) for kind in kinds.split(",")}
         m.save("accept/kinds-" + kinds.replace(",", "-"), p)
+    for part in ("low", "high"):
+        m.save("accept/part-" + part, m.with_header(part=part))
+    m.headers({"part-unknown": {"part": "middle"}, "part-empty": {"part": ""}})
+    text = m.pieces(m.bytes)[0][16:-4]
+    m.save("refuse/header-part-of-a-later-version", m.with_text(text + b"part: low\n"))
+    m.save("refuse/header-key-unknown-1.1", m.with_text(text + b"colour-of-ink: blue\n", minor=1))
     empty = copy.deepcopy(good)
     empty.points = []
     m.save("accept/no-points", empty)

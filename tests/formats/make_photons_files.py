@@ -91,6 +91,8 @@ def accept():
     example.history = ["example"]
     save("accept/worked-example", example)
     save("accept/identity-with-emission", photons(**IDENTITY, emission="d4"))
+    save("accept/part-low", photons(part="low"))
+    save("accept/part-high-with-emission", photons(part="high", **IDENTITY, emission="d4"))
     save("accept/no-identity", photons())
     no_history = photons()
     no_history.history = []
@@ -119,6 +121,8 @@ def refuse_headers():
     save("refuse/header-checksum", GOOD.replace(b"emitted: 4", b"emitted: 5"))
     save("refuse/header-key-unknown", header_bytes(TEXT + b"colour-of-ink: blue\n"))
     save("refuse/header-key-of-a-later-version", header_bytes(TEXT + b"frames: 0 23\nemission: d4\n"))
+    save("refuse/header-part-of-a-later-version", header_bytes(TEXT + b"part: low\n", minor=1))
+    save("refuse/header-key-unknown-1.2", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=2))
     save("refuse/header-key-unknown-1.1", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=1))
     save("refuse/header-key-missing", header_bytes(TEXT.replace(b"groups: 1\n", b"")))
     save("refuse/header-key-twice", header_bytes(TEXT + b"groups: 1\n"))
@@ -128,6 +132,7 @@ def refuse_headers():
     for name, values in {
             "map-unknown": {"map": "local"}, "kinds-unknown": {"kinds": "direct,purple"}, "kinds-empty": {"kinds": ""},
             "kinds-twice": {"kinds": "caustic,caustic"}, "columns-unknown": {"columns": "albedo,direction"},
+            "part-unknown": {"part": "middle"}, "part-empty": {"part": ""},
             "origin-of-two-numbers": {"origin": "0 0"}, "origin-nan": {"origin": "0 nan 0"},
             "origin-infinite": {"origin": "0 1e999 0"}, "groups-zero": {"groups": "0"},
             "groups-above-limit": {"groups": "16777217"}, "groups-negative": {"groups": "-1"},

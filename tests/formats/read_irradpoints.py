@@ -24,9 +24,12 @@ RECORD = struct.Struct("<3f2HHBBf")             # section 3: position, normal, o
 IRRADIANCE = struct.Struct("<3f")               # section 4
 END = "<Q9d"                                    # section 5, without mark and chain
 KINDS = ["direct", "caustic", "indirect"]
-KEYS = ["kinds", "origin", "spacing", "emitted"]
+REQUIRED = ["kinds", "origin", "spacing", "emitted"]
+KEYS = ["kinds", "part", "origin", "spacing", "emitted"]
+SINCE = {"part": 1}                              # section 9
 RULES = {
     "kinds": lambda v: v != "" and ",".join(k for k in KINDS if k in v.split(",")) == v,
+    "part": lambda v: v in ("low", "high"),
     "spacing": lambda v: (reals(v, 1) or [0])[0] > 0,
     "emitted": lambda v: integers(v, 1, 0, 2**64 - 1),
 }
@@ -60,8 +63,8 @@ def is_good(point):
 
 
 def read_irradpoints(path):
-    header, history, blocks, end = read_container(path, MAGIC, MARK, KEYS, RULES,
-                                                  lambda h: [RECORD.size] + [IRRADIANCE.size] * len(kinds_of(h)), END)
+    header, history, blocks, end = read_container(path, MAGIC, MARK, REQUIRED, RULES,
+                                                  lambda h: [RECORD.size] + [IRRADIANCE.size] * len(kinds_of(h)), END, SINCE)
     points = []
     for offset, _, parts in blocks:
         columns = list(zip(*(IRRADIANCE.iter_unpack(column) for column in parts[1:])))
@@ -89,7 +92,8 @@ def encode_irradpoints(p):
         parts = [b"".join(RECORD.pack(*q.position, *q.normal, q.object, q.set, 0, q.radius) for q in points)]
         parts += [b"".join(IRRADIANCE.pack(*q.irradiance[kind]) for q in points) for kind in kinds_of(p.header)]
         blocks.append((len(points), parts))
-    return encode_container(MAGIC, MARK, KEYS, p.header, p.history, blocks, struct.pack(END, *totals(p)))
+    return encode_container(MAGIC, MARK, KEYS, p.header, p.history, blocks, struct.pack(END, *totals(p)),
+                            int("part" in p.header))
 
 
 def write_irradpoints(path, p):

@@ -32,7 +32,8 @@ KINDS = ["direct", "caustic", "indirect", "volume"]
 COLUMNS = {"none": [], "direction": ["direction"], "albedo": ["albedo"], "direction,albedo": ["direction", "albedo"]}
 HASHES = ["static-geometry", "moving-geometry", "materials", "lights", "media", "emission"]
 REQUIRED = ["map", "kinds", "columns", "origin", "groups", "emitted"]
-KEYS = REQUIRED + ["frames"] + HASHES + ["base", "base-digest"]          # and history
+KEYS = REQUIRED[:2] + ["part"] + REQUIRED[2:] + ["frames"] + HASHES + ["base", "base-digest"]          # and history
+SINCE = {"emission": 1, "part": 2}              # minor version; all others: 0
 
 
 @dataclasses.dataclass
@@ -75,9 +76,9 @@ def parse_text(text, minor):                                              # sect
             history.append(value)
         elif key in header:
             refuse(16, f"key twice: {key}")
-        elif key in KEYS and (key != "emission" or minor > 0):
+        elif key in KEYS and minor >= SINCE.get(key, 0):
             header[key] = value
-        elif minor <= 1:
+        elif minor <= 2:
             refuse(16, f"unknown key: {key}")
     for key in REQUIRED:
         if key not in header:
@@ -99,6 +100,7 @@ def check_header(h):
     rules = {
         "map": h["map"] in ("global", "static", "dynamic"),
         "kinds": all(k in KINDS for k in kinds) and len(set(kinds)) == len(kinds),
+        "part": h.get("part", "low") in ("low", "high"),
         "columns": h["columns"] in COLUMNS,
         "origin": re.fullmatch(" ".join([number] * 3), h["origin"]) and
                   all(math.isfinite(float(x)) for x in h["origin"].split(" ")),
@@ -248,7 +250,7 @@ def encode_photons(p):
     """The bytes of a file."""
     lines = [f"{key}: {p.header[key]}\n" for key in KEYS if key in p.header] + [f"history: {h}\n" for h in p.history]
     text = "".join(lines).encode()
-    head = struct.pack("<8sHHI", MAGIC, 1, int("emission" in p.header), len(text)) + text
+    head = struct.pack("<8sHHI", MAGIC, 1, max(SINCE.get(key, 0) for key in p.header), len(text)) + text
     crcs = struct.pack("<I", zlib.crc32(head))
     out = [head, crcs]
     for b in p.blocks:

@@ -10,7 +10,10 @@ if [ "$1" = --one ]; then   # one target, built already
   found=build/fuzz/found/$target known=build/fuzz/known/$target
   mkdir -p "$found" "$known"
   folders="tests/fuzz/corpus/$target"
-  case $target in photons | irradpoints | irradcache) folders="$folders tests/formats/$target" ;; esac
+  case $target in
+    photons | irradpoints | irradcache) folders="$folders tests/formats/$target" ;;
+    gltf) folders="$folders tests/data/packed" ;;
+  esac
   set --
   for folder in $folders; do [ -d "$folder" ] && set -- "$@" "$folder"; done
   # Memory: 2 GB in all, no single piece above 512 MB. A run of more than 10 seconds counts as hanging.
@@ -25,6 +28,6 @@ targets=${FUZZ_TARGETS:-photons irradpoints irradcache report gltf pictures argu
 command -v clang++ > /dev/null || { echo 'fuzz: needs clang++ (Debian: apt-get install clang)' >&2; exit 2; }
 test -f build/fuzz/build.ninja || cmake --preset fuzz > /dev/null || exit 2
 # shellcheck disable=SC2046
-cmake --build build/fuzz --target $(printf '%s_fuzz ' $targets) || exit 2
+cmake --build build/fuzz --target tempolux-decode $(printf '%s_fuzz ' $targets) || exit 2
 # shellcheck disable=SC2086
 printf '%s\n' $targets | xargs -n 1 -P "$(nproc)" sh tests/fuzz/run.sh --one || exit 1

@@ -1,11 +1,13 @@
-"""OpenEXR, uncompressed scan lines, in the standard library: what the cases write and what they read back.
+"""OpenEXR, scan lines, uncompressed or ZIP, in the standard library: what the cases write and what they read back.
 
 formats/frames/frames.md describes the files; tests/lib/image/read_frame.py is a reader to learn from, this one is
 for whole images: read(path) -> Image, write(path, width, height, channels).
 """
 import array
+import itertools
 import math
 import struct
+import zlib
 
 UINT, HALF, FLOAT = 0, 1, 2
 CODES = {UINT: "I", HALF: "e", FLOAT: "f"}
@@ -14,6 +16,7 @@ CODES = {UINT: "I", HALF: "e", FLOAT: "f"}
 class Image:
     def __init__(self, width, height, channels):
         self.width, self.height, self.channels = width, height, channels     # name: array, lines from the top
+        self.attributes = {}                                                 # name: its bytes
 
     def rgb(self, layer=""):
         """R, G, B one after the other."""
@@ -54,8 +57,9 @@ def read(path):
         (size,) = struct.unpack_from("<i", data, at)
         attributes[name] = data[at + 4:at + 4 + size]
         at += 4 + size
-    if attributes["compression"] != b"\0":
-        raise ValueError(f"{path}: compressed; render with --compression none")
+    lines = {b"\0": 1, b"\3": 16}.get(attributes["compression"])           # of a block: no compression, ZIP
+    if lines is None:
+        raise ValueError(f"{path}: compressed neither by ZIP nor not at all")
     x0, y0, x1, y1 = struct.unpack("<4i", attributes["dataWindow"])
     width, height = x1 - x0 + 1, y1 - y0 + 1
     names, raw, place = [], attributes["channels"], 0
@@ -64,17 +68,36 @@ def read(path):
         names.append((raw[place:end].decode(), struct.unpack_from("<i", raw, end + 1)[0]))
         place = end + 17
     channels = {name: array.array("I" if kind == UINT else "f") for name, kind in names}
-    for offset in struct.unpack_from(f"<{height}Q", data, at + 1):
-        start = offset + 8
-        for name, kind in names:
-            size = width * (2 if kind == HALF else 4)
-            line = data[start:start + size]
-            if kind == HALF:
-                channels[name].extend(struct.unpack(f"<{width}e", line))
-            else:
-                channels[name].frombytes(line)
-            start += size
-    return Image(width, height, channels)
+    line = sum(width * (2 if kind == HALF else 4) for _, kind in names)
+    for block, offset in enumerate(struct.unpack_from(f"<{-(-height // lines)}Q", data, at + 1)):
+        count = min(lines, height - block * lines)
+        size, = struct.unpack_from("<i", data, offset + 4)
+        raw, start = data[offset + 8:offset + 8 + size], 0
+        if size < count * line:                                              # a block that ZIP would not make smaller is stored
+            raw = unzipped(raw)
+        for _ in range(count):
+            for name, kind in names:
+                size = width * (2 if kind == HALF else 4)
+                values = raw[start:start + size]
+                if kind == HALF:
+                    channels[name].extend(struct.unpack(f"<{width}e", values))
+                else:
+                    channels[name].frombytes(values)
+                start += size
+    image = Image(width, height, channels)
+    image.attributes = attributes
+    return image
+
+
+def unzipped(block):
+    """Undoes OpenEXR's ZIP: deflate; differences of bytes, with 128 added; the even bytes first, then the odd ones.
+    The byte at i is (sum of all up to it) - 128 i modulo 256: of odd i the top bit is turned."""
+    sums = array.array("Q", itertools.accumulate(zlib.decompress(block)))
+    data = bytearray(sums.tobytes()[::8])                                    # the low bytes, as the processor is little-endian
+    data[1::2] = data[1::2].translate(bytes(b ^ 128 for b in range(256)))
+    half, result = (len(data) + 1) // 2, bytearray(len(data))
+    result[0::2], result[1::2] = data[:half], data[half:]
+    return bytes(result)
 
 
 def write(path, width, height, channels):

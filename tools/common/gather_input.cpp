@@ -32,11 +32,18 @@ void check_kinds(Tool& tool, const std::string& file, const std::string& kinds, 
   }
 }
 
+/// A part of the light taken for all of it would be light lost without a word.
+void refuse_part(const std::string& file, const std::string& part) {
+  if (!part.empty())
+    throw InputError(file + ": holds the " + part + " part of the light alone (photonmap-split); give the whole");
+}
+
 }  // namespace
 
 GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame) {
   tool.depends_on(file);
   const formats::IrradpointsFile in = formats::load_irradpoints(file);
+  refuse_part(file, in.header.part);
   check_identity(tool, file, in.header.identity, frame);
   check_kinds(tool, file, in.header.kinds, {"direct", "caustic", "indirect"}, frame, "make the points again");
   return {from_file(in.records, shift_of(in.header.origin, frame)), float(in.header.spacing), in.header.kinds,
@@ -49,6 +56,7 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
   if (map.header.map != "global")
     throw InputError(file + ": a " + map.header.map +
                      " map is a part of the scene's light; give a global one, as photon-trace writes it");
+  refuse_part(file, map.header.part);
   check_identity(tool, file, map.header.identity, frame);
   const std::vector<std::string> kinds = needed == LightNeeded::all ? std::vector<std::string>{"indirect", "caustic"}
                                                                     : std::vector<std::string>{"caustic"};

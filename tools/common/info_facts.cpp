@@ -1,13 +1,11 @@
 #include "tools/common/info_facts.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "formats/error.h"
+#include "tools/common/file_head.h"
 
 namespace tempolux::tools {
 namespace {
@@ -89,37 +87,8 @@ Facts identity_facts(const formats::Identity& identity) {
   return facts;
 }
 
-namespace {
-
-constexpr std::size_t kHeadBytes = 16;
-
-/// The first bytes of standard input, which stay to be read: of a file, or of a pipe.
-std::string head_of_stdin() {
-  char bytes[kHeadBytes];
-  ssize_t size = ::pread(STDIN_FILENO, bytes, sizeof bytes, std::max<off_t>(0, ::lseek(STDIN_FILENO, 0, SEEK_CUR)));
-  int copy[2];
-  if (size < 0 && ::pipe(copy) == 0) {
-    size = ::tee(STDIN_FILENO, copy[1], sizeof bytes, 0);
-    if (size > 0) size = ::read(copy[0], bytes, std::size_t(size));
-    ::close(copy[0]);
-    ::close(copy[1]);
-  }
-  return std::string(bytes, std::size_t(std::max<ssize_t>(size, 0)));
-}
-
-std::string head_of(const std::string& path) {
-  std::FILE* file = std::fopen(path.c_str(), "rb");
-  if (!file) throw InputError(path + ": cannot be opened; is the name right?");
-  char bytes[kHeadBytes] = {};
-  const std::size_t size = std::fread(bytes, 1, sizeof bytes, file);
-  std::fclose(file);
-  return std::string(bytes, size);
-}
-
-}  // namespace
-
 FileType file_type(const std::string& path) {
-  const std::string head = path == "-" ? head_of_stdin() : head_of(path);
+  const std::string head = head_of(path);
   const std::size_t size = head.size();
   if (head.starts_with("\x89TPHOT")) return FileType::photons;
   if (head.starts_with("\x89TIRPT")) return FileType::irradpoints;

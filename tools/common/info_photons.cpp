@@ -30,6 +30,7 @@ Facts header_facts(const PhotonHeader& header) {
   Facts facts = {
       {"map", header.map},         {"kinds", header.kinds},        {"columns", column_names(header.columns)},
       {"origin_m", header.origin}, {"groups", header.group_count}, {"emitted_paths", header.emitted_count}};
+  if (!header.part.empty()) facts["part"] = header.part;
   if (!header.base_name.empty()) {
     facts["overlay_of"] = header.base_name;
     facts["base_digest"] = header.base_digest;

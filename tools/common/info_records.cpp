@@ -43,10 +43,12 @@ void add_census(const RecordCensus& census, const char* what, Facts& facts) {
 }
 
 Facts header_facts(const IrradpointsHeader& header) {
-  return {{"kinds", header.kinds},
-          {"origin_m", header.origin},
-          {"spacing_m", header.spacing},
-          {"emitted_paths", header.emitted_count}};
+  Facts facts = {{"kinds", header.kinds},
+                 {"origin_m", header.origin},
+                 {"spacing_m", header.spacing},
+                 {"emitted_paths", header.emitted_count}};
+  if (!header.part.empty()) facts["part"] = header.part;
+  return facts;
 }
 
 std::string column_names(std::uint32_t columns) {

@@ -26,6 +26,19 @@ constexpr ManualText kTexts[] = {
      "# A map for each frame of a range; the scene is read once.\n"
      "photon-trace room.glb --frames 0-47 -o map.####.photons",
      "scene-plan irradcache-build tempolux-info"},
+    {"photonmap-split",
+     "Divides the light of photons or irradiance points in two files that add up to the whole to the last bit. By "
+     "brightness: cells of a grid keep so much light as --energy or --limit allows, and of every record there the same "
+     "share goes to the high part, which can then be sampled like lamps. Or by kind of path: --kind. Cells are added up "
+     "without rounding, so neither the order of the records nor blocks nor threads matter. Photons from a pipe are kept "
+     "in a temporary file beside the low part, as they are read twice.",
+     ".photons: read and written (formats/photons/photons.md)\n"
+     ".irradpoints: read and written (formats/irradpoints/irradpoints.md)",
+     "photonmap-split 12.irradpoints --low low.irradpoints --high high.irradpoints\n"
+     "photon-trace room.glb --photons 200k -o - | photonmap-split - --low low.photons --high high.photons --energy 8\n"
+     "# One kind of light, for a stage that wants no other.\n"
+     "photonmap-split 12.photons --kind caustic -o caustic.photons --rest others.photons",
+     "photon-trace irradcache-build tempolux-info"},
     {"irradcache-build",
      "Spreads irradiance points over all surfaces and estimates from photons how much light arrives at each (points); "
      "gathers indirect light in records where a camera needs them, densely where it changes (records); or both in one "

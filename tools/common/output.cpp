@@ -337,6 +337,7 @@ const std::string& Output::path() const { return state_->path; }
 const std::string& Output::temporary_path() const { return state_->temporary_path; }
 bool Output::is_stdout() const { return state_->path == "-"; }
 std::ostream& Output::stream() { return state_->stream; }
+void Output::flush() { state_->flush_buffer(); }
 
 void Output::write(const void* data, std::size_t size) { state_->put(static_cast<const char*>(data), size); }
 

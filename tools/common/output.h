@@ -35,6 +35,9 @@ class Output {
   void write(const void* data, std::size_t size);
   std::ostream& stream();  ///< the same buffer as a std::ostream; errors throw as above
 
+  /// What was written so far can be read at temporary_path(). Throws as write().
+  void flush();
+
   /// Flush, fsync, close (checked), rename, fsync the folder. Throws ResourceError, and InputError under
   /// no_clobber if the name has been taken meanwhile. Nothing may be written after it.
   void commit();

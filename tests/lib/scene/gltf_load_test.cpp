@@ -1,6 +1,7 @@
 // tests/lib/scene/gltf_load_test.cpp -- what a glTF file says, as plain data.
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "tests/lib/scene/gltf_maker.h"
 
@@ -42,11 +43,12 @@ TEST(GltfLoad, AllMadeScenesLoadWithTheirTriangles) {
     }
     ++count;
   }
-  EXPECT_EQ(count, 16);
+  EXPECT_GE(count, 17);
 }
 
 TEST(GltfLoad, FoundFilesLoadOrSayWhatIsNotSupported) {
   if (shared_scenes().empty()) GTEST_SKIP() << "../shared/scenes is not there";
+  std::set<std::string> refused;
   int loaded = 0;
   for (const auto& entry : fs::recursive_directory_iterator(shared_scenes() / "found")) {
     const std::string extension = entry.path().extension();
@@ -59,9 +61,12 @@ TEST(GltfLoad, FoundFilesLoadOrSayWhatIsNotSupported) {
       EXPECT_TRUE(message.find("is not supported; ") != std::string::npos ||
                   message.find("nothing to render") != std::string::npos)
           << message;
+      refused.insert(entry.path().filename());
     }
   }
-  EXPECT_EQ(loaded, 30);  // of 35: three compressed, one with a retired extension, one without meshes
+  // Lamps without a mesh, and a file that requires a retired extension. Draco, meshopt and WebP are unpacked.
+  EXPECT_EQ(refused, (std::set<std::string>{"14_emission_strength.gltf", "four_spotlights.glb"}));
+  EXPECT_GE(loaded, 40);
 }
 
 TEST(GltfLoad, TheAtriumHasItsGlassAndNothingIsLeftOut) {

@@ -72,7 +72,7 @@ TEST(GltfTexture, WhatCannotBeUsedIsRefused) {
                         Case{{{"uri", "data:image/png;base64,!!!!"}}, "not base64"},
                         Case{{{"name", "x"}}, "neither uri nor bufferView"},
                         Case{{{"bufferView", 77}}, "does not exist"},
-                        Case{{{"uri", data_uri("RIFF1234WEBPVP8 ")}}, "is WebP"},
+                        Case{{{"uri", data_uri("RIFF1234WEBPVP8 ")}}, "the WebP is damaged"},
                         Case{{{"uri", data_uri("abc")}}, "neither PNG nor JPEG"},
                         Case{{{"uri", data_uri(bomb)}}, "over the limit"}}) {
     const std::string error = load_error(write_file("bad.gltf", textured(c.image).text()));

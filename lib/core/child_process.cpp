@@ -1,0 +1,318 @@
+#include "lib/core/child_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <new>
+#include <system_error>
+#include <thread>
+
+#include "formats/error.h"
+#include "lib/core/module_folders.h"
+
+namespace tempolux {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kMemoryIsLimited = false;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+constexpr bool kMemoryIsLimited = false;
+#else
+constexpr bool kMemoryIsLimited = true;
+#endif
+#else
+constexpr bool kMemoryIsLimited = true;
+#endif
+
+/// Of a helper's words only the first line is passed on; the rest is read and dropped, so that it does not wait.
+constexpr std::size_t kMostWords = 1024;
+constexpr std::size_t kPiece = 1 << 16;  ///< what a pipe of Linux holds
+
+[[noreturn]] void fail(const std::string& program, const std::string& what, int error) {
+  throw ResourceError(program + ": " + what + ": " + std::strerror(error));
+}
+
+/// A file descriptor that is closed at the end.
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number() const { return number_; }
+  void reset(int number) {
+    close();
+    number_ = number;
+  }
+  void close() {
+    if (number_ >= 0) ::close(number_);
+    number_ = -1;
+  }
+
+ private:
+  int number_;
+};
+
+/// Two ends of a stream; none survives into a program that another thread starts.
+struct Stream {
+  Descriptor ours, theirs;
+};
+
+/// A socket, not a pipe: writing to one that the reader has closed is an error code where a pipe would send SIGPIPE.
+void open_input(const std::string& program, Stream& stream) {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    fail(program, "no socket for its input", errno);
+  stream.ours.reset(ends[0]);
+  stream.theirs.reset(ends[1]);
+}
+
+void open_output(const std::string& program, Stream& stream) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(program, "no pipe for its output", errno);
+  stream.ours.reset(ends[0]);
+  stream.theirs.reset(ends[1]);
+}
+
+/// How posix_spawn is to start the helper.
+class SpawnPlan {
+ public:
+  SpawnPlan(const Stream& input, const Stream& output, const Stream& words) {
+    ::posix_spawn_file_actions_init(&files_);
+    ::posix_spawnattr_init(&attributes_);
+    ::posix_spawn_file_actions_adddup2(&files_, input.theirs.number(), STDIN_FILENO);
+    ::posix_spawn_file_actions_adddup2(&files_, output.theirs.number(), STDOUT_FILENO);
+    ::posix_spawn_file_actions_adddup2(&files_, words.theirs.number(), STDERR_FILENO);
+    ::posix_spawn_file_actions_addclosefrom_np(&files_, STDERR_FILENO + 1);
+    sigset_t all, none;
+    sigfillset(&all);
+    sigemptyset(&none);
+    ::posix_spawnattr_setsigdefault(&attributes_, &all);
+    ::posix_spawnattr_setsigmask(&attributes_, &none);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  }
+  ~SpawnPlan() {
+    ::posix_spawn_file_actions_destroy(&files_);
+    ::posix_spawnattr_destroy(&attributes_);
+  }
+  SpawnPlan(const SpawnPlan&) = delete;
+  SpawnPlan& operator=(const SpawnPlan&) = delete;
+
+  pid_t start(const std::string& program, const std::vector<std::string>& arguments) const {
+    std::vector<char*> words{const_cast<char*>(program.c_str())};
+    for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+    words.push_back(nullptr);
+    pid_t child = -1;
+    const int error = ::posix_spawn(&child, program.c_str(), &files_, &attributes_, words.data(), environ);
+    if (error != 0) fail(program, "cannot be started", error);
+    return child;
+  }
+
+ private:
+  posix_spawn_file_actions_t files_;
+  posix_spawnattr_t attributes_;
+};
+
+/// The running helper: killed and waited for at the end, if that has not happened before.
+class Child {
+ public:
+  explicit Child(pid_t child) : child_(child) {}
+  ~Child() {
+    if (!ended()) end();
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  /// Set from outside, before it has got any input: until then a helper does nothing that a file could turn to harm.
+  void limit(const std::string& program, const ChildLimits& limits) const {
+    const auto set = [&](__rlimit_resource resource, rlim_t soft, rlim_t hard) {
+      const rlimit both{soft, hard};
+      if (::prlimit(child_, resource, &both, nullptr) != 0 && errno != ESRCH) {
+        const int error = errno;
+        fail(program, "its limits cannot be set", error);
+      }
+    };
+    const rlim_t seconds = rlim_t(limits.processor_s);
+    if (kMemoryIsLimited) set(RLIMIT_AS, limits.memory_bytes, limits.memory_bytes);
+    set(RLIMIT_CPU, seconds, seconds + 1);
+    set(RLIMIT_FSIZE, 0, 0);
+    set(RLIMIT_CORE, 0, 0);
+  }
+
+  /// Waits until it has ended or the time is over; true if it has ended.
+  bool wait_until(Clock::time_point deadline) {
+    for (auto nap = 50us; !ended(); nap = std::min(2 * nap, std::chrono::microseconds(10ms))) {
+      if (Clock::now() >= deadline) return false;
+      std::this_thread::sleep_for(nap);
+    }
+    return true;
+  }
+
+  void end() {
+    ::kill(child_, SIGKILL);
+    while (!reap(0)) {
+    }
+  }
+
+  /// As waitpid gives it, once it has ended.
+  int status() const { return status_; }
+
+ private:
+  bool ended() { return ended_ || reap(WNOHANG); }
+
+  bool reap(int options) {
+    int status = 0;
+    const pid_t got = ::waitpid(child_, &status, options);
+    if (got == child_) status_ = status;
+    // ECHILD: this process ignores SIGCHLD, so the kernel has waited for it. How it ended is not known, its output must tell.
+    ended_ = got == child_ || (got < 0 && errno == ECHILD);
+    return ended_;
+  }
+
+  pid_t child_;
+  bool ended_ = false;
+  int status_ = 0;
+};
+
+std::string first_line(const std::string& words) {
+  std::string line = words.substr(0, words.find('\n'));
+  for (char& c : line)
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
+  return line;
+}
+
+/// How the helper ended, in words; "" for code 0.
+std::string ending(int status, const std::string& words, const ChildLimits& limits) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    if (signal == SIGXCPU) return "took more than " + std::to_string(limits.processor_s) + " s of processor time";
+    const char* name = ::sigdescr_np(signal);
+    return "died by signal " + std::to_string(signal) + (name ? " (" + std::string(name) + ")" : "");
+  }
+  const int code = WEXITSTATUS(status);
+  if (code == 0) return "";
+  const std::string line = first_line(words);
+  return line.empty() ? "ended with code " + std::to_string(code) : line;
+}
+
+/// The exchange with a running helper.
+class Exchange {
+ public:
+  Exchange(Stream& input, Stream& output, Stream& words, std::span<const unsigned char> to_write,
+           const ChildLimits& limits)
+      : input_(input.ours), output_(output.ours), words_(words.ours), to_write_(to_write), limits_(limits) {}
+
+  /// Until it has closed its outputs. Empty: it has; else why it must be ended.
+  std::string run(const std::string& program, Clock::time_point deadline) {
+    while (output_.number() >= 0 || words_.number() >= 0) {
+      if (to_write_.empty()) input_.close();
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+      if (left <= 0ms) return "gave no answer within " + std::to_string(limits_.wall_s) + " s";
+      std::array<pollfd, 3> ends{pollfd{input_.number(), POLLOUT, 0}, pollfd{output_.number(), POLLIN, 0},
+                                 pollfd{words_.number(), POLLIN, 0}};  // a negative number is passed over
+      const int ready = ::poll(ends.data(), ends.size(), int(std::min<std::int64_t>(left.count(), 1'000'000)));
+      if (ready < 0 && errno != EINTR) fail(program, "waiting for it", errno);
+      if (ready <= 0) continue;
+      if (ends[0].revents != 0) write_some();
+      if (ends[1].revents != 0 && !read_some(output_, [&](auto bytes) { return take_output(bytes); }))
+        return "printed more than " + std::to_string(limits_.output_bytes) + " bytes";
+      if (ends[2].revents != 0) read_some(words_, [&](auto bytes) { return take_words(bytes); });
+    }
+    return "";
+  }
+
+  std::vector<unsigned char> take() { return std::move(printed_); }
+  const std::string& words() const { return said_; }
+
+ private:
+  void write_some() {
+    const std::size_t count = std::min(to_write_.size(), kPiece);
+    const ssize_t sent = ::send(input_.number(), to_write_.data(), count, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent > 0) to_write_ = to_write_.subspan(std::size_t(sent));
+    if (sent < 0 && errno != EAGAIN && errno != EINTR) to_write_ = {};  // it reads no more
+  }
+
+  template <class Take>
+  bool read_some(Descriptor& from, Take take) {
+    const ssize_t got = ::read(from.number(), piece_.data(), piece_.size());
+    if (got > 0) return take(std::span(piece_).first(std::size_t(got)));
+    if (got == 0 || errno != EINTR) from.close();
+    return true;
+  }
+
+  bool take_output(std::span<const unsigned char> bytes) {
+    if (bytes.size() > limits_.output_bytes - printed_.size()) return false;
+    printed_.insert(printed_.end(), bytes.begin(), bytes.end());
+    return true;
+  }
+
+  bool take_words(std::span<const unsigned char> bytes) {
+    said_.append(reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), kMostWords - said_.size()));
+    return true;
+  }
+
+  Descriptor &input_, &output_, &words_;
+  std::span<const unsigned char> to_write_;
+  const ChildLimits& limits_;
+  std::vector<unsigned char> printed_;
+  std::string said_;
+  std::vector<unsigned char> piece_ = std::vector<unsigned char>(kPiece);
+};
+
+}  // namespace
+
+std::string helper_program(const std::string& name, const std::string& purpose) {
+  std::string looked;
+  for (const std::string& folder : default_module_folders()) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(folder + "/" + name, ignored)) return folder + "/" + name;
+    looked += (looked.empty() ? "" : ", ") + folder;
+  }
+  throw InputError(purpose + " needs " + name + ", which was not built or not installed (looked in " + looked +
+                   "); install all of tempolux together");
+}
+
+ChildResult run_child(const std::string& program, const std::vector<std::string>& arguments,
+                      std::span<const unsigned char> input, const ChildLimits& limits) {
+  const Clock::time_point deadline = Clock::now() + std::chrono::seconds(limits.wall_s);
+  Stream in, out, words;
+  open_input(program, in);
+  open_output(program, out);
+  open_output(program, words);
+  Child child(SpawnPlan(in, out, words).start(program, arguments));
+  for (Stream* stream : {&in, &out, &words}) stream->theirs.close();
+  child.limit(program, limits);
+  Exchange exchange(in, out, words, input, limits);
+  ChildResult result;
+  try {
+    result.trouble = exchange.run(program, deadline);
+  } catch (const std::bad_alloc&) {
+    throw ResourceError(program + ": not enough memory for what it prints");
+  }
+  if (result.trouble.empty() && !child.wait_until(deadline))
+    result.trouble = "did not end within " + std::to_string(limits.wall_s) + " s";
+  if (result.trouble.empty())
+    result.trouble = ending(child.status(), exchange.words(), limits);
+  else
+    child.end();
+  result.output = exchange.take();
+  return result;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,117 @@
+#include "lib/density/split_light.h"
+
+#include <cmath>
+
+namespace tempolux {
+namespace {
+
+using formats::IrradiancePointRecord;
+using formats::Photon;
+using formats::PhotonBlock;
+
+constexpr float kLeastDivided = 0x1p-100f;
+
+Vec3 vec(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+bool is_zero(const std::array<float, 3>& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+
+/// Appends photon i of a block with its columns.
+void append(PhotonBlock& to, const PhotonBlock& from, std::size_t i, const Photon& photon) {
+  to.photons.push_back(photon);
+  if (!from.directions.empty()) to.directions.push_back(from.directions[i]);
+  if (!from.albedos.empty()) to.albedos.push_back(from.albedos[i]);
+}
+
+struct DividedFlux {
+  std::array<float, 3> low, high;
+};
+DividedFlux divide_channels(const std::array<float, 3>& value, double share) {
+  DividedFlux parts{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const DividedValue part = divide(value[c], share);
+    parts.low[c] = part.low, parts.high[c] = part.high;
+  }
+  return parts;
+}
+
+}  // namespace
+
+DividedValue divide(float value, double share) {
+  if (share >= 1) return {value, 0};
+  if (share <= 0) return {0, value};
+  if (!(std::abs(value) >= kLeastDivided)) return share >= 0.5 ? DividedValue{value, 0} : DividedValue{0, value};
+  if (share >= 0.5) {
+    const float low = float(double(value) * share);
+    return {low, value - low};
+  }
+  const float high = float(double(value) * (1 - share));
+  return {value - high, high};
+}
+
+CellPlace place_of(const Photon& photon) {
+  return {vec(photon.position), vec(formats::decode_normal(photon.normal)), photon.object};
+}
+
+CellPlace place_of(const IrradiancePointRecord& point) {
+  return {vec(point.position), vec(formats::decode_normal(point.normal)), point.object};
+}
+
+void add_energy(const PhotonBlock& block, EnergyCells& cells) {
+  for (std::size_t i = 0; i < block.photons.size(); ++i) {
+    std::array<float, 3> flux = block.photons[i].flux;
+    if (!block.albedos.empty())
+      for (std::size_t c = 0; c < 3; ++c) flux[c] *= float(block.albedos[i][c]) / 255;
+    cells.add(place_of(block.photons[i]), flux);
+  }
+}
+
+void add_energy(std::span<const IrradiancePointRecord> points, double area_of_point, EnergyCells& cells) {
+  for (const IrradiancePointRecord& point : points) {
+    std::array<float, 3> flux{};
+    // Finite though the sum of three kinds may not be: a point at the end of what floats hold is as bright as any.
+    for (std::size_t c = 0; c < 3; ++c)
+      flux[c] = float(std::min((double(point.direct[c]) + double(point.caustic[c]) + double(point.indirect[c])) *
+                                   area_of_point, 3e38));
+    cells.add(place_of(point), flux);
+  }
+}
+
+DividedPhotons divide(const PhotonBlock& block, const EnergyCells& cells) {
+  DividedPhotons parts;
+  parts.low.group = parts.high.group = block.group;
+  for (std::size_t i = 0; i < block.photons.size(); ++i) {
+    const double share = cells.low_share(place_of(block.photons[i]));
+    const DividedFlux flux = divide_channels(block.photons[i].flux, share);
+    Photon part = block.photons[i];
+    part.flux = flux.high;
+    const bool has_high = !is_zero(flux.high);
+    if (has_high) append(parts.high, block, i, part);
+    part.flux = flux.low;
+    if (!has_high || !is_zero(flux.low)) append(parts.low, block, i, part);
+  }
+  return parts;
+}
+
+DividedPoints divide(std::span<const IrradiancePointRecord> points, const EnergyCells& cells) {
+  DividedPoints parts;
+  for (const IrradiancePointRecord& point : points) {
+    const double share = cells.low_share(place_of(point));
+    IrradiancePointRecord low = point, high = point;
+    for (const auto kind : {&IrradiancePointRecord::direct, &IrradiancePointRecord::caustic, &IrradiancePointRecord::indirect}) {
+      const DividedFlux part = divide_channels(point.*kind, share);
+      low.*kind = part.low, high.*kind = part.high;
+    }
+    parts.low.push_back(low);
+    if (!is_zero(high.direct) || !is_zero(high.caustic) || !is_zero(high.indirect)) parts.high.push_back(high);
+  }
+  return parts;
+}
+
+ChosenPhotons choose_kinds(const PhotonBlock& block, unsigned kinds) {
+  ChosenPhotons parts;
+  parts.chosen.group = parts.rest.group = block.group;
+  for (std::size_t i = 0; i < block.photons.size(); ++i)
+    append((kinds >> unsigned(block.photons[i].kind)) & 1 ? parts.chosen : parts.rest, block, i, block.photons[i]);
+  return parts;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,50 @@
+// lib/density/split_light.h -- photons and irradiance points in two parts whose sum is the whole, to the last bit.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "formats/irradpoints/irradpoints.h"
+#include "formats/photons/photons.h"
+#include "lib/density/energy_cells.h"
+
+namespace tempolux {
+
+struct DividedValue {
+  float low = 0, high = 0;
+};
+
+/// low + high == value without rounding; low is share * value to 6e-8 of the value. share is in [0, 1]. The larger of the
+/// two is rounded and the smaller is what is left, which a float32 holds exactly (Sterbenz). Below 2^-100 the
+/// left-over could be a denormal number, which processors flush to zero: the value stays whole, with the larger part.
+DividedValue divide(float value, double share);
+
+/// Where a photon lies, relative to its file's origin.
+CellPlace place_of(const formats::Photon& photon);
+CellPlace place_of(const formats::IrradiancePointRecord& point);
+
+/// Adds a block's photons to the cells: their flux, times the share that is reflected if the block has that column.
+void add_energy(const formats::PhotonBlock& block, EnergyCells& cells);
+/// Adds points, each with the irradiance of all kinds times area_of_point [m^2].
+void add_energy(std::span<const formats::IrradiancePointRecord> points, double area_of_point, EnergyCells& cells);
+
+/// Low and high part of a block: photons in file order, without those that have no flux in that part. Whatever the
+/// cells' limit, photons without any flux are in the low part.
+struct DividedPhotons {
+  formats::PhotonBlock low, high;
+};
+DividedPhotons divide(const formats::PhotonBlock& block, const EnergyCells& cells);
+
+/// The low part has every point; the high part those that have irradiance in it. All kinds of a point are divided alike.
+struct DividedPoints {
+  std::vector<formats::IrradiancePointRecord> low, high;
+};
+DividedPoints divide(std::span<const formats::IrradiancePointRecord> points, const EnergyCells& cells);
+
+/// Photons of the kinds in `kinds` (bit k: PathKind k), and the others.
+struct ChosenPhotons {
+  formats::PhotonBlock chosen, rest;
+};
+ChosenPhotons choose_kinds(const formats::PhotonBlock& block, unsigned kinds);
+
+}  // namespace tempolux

@@ -1,0 +1,43 @@
+// lib/image/pixel_surfaces.h -- do two pixels of a frame see one smooth surface? By their depth, normal and object.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "lib/image/image.h"
+
+namespace tempolux {
+
+/// What each pixel's centre sees, from the channels Z, N.* and id.object. A channel that is absent agrees everywhere.
+///
+/// Depth is kept as w = 1/Z: on a plane seen in perspective it is linear in pixels, so that a pixel's w and its slopes say what
+/// its neighbours' should be. Nothing seen: w = 0.
+class PixelSurfaces {
+ public:
+  /// Cosine of the largest angle (26 degrees) between normals of one surface; algorithms.md 1.6.
+  static constexpr float kSameNormal = 0.9f;
+  /// Relative error of depth that is always allowed; algorithms.md 1.4.
+  static constexpr float kSameDepth = 1e-3f;
+
+  explicit PixelSurfaces(const Image& image);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  /// Is the pixel (dx, dy) away from `pixel` (right, down; it lies in the picture) on the surface that `pixel` is on? Same object, normals
+  /// within kSameNormal, and w off the plane through `pixel` by at most kSameDepth of it plus what the plane itself changes: a
+  /// curved surface may double its slope.
+  bool same(std::size_t pixel, int dx, int dy) const;
+  /// 1 for each pixel that is not on the same surface as all of its eight neighbours, both ways asked.
+  std::vector<std::uint8_t> edges() const;
+
+  // By pixel, for loops that test many at once. Objects are bits of id.object; normals are 0, 0, 0 where nothing is seen or known.
+  std::vector<std::uint32_t> object;
+  std::vector<float> w, w_right, w_down;   ///< 1/m; its change per pixel: the smaller of the two one-sided differences
+  std::vector<float> nx, ny, nz;
+
+ private:
+  int width_, height_;
+};
+
+}  // namespace tempolux

@@ -1,0 +1,28 @@
+// WebP through libwebp.
+#include <webp/decode.h>
+
+#include "modules/decode.h"
+
+namespace tempolux {
+
+std::string decode_webp(std::span<const std::uint32_t> settings, std::span<const unsigned char> packed,
+                        std::span<unsigned char> unpacked) {
+  if (settings.size() != 3) return "got a request that is no request for WebP";
+  const std::uint64_t width = settings[0], height = settings[1], channels = settings[2];
+  constexpr std::uint64_t most = 16384;  // 14 bits for each side
+  if ((channels != 3 && channels != 4) || width > most || height > most ||
+      unpacked.size() != width * height * channels)
+    return "got a size that no WebP image has";
+  WebPBitstreamFeatures features;
+  if (WebPGetFeatures(packed.data(), packed.size(), &features) != VP8_STATUS_OK)
+    return "finds no WebP image in it: it is damaged or cut short";
+  if (features.has_animation != 0) return "finds an animated WebP: a texture must be one picture";
+  if (std::uint64_t(features.width) != width || std::uint64_t(features.height) != height)
+    return "finds an image of another size than its header says: it is damaged";
+  const auto decode = channels == 4 ? WebPDecodeRGBAInto : WebPDecodeRGBInto;
+  if (!decode(packed.data(), packed.size(), unpacked.data(), unpacked.size(), int(width * channels)))
+    return "cannot decode it: it is damaged or cut short";
+  return "";
+}
+
+}  // namespace tempolux

@@ -1,0 +1,87 @@
+"""The chain as a user runs it, by make with Makefile.example, and our path tracer beside it: pictures and CPU seconds."""
+import json
+import os
+import resource
+import shutil
+import subprocess
+from pathlib import Path
+
+import cases
+import exr
+
+STAGES = ("photons", "points", "cache", "frames")
+CHANNELS = ("RGBA", "layers")
+
+
+class Unfinished(Exception):
+    """A run was refused or took longer than it may."""
+
+
+def yardstick(bench):
+    """Options of the path tracer that is compared with: without what has been added to it since it became the yardstick."""
+    known = bench.run([bench.bin / "frame-render", "--help"]).stdout
+    return ["--integrator", "path", *(["--visibility-grid", "off"] if "--visibility-grid" in known else [])]
+
+
+def frames_without_camera(bench):
+    """Does --camera auto frame a scene that has no camera?"""
+    scene = bench.out / "tmp" / "no-camera.gltf"
+    made = cases.open_scenes.Scene()
+    made.quad((-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1), made.material(0.5, 1.0))
+    made.save(scene)
+    done = subprocess.run([bench.bin / "scene-plan", scene, "-q", "-o", bench.out / "tmp" / "no-camera"], capture_output=True)
+    return done.returncode == 0
+
+
+class Side:
+    """Runs of the chain or of the path tracer on one scene at one size."""
+
+    def __init__(self, bench, case, size, patience):
+        self.bench, self.case, self.size, self.patience = bench, case, size, patience
+        self.folder = bench.out / "every" / f"run-{os.getpid()}"     # other runs may use the same references
+
+    def spend(self, command):
+        """CPU seconds of a command and all it starts; each of its processes may take `patience` of them."""
+        def limit():
+            resource.setrlimit(resource.RLIMIT_CPU, (self.patience, self.patience))
+        environment = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
+        before = os.times()
+        done = subprocess.run([str(part) for part in command], capture_output=True, text=True, env=environment, preexec_fn=limit)
+        after = os.times()
+        if done.returncode:
+            lines = [line for line in done.stderr.splitlines() if line and not line.startswith("make")]
+            raise Unfinished(lines[0] if lines else f"a process took more than {self.patience} CPU s")
+        return after.children_user - before.children_user + after.children_system - before.children_system
+
+    def chain(self, seed, quality="final", channels=CHANNELS, keep=None):
+        """(picture, CPU seconds, those of each stage); `keep`: a file that the frame is moved to, None: then the picture is read and
+        the frame removed."""
+        case, name = self.case, f"{self.case.frame:04d}"
+        shutil.rmtree(self.folder, ignore_errors=True)
+        shared = " ".join(map(str, case.shared))
+        cpu = self.spend(["make", "-s", "-f", "Makefile.example", "-C", self.bench.project, f"{self.folder}/frames/{name}.exr",
+                          f"BIN={self.bench.bin}", f"OUT={self.folder}", f"SCENE={case.file.resolve()}", f"FRAMES={case.frame}",
+                          f"SIZE={self.size}", f"CAMERA={case.camera}", f"CHANNELS={','.join(channels)}", f"TIME={shared}", f"QUALITY={quality}",
+                          f"RUN=sh {Path(__file__).with_name('with_seed.sh')} {seed}",
+                          *([f"ENVIRONMENT={case.environment.resolve()}"] if case.environment else [])])
+        stages = {stage: sum(json.loads(f.read_text())["cpu_s"] for f in (self.folder / stage).glob("*.json")) for stage in STAGES}
+        frame = self.folder / "frames" / f"{name}.exr"
+        image = shutil.move(frame, keep) if keep else exr.read(frame)
+        shutil.rmtree(self.folder)
+        return image, cpu, stages
+
+    def paths(self, spp, seed):
+        """(picture, CPU seconds that do not depend on the samples, those of a sample per pixel)"""
+        image, stats = self.bench.out / "tmp" / f"path-{os.getpid()}.exr", self.bench.out / "tmp" / f"path-{os.getpid()}.json"
+        cpu = self.spend([self.bench.bin / "frame-render", self.case.file, *self.case.options(), *yardstick(self.bench), "--size", self.size,
+                          "--spp", spp, "--seed", seed, "--channels", *CHANNELS, "--compression", "none", "-q", "-o", image, "--stats", stats])
+        render = sum(p["cpu_s"] for p in json.loads(stats.read_text())["phases"] if p["name"] == "render")
+        return exr.read(image), cpu - render, render / spp
+
+
+def preset(bench, name, seed, size=None, quality="final"):
+    """(file of the frame with layers and ids, CPU seconds of all processes): one of our scenes, rendered afresh."""
+    case = next(case for case in cases.ours(bench) if case.name == name)
+    keep = bench.out / "frames" / f"{name}-{quality}-{seed}.exr"
+    image, cpu, _ = Side(bench, case, size or bench.size, 10**5).chain(seed, quality, (*CHANNELS, "id"), keep)
+    return Path(image), cpu

@@ -1,0 +1,117 @@
+# photonmap-split: parts that add up to the last bit, pipes, order of blocks, kinds, limits, what it must refuse.
+failed=0
+bad() { echo "$*"; failed=1; }
+refuses() {   # exit 2 and these words in one line; nothing is written
+  words=$1; shift
+  "$@" >out.txt 2>errors.txt
+  code=$?
+  [ $code = 2 ] || bad "exit $code, not 2: $*"
+  grep -q -- "$words" errors.txt && [ "$(wc -l <errors.txt)" = 1 ] || bad "does not say '$words': $(cat errors.txt)"
+  [ -e refused ] && bad "left an output: $*" && rm -f refused
+}
+room=$HERE/../../pipelines/scenes/S3_indirect_room.glb
+photon-trace "$room" --frame 1 --photons 8k -o p.photons -q || bad photons
+irradcache-build points "$room" --frame 1 --photons p.photons --point-count 1k -o p.irradpoints -q || bad points
+split="photonmap-split -q --energy 2"
+$split p.photons --low l.photons --high h.photons --stats s.json || bad 'photons divided'
+$split p.irradpoints --low l.irradpoints --high h.irradpoints || bad 'points divided'
+tempolux-info --check l.* h.* >out.txt || bad "$(cat out.txt)"
+[ "$(tempolux-info --json h.photons | grep -c '"part": "high"')" = 1 ] || bad 'the header does not say: high'
+
+# By the second readers: every photon and point is the sum of its parts, as rational numbers.
+cat >sums.py <<'EOF'
+import sys
+from fractions import Fraction
+from read_irradpoints import read_irradpoints
+from read_photons import FLUX, NORMAL, RECORD, read_photons
+def photons(name):
+    found = {}
+    for block in read_photons(name).blocks:
+        for v in RECORD.iter_unpack(block.records):
+            found.setdefault((block.group, v[:FLUX], v[NORMAL:]), []).append([Fraction(x) for x in v[FLUX:NORMAL]])
+    return {key: [sum(c) for c in zip(*values)] for key, values in found.items()}
+def points(name):
+    return {(p.position, p.normal, p.object, p.set, p.radius): [Fraction(x) for e in p.irradiance.values() for x in e]
+            for p in read_irradpoints(name).points}
+for read, suffix in ((photons, "photons"), (points, "irradpoints")):
+    whole, low, high = (read(name + suffix) for name in ("p.", "l.", "h."))
+    assert 0 < len(high) < len(whole), suffix
+    for key, values in whole.items():
+        zero = [0] * len(values)
+        assert [a + b for a, b in zip(low.get(key, zero), high.get(key, zero))] == values, key
+    assert set(low) | set(high) == set(whole)
+assert read_photons("h.photons").emitted == read_photons("p.photons").emitted
+# The same photons in blocks of seven, backwards within their groups.
+p = read_photons("p.photons")
+p.blocks = [type(b)(b.group, b"".join(reversed([b.records[i:i + 32] for i in range(0, len(b.records), 32)]))) for b in p.blocks]
+from read_photons import Block, write_photons
+p.blocks = [Block(b.group, b.records[i:i + 224]) for b in p.blocks for i in range(0, len(b.records), 224)]
+write_photons("backwards.photons", p)
+EOF
+PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$HERE/../formats "${PYTHON:-python3}" sums.py || bad 'parts do not add up'
+$split backwards.photons --low bl.photons --high bh.photons || bad backwards
+cat >sorted.py <<'EOF'
+import sys
+from read_photons import read_photons, split
+for name in sys.argv[1:]:
+    print(sorted((b.group, r) for b in read_photons(name).blocks for r in split(b.records)) ==
+          sorted((b.group, r) for b in read_photons("b" + name).blocks for r in split(b.records)))
+EOF
+[ "$(PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$HERE/../formats "${PYTHON:-python3}" sorted.py l.photons h.photons | uniq)" = True ] ||
+  bad 'the order of photons changes the parts'
+
+# Pipes: standard input, a shell's /dev/fd, standard output; nothing is left behind.
+photon-trace "$room" --frame 1 --photons 8k -o - -q | $split - --low pl.photons --high ph.photons || bad pipe
+tempolux-info --diff l.photons pl.photons >/dev/null && tempolux-info --diff h.photons ph.photons >/dev/null || bad 'a pipe changes the parts'
+cat p.irradpoints | $split - --low - --high ph.irradpoints >pl.irradpoints || bad 'pipe of points'
+tempolux-info --diff l.irradpoints pl.irradpoints >/dev/null && tempolux-info --diff h.irradpoints ph.irradpoints >/dev/null || bad 'piped points'
+mkfifo named
+cat p.photons >named & $split named --low nl.photons --high nh.photons; wait
+tempolux-info --diff l.photons nl.photons >/dev/null || bad 'a named pipe changes the parts'
+find . -name '.*' -type f | grep . && bad 'temporaries are left'
+
+# Limits: nothing below 0, everything below infinity, by energy and by records.
+for limit in '--energy 0' '--limit 0'; do
+  photonmap-split -q $limit p.photons --low none.photons --high all.photons || bad "$limit"
+  tempolux-info --diff all.photons p.photons >/dev/null || bad "$limit: the high part is not all"
+done
+for limit in '--energy 1e300' '--limit 1G'; do
+  for type in photons irradpoints; do
+    photonmap-split -q $limit p.$type --low all.$type --high none.$type || bad "$limit"
+    tempolux-info --diff all.$type p.$type >/dev/null || bad "$limit: the low part is not all"
+  done
+done
+
+# Kinds.
+photonmap-split -q p.photons --kind indirect -o i.photons --rest r.photons || bad kinds
+photonmap-split -q p.irradpoints --kind direct,caustic -o d.irradpoints --rest i.irradpoints || bad 'kinds of points'
+tempolux-info --json i.photons r.photons p.photons d.irradpoints i.irradpoints p.irradpoints >kinds.json
+"${PYTHON:-python3}" - <<'EOF' || bad 'kinds are lost'
+import json
+chosen, rest, all_, d, i, p = json.load(open("kinds.json"))
+assert chosen["kinds"] == "indirect" and rest["kinds"] == "direct,caustic", (chosen["kinds"], rest["kinds"])
+assert chosen["photons"] + rest["photons"] == all_["photons"] and chosen["photons"] == all_["by_kind"]["indirect"]["photons"]
+assert d["kinds"] == "direct,caustic" and i["kinds"] == "indirect" and d["points"] == i["points"] == p["points"]
+EOF
+photon-trace "$room" --frame 1 --photons 8k -o - -q | photonmap-split - -q --kind indirect -o pi.photons && tempolux-info --diff pi.photons i.photons >/dev/null || bad 'kinds through a pipe'
+
+# A part is not taken for the whole; what cannot be divided is refused.
+refuses 'low part of the light alone' irradcache-build points "$room" --frame 1 --photons l.photons -o refused
+refuses 'high part of the light alone' irradcache-build records "$room" --frame 1 --points h.irradpoints -o refused
+refuses 'low part of the light alone' photonmap-split l.photons --low refused --high other
+refuses 'go together' photonmap-split p.photons --low refused
+refuses 'says not how' photonmap-split p.photons
+refuses 'needs -o' photonmap-split p.photons --kind direct
+refuses 'not with --kind' photonmap-split p.photons --kind direct -o refused --energy 3
+refuses 'only with --kind' photonmap-split p.photons --low refused --high other --rest third
+refuses 'no volume light' photonmap-split p.photons --kind volume -o refused
+refuses 'no kind is left' photonmap-split i.photons --kind indirect -o refused --rest other
+refuses 'neither auto nor a length' photonmap-split p.photons --low refused --high other --cell -1
+refuses 'neither photons nor irradiance points' photonmap-split "$room" --low refused --high other
+refuses 'two outputs' photonmap-split p.photons --low refused --high refused
+refuses 'p.photons' photonmap-split p.photons --low refused --high p.photons
+head -c 5000 p.photons >cut.photons
+refuses 'incomplete' photonmap-split cut.photons --low refused --high other
+cat cut.photons | refuses 'incomplete' photonmap-split - --low refused --high other
+[ -e other ] && bad 'left a second output'
+exit $failed

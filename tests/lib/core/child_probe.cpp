@@ -1,0 +1,94 @@
+// child-probe MODE -- a helper program that behaves as badly as child_process_test.cpp asks for.
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <string>
+#include <vector>
+
+namespace {
+
+std::string all_input() {
+  std::string text;
+  char piece[4096];
+  for (ssize_t got = 0; (got = ::read(0, piece, sizeof piece)) > 0;) text.append(piece, std::size_t(got));
+  return text;
+}
+
+void print(const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t put = ::write(1, text.data() + done, text.size() - done);
+    if (put <= 0) std::_Exit(9);
+    done += std::size_t(put);
+  }
+}
+
+/// Open file descriptors.
+std::string descriptors() {
+  std::string list;
+  for (int i = 0; i < 1024; ++i)
+    if (::lseek(i, 0, SEEK_CUR) >= 0 || errno != EBADF) list += std::to_string(i) + " ";
+  return list;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string mode = argc > 1 ? argv[1] : "";
+  if (mode == "never-reads") print("done");
+  if (mode == "never-reads") return 0;
+  const std::string input = all_input();
+  if (mode == "echo") print(input);
+  if (mode == "crash") {
+    print("so far");
+    ::raise(SIGSEGV);
+  }
+  if (mode == "abort") std::abort();
+  if (mode == "hang") ::sleep(1000);
+  if (mode == "closes-and-hangs") {
+    ::close(1);
+    ::close(2);
+    ::sleep(1000);
+  }
+  if (mode == "spin")
+    for (volatile bool forever = true; forever;) {
+    }
+  if (mode == "flood")
+    for (;;) print(std::string(1 << 16, 'x'));
+  if (mode == "words") {
+    std::fprintf(stderr, "it is \x1b[1m wrong\nsecond line\n");
+    for (int i = 0; i < 100'000; ++i) std::fputs("and so on and so on\n", stderr);
+    return 2;
+  }
+  if (mode == "code") return 7;
+  if (mode == "memory") {
+    std::vector<void*> pieces;
+    for (int i = 0; i < 4096; ++i) {  // up to 64 GB
+      void* piece = std::malloc(1 << 24);
+      if (!piece) {
+        std::fprintf(stderr, "no memory after %d MiB\n", i * 16);
+        return 3;
+      }
+      std::memset(piece, 1, 4096);
+      pieces.push_back(piece);
+    }
+  }
+  if (mode == "write-file") {  // the name comes as input
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::FILE* file = std::fopen(input.c_str(), "w");
+    if (file) std::fputs("text", file);
+    print(file && std::fclose(file) == 0 ? "written" : "refused");
+  }
+  if (mode == "descriptors") print(descriptors());
+  if (mode == "signals") {  // blocked or ignored?
+    sigset_t blocked;
+    sigprocmask(SIG_BLOCK, nullptr, &blocked);
+    struct sigaction term {};
+    sigaction(SIGTERM, nullptr, &term);
+    print(std::string(sigismember(&blocked, SIGTERM) ? "blocked" : "open") +
+          (term.sa_handler == SIG_DFL ? " default" : " other"));
+  }
+}

@@ -1,0 +1,68 @@
+// Which neighbours' surfaces a pixel sees too: an edge at known places in pixels.
+#include "lib/render/coverage_channel.h"
+
+#include <gtest/gtest.h>
+
+#include "formats/error.h"
+#include "tests/support/frames.h"
+
+namespace tempolux {
+namespace {
+
+/// A sheet at z = 0 left of x = `edge` (in pixels of from_above()) and below another at z = -1.
+Image frame_of_step(float edge, float bottom = 100) {
+  test::HandMadeScene made;
+  const float x = edge / 32 - 1, y = 0.5625f - bottom / 32;
+  made.add({{-2, y, 0}, {x, y, 0}, {x, 2, 0}, {-2, 2, 0}, {-3, -3, -1}, {3, -3, -1}, {3, 3, -1}, {-3, 3, -1}},
+           {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, test::matte(Rgb(0.5f)));
+  made.add_point_light({0, 0, 3}, Rgb(1.0f));
+  const SceneFrame& frame = made.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  const CameraView view = test::from_above();
+  Image image{64, 36, {}, {}, {}, {}};
+  add_data_channels({tracer, lights}, view, {"Z", "N", "id"}, {}, {}, image);
+  add_coverage_channel({tracer, lights}, view, {"coverage"}, image);
+  return image;
+}
+
+std::uint32_t coverage_at(const Image& image, int x, int y) { return image.find("coverage")->ids[std::size_t(y * 64 + x)]; }
+
+/// Sixteen stratified points have one in each sixteenth of the pixel's width: a quarter is four of them.
+TEST(Coverage, OfAStraightEdgeIsItsShare) {
+  const Image right = frame_of_step(32.25f);   // the centre of column 32 sees what lies below; a quarter the sheet, seen at its left
+  const Image left = frame_of_step(32.75f);    // now it sees the sheet, and a quarter what column 33 sees
+  for (int y = 1; y < 35; ++y) {
+    EXPECT_EQ(coverage_at(right, 32, y), 4u << 12);
+    EXPECT_EQ(coverage_at(left, 32, y), 4u << 16);
+    for (const int x : {0, 30, 31, 33, 34, 63}) EXPECT_EQ(coverage_at(right, x, y), 0u) << x;
+  }
+}
+
+/// The sheet's corner covers a quarter of pixel (32, 20), whose centre misses it: only the upper left neighbours see it. Points are stratified
+/// in quarters of the pixel too.
+TEST(Coverage, OfACornerGoesToTheNearestPixelThatSeesIt) {
+  const Image image = frame_of_step(32.5f - 1 / 64.0f, 20.5f - 1 / 64.0f);
+  const std::uint32_t packed = coverage_at(image, 32, 20);
+  std::uint32_t sum = 0;
+  for (int n = 0; n < 8; ++n) sum += packed >> (4 * n) & 15;
+  EXPECT_GE(sum, 3u);
+  EXPECT_LE(sum, 4u);
+  EXPECT_EQ(packed & 0xfff00000u, 0u);   // nobody to the lower left, below or to the lower right; nor to the right
+  EXPECT_EQ(packed >> 16 & 15, 0u);
+}
+
+TEST(Coverage, NeedsDepthNormalsAndObjects) {
+  test::HandMadeScene made;
+  made.add({{-3, -3, -1}, {3, -3, -1}, {3, 3, -1}}, {{0, 1, 2}}, test::matte(Rgb(0.5f)));
+  const SceneFrame& frame = made.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  Image image{64, 36, {}, {}, {}, {}};
+  EXPECT_THROW(add_coverage_channel({tracer, lights}, test::from_above(), {"coverage"}, image), InputError);
+  add_coverage_channel({tracer, lights}, test::from_above(), {"RGBA"}, image);
+  EXPECT_TRUE(image.channels.empty());
+}
+
+}  // namespace
+}  // namespace tempolux

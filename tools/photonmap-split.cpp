@@ -1,0 +1,320 @@
+// photonmap-split -- divide the light of a .photons or .irradpoints file in two files whose sum is the whole.
+//
+//     photonmap-split p.irradpoints --low low.irradpoints --high high.irradpoints
+//     photon-trace room.glb -o - | photonmap-split - --low low.photons --high high.photons --energy 8
+//     photonmap-split p.photons --kind caustic -o caustic.photons --rest others.photons
+//
+// Method: docs/methods/split.md. Formats: formats/photons/photons.md, formats/irradpoints/irradpoints.md.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/error.h"
+#include "lib/density/split_light.h"
+#include "tools/common/arguments.h"
+#include "tools/common/file_head.h"
+#include "tools/common/option_words.h"
+#include "tools/common/output.h"
+#include "tools/common/tool_main.h"
+
+using namespace tempolux;
+
+namespace {
+
+struct Options {
+  std::string input, low, high, kinds, output, rest, cell = "auto", limit;
+  double energy = EnergyLimit{}.energy;
+
+  EnergyLimit energy_limit() const {
+    return {energy, limit.empty() ? EnergyLimit{}.records : double(tools::parse_count(limit))};
+  }
+  /// m; nothing: automatic.
+  std::optional<double> cell_edge() const {
+    if (cell == "auto") return std::nullopt;
+    double edge = 0;
+    if (!CLI::detail::lexical_cast(cell, edge) || !(edge > 0) || !std::isfinite(edge))
+      throw InputError("--cell: '" + cell + "' is neither auto nor a length above 0 in metres");
+    return edge;
+  }
+};
+
+/// The two outputs, made before the work. `first` holds low or the chosen kinds.
+struct Outputs {
+  tools::Output first;
+  std::optional<tools::Output> second;
+};
+
+auto sink_of(tools::Output& output) {
+  return [&output](const void* data, std::size_t size) { output.write(data, size); };
+}
+
+void count_cells(tools::Tool& tool, const EnergyCells& cells, double edge) {
+  tool.stats().count("cells", double(cells.size()));
+  tool.stats().count("bright_cells", double(cells.bright_count()));
+  tool.stats().set("cell_edge_m", edge);
+  tool.stats().set("area_m2", cells.area());
+  tool.stats().set("mean_irradiance_W_m2", cells.mean_irradiance());
+}
+
+/// Photons in as many passes as needed; what comes through a pipe is kept beside the low part until the end.
+class PhotonFile {
+ public:
+  PhotonFile(tools::Tool& tool, std::string path, const Options& options) : tool_(tool), path_(std::move(path)) {
+    if (path_ == "-") spool(options.low);
+  }
+  template <class Each>
+  void read(const char* phase, const Each& each) {
+    tool_.stats().phase(phase);
+    formats::PhotonReader reader(path_, {.digest = false});
+    read_all(reader, each);
+  }
+  const formats::PhotonHeader& header() const { return header_; }
+  const formats::PhotonTotals& totals() const { return totals_; }
+  const std::vector<formats::GroupFlux>& ledger() const { return ledger_; }
+
+ private:
+  template <class Each>
+  void read_all(formats::PhotonReader& reader, const Each& each) {
+    header_ = reader.header();
+    const double expected = double(reader.photon_count_bound());
+    double done = 0;
+    formats::PhotonBlock block;
+    while (reader.read_block(block)) {
+      each(block);
+      done += double(block.photons.size());
+      if (expected > 0) tool_.progress(done / expected);
+    }
+    totals_ = reader.totals();
+    ledger_ = reader.ledger();
+  }
+  /// Writes the whole map of standard input to a temporary file, which goes when this object does.
+  void spool(const std::string& low) {
+    tool_.stats().phase("spool");
+    const std::filesystem::path beside(low);
+    const bool in_folder = low != "-" && (!std::filesystem::exists(beside) || std::filesystem::is_regular_file(beside));
+    spool_.emplace(((in_folder ? beside.parent_path() : std::filesystem::path()) / "photonmap-split.spool").string());
+    formats::PhotonReader reader("-", {.digest = false});
+    formats::PhotonHeader whole = reader.header();
+    whole.base_name.clear(), whole.base_digest.clear();
+    formats::PhotonWriter writer(sink_of(*spool_), whole);
+    read_all(reader, [&](const formats::PhotonBlock& block) { writer.write(block); });
+    writer.finish(totals_, ledger_);
+    spool_->flush();
+    path_ = spool_->temporary_path();
+  }
+
+  tools::Tool& tool_;
+  std::string path_;
+  std::optional<tools::Output> spool_;
+  formats::PhotonHeader header_;
+  formats::PhotonTotals totals_;
+  std::vector<formats::GroupFlux> ledger_;
+};
+
+/// The header of a part: history and, of an overlay, no base any more.
+formats::PhotonHeader part_header(const tools::Tool& tool, formats::PhotonHeader header, const std::string& part) {
+  header.history += tool.history_line();
+  header.base_name.clear(), header.base_digest.clear();
+  if (!part.empty()) header.part = part;
+  return header;
+}
+
+void refuse_part(const std::string& file, const std::string& part) {
+  if (!part.empty())
+    throw InputError(file + ": holds the " + part + " part of the light alone; give the file that it was divided from");
+}
+
+void split_photons(tools::Tool& tool, const std::string& path, const Options& options, Outputs& outputs) {
+  PhotonFile file(tool, path, options);
+  std::optional<double> edge = options.cell_edge();
+  if (!edge) {
+    CellEdge found;
+    file.read("cell size", [&](const formats::PhotonBlock& block) {
+      for (const formats::Photon& photon : block.photons) found.add(place_of(photon).position);
+    });
+    edge = found.edge();
+  }
+  EnergyCells cells(*edge, 0);
+  file.read("cells", [&](const formats::PhotonBlock& block) { add_energy(block, cells); });
+  refuse_part(options.input, file.header().part);
+  cells.close(options.energy_limit());
+  formats::PhotonWriter low(sink_of(outputs.first), part_header(tool, file.header(), "low"));
+  formats::PhotonWriter high(sink_of(*outputs.second), part_header(tool, file.header(), "high"));
+  file.read("divide", [&](const formats::PhotonBlock& block) {
+    const DividedPhotons parts = divide(block, cells);
+    low.write(parts.low);
+    high.write(parts.high);
+  });
+  const formats::PhotonTotals low_totals = low.finish(file.totals(), file.ledger());
+  const formats::PhotonTotals high_totals = high.finish(file.totals(), file.ledger());
+  count_cells(tool, cells, *edge);
+  tool.stats().count("low", double(low_totals.photon_count));
+  tool.stats().count("high", double(high_totals.photon_count));
+}
+
+void split_points(tools::Tool& tool, const std::string& path, const Options& options, Outputs& outputs) {
+  tool.stats().phase("read");
+  formats::IrradpointsFile file = formats::load_irradpoints(path);
+  refuse_part(options.input, file.header.part);
+  tool.stats().phase("cells");
+  const double spacing = file.header.spacing;
+  // Points are spread evenly: 4 x 4 of them lie in a square four spacings wide.
+  const double edge = options.cell_edge().value_or(4 * spacing);
+  EnergyCells cells(edge, spacing * spacing);
+  add_energy(file.records, spacing * spacing, cells);
+  cells.close(options.energy_limit());
+  tool.stats().phase("divide");
+  const DividedPoints parts = divide(file.records, cells);
+  const auto write = [&](tools::Output& output, const char* part, const std::vector<formats::IrradiancePointRecord>& points) {
+    formats::IrradpointsHeader header = file.header;
+    header.history += tool.history_line();
+    header.part = part;
+    formats::IrradpointsWriter writer(sink_of(output), header);
+    writer.write(points);
+    writer.finish();
+  };
+  write(outputs.first, "low", parts.low);
+  write(*outputs.second, "high", parts.high);
+  count_cells(tool, cells, edge);
+  tool.stats().count("low", double(parts.low.size()));
+  tool.stats().count("high", double(parts.high.size()));
+}
+
+/// The names of `list` that are in `chosen`, or are not; in their order.
+std::string names_in(const std::string& list, const std::vector<std::string>& chosen, bool in) {
+  std::string names;
+  for (const std::string& name : CLI::detail::split(list, ','))
+    if ((std::ranges::find(chosen, name) != chosen.end()) == in) names += (names.empty() ? "" : ",") + name;
+  return names;
+}
+
+const std::vector<std::string> kKinds{"direct", "caustic", "indirect", "volume"};
+
+/// What --kind names, and what is left, of the kinds that a file holds.
+struct KindLists {
+  std::string chosen, rest;
+};
+KindLists kinds_of(const Options& options, const std::string& held) {
+  const std::vector<std::string> wanted = tools::parse_list(options.kinds, kKinds);
+  for (const std::string& kind : wanted)
+    if (names_in(held, {kind}, true).empty())
+      throw InputError(options.input + ": holds no " + kind + " light (its kinds: " + held + "); choose among these");
+  KindLists lists{names_in(held, wanted, true), names_in(held, wanted, false)};
+  if (!options.rest.empty() && lists.rest.empty())
+    throw InputError("--rest: no kind is left beside " + options.kinds + " in " + options.input + "; leave it out");
+  return lists;
+}
+
+void choose_photons(tools::Tool& tool, const std::string& path, const Options& options, Outputs& outputs) {
+  tool.stats().phase("divide");
+  formats::PhotonReader reader(path, {.digest = false});
+  const KindLists kinds = kinds_of(options, reader.header().kinds);
+  unsigned bits = 0;
+  for (unsigned k = 0; k < kKinds.size(); ++k) bits |= unsigned(!names_in(kinds.chosen, {kKinds[k]}, true).empty()) << k;
+  formats::PhotonHeader header = part_header(tool, reader.header(), "");
+  header.kinds = kinds.chosen;
+  formats::PhotonWriter chosen(sink_of(outputs.first), header);
+  header.kinds = kinds.rest;
+  std::optional<formats::PhotonWriter> rest;
+  if (outputs.second) rest.emplace(sink_of(*outputs.second), header);
+  formats::PhotonBlock block;
+  while (reader.read_block(block)) {
+    const ChosenPhotons parts = choose_kinds(block, bits);
+    chosen.write(parts.chosen);
+    if (rest) rest->write(parts.rest);
+  }
+  tool.stats().count("chosen", double(chosen.finish(reader.totals(), reader.ledger()).photon_count));
+  if (rest) tool.stats().count("rest", double(rest->finish(reader.totals(), reader.ledger()).photon_count));
+}
+
+void choose_points(tools::Tool& tool, const std::string& path, const Options& options, Outputs& outputs) {
+  tool.stats().phase("read");
+  const formats::IrradpointsFile file = formats::load_irradpoints(path);
+  const KindLists kinds = kinds_of(options, file.header.kinds);
+  tool.stats().phase("divide");
+  const auto write = [&](tools::Output& output, const std::string& list) {
+    formats::IrradpointsHeader header = file.header;
+    header.history += tool.history_line();
+    header.kinds = list;
+    std::vector<formats::IrradiancePointRecord> points = file.records;
+    for (formats::IrradiancePointRecord& point : points) {
+      if (names_in(list, {"direct"}, true).empty()) point.direct = {};
+      if (names_in(list, {"caustic"}, true).empty()) point.caustic = {};
+      if (names_in(list, {"indirect"}, true).empty()) point.indirect = {};
+    }
+    formats::IrradpointsWriter writer(sink_of(output), header);
+    writer.write(points);
+    writer.finish();
+  };
+  write(outputs.first, kinds.chosen);
+  if (outputs.second) write(*outputs.second, kinds.rest);
+  tool.stats().count("chosen", double(file.records.size()));
+  if (outputs.second) tool.stats().count("rest", double(file.records.size()));
+}
+
+void check(const CLI::App& app, const Options& options) {
+  const bool by_kind = !options.kinds.empty();
+  if (by_kind && options.output.empty()) throw InputError("--kind needs -o: where light of these kinds goes");
+  if (!by_kind && (options.low.empty() || options.high.empty()))
+    throw InputError(options.low.empty() && options.high.empty()
+                         ? "says not how to divide: give --low and --high, or --kind and -o"
+                         : "--low and --high go together, or light would be lost");
+  for (const char* name : {"--low", "--high", "--energy", "--cell", "--limit"})
+    if (by_kind && app.get_option(name)->count() > 0) throw InputError(std::string(name) + ": not with --kind");
+  for (const char* name : {"--output", "--rest"})
+    if (!by_kind && app.get_option(name)->count() > 0) throw InputError(std::string(name) + ": only with --kind");
+}
+
+void run(tools::Tool& tool, const Options& options) {
+  check(tool.app(), options);
+  const bool by_kind = !options.kinds.empty(), keep = tool.common().no_clobber;
+  options.cell_edge();
+  const std::string path = tools::readable_name(options.input);
+  tool.depends_on(options.input);
+  const std::string head = tools::head_of(path);
+  const bool points = head.starts_with("\x89TIRPT");
+  if (!points && !head.starts_with("\x89TPHOT"))
+    throw InputError(options.input + ": holds neither photons nor irradiance points; give a .photons or .irradpoints file");
+  Outputs outputs{tools::Output(by_kind ? options.output : options.low, keep), std::nullopt};
+  const std::string& second = by_kind ? options.rest : options.high;
+  if (!second.empty()) outputs.second.emplace(second, keep);
+  if (by_kind) (points ? choose_points : choose_photons)(tool, path, options, outputs);
+  else (points ? split_points : split_photons)(tool, path, options, outputs);
+  tool.stats().phase("commit");
+  outputs.first.commit();
+  if (outputs.second) outputs.second->commit();
+  tool.stats().end_phase();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tools::Tool tool("photonmap-split",
+                   "Divide light in two files: a low and a high part by brightness, or by kind of path.",
+                   argc, argv);
+  Options options;
+  CLI::App& app = tool.app();
+  app.add_option("input", options.input, ".photons or .irradpoints file; - for standard input")->required()->type_name("FILE");
+  tool.output_option(options.low, "what is left of bright cells, and all other cells", "--low");
+  tool.output_option(options.high, "what bright cells have above their limit", "--high");
+  app.add_option("--energy", options.energy, "a cell keeps at most this multiple of the mean irradiance in the low part")
+      ->capture_default_str()->check(tools::number_between(0));
+  app.add_option("--cell", options.cell,
+                 "edge of a cell, metres; auto: four mean distances of points, 16 of photons (256 photons in the mean)")
+      ->capture_default_str()->type_name("METRES");
+  app.add_option("--limit", options.limit, "instead of --energy: a cell keeps at most the energy of N mean records")
+      ->type_name("N");
+  app.add_option("--kind", options.kinds, "divide by kind of light instead: some of direct,caustic,indirect,volume")
+      ->type_name("KINDS");
+  tool.output_option(options.output, "of --kind: light of these kinds; - for standard output");
+  tool.output_option(options.rest, "of --kind: light of all other kinds", "--rest");
+  tool.common_options(0);
+  return tool.run([&] {
+    run(tool, options);
+    return tools::exit_ok;
+  });
+}
