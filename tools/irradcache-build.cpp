@@ -69,6 +69,7 @@ formats::IrradcacheHeader cache_header(const Options& options, const SceneFrame&
   header.identity.first_frame = *std::min_element(frames.begin(), frames.end());
   header.identity.last_frame = *std::max_element(frames.begin(), frames.end());
   header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  header.columns = formats::column_clearance;
   header.rays = std::uint32_t(options.gather.rays);
   header.error_bound = double(options.placement.error_bound);
   header.least_cosine = double(store.least_cosine());
@@ -107,9 +108,9 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
     tools::Output keep(options.keep_points, tool.common().no_clobber);
     tools::write_points(tool, points, first, keep);
   }
-  const PointLookup lookup(points.points, first.bounds, points.spacing, point_reach(tracer));
+  const PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
   const FinalGather gather(tracer, lights, lookup, options.gather);
-  RecordStore store(first.bounds, {.least_cosine = least_cosine_of(options.placement.error_bound)});
+  RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
   std::string history = points.history;
   if (!options.records.empty())
     history = tools::read_records(tool, options.records, tools::InputRole::replaceable, first, store);

@@ -7,9 +7,11 @@
 namespace tempolux::formats::irradcache {
 namespace {
 
-constexpr std::uint16_t kLeastCosineSince = 1;  ///< minor version
+constexpr std::uint16_t kLeastCosineSince = 1, kClearanceSince = 2;  ///< minor versions
 
-constexpr std::array<std::string_view, 4> kColumnsNames{"none", "influence", "update", "influence,update"};
+constexpr std::array<std::string_view, 8> kColumnsNames{
+    "none",      "influence",           "update",           "influence,update",
+    "clearance", "influence,clearance", "update,clearance", "influence,update,clearance"};
 
 /// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
 std::string_view fault_of(const IrradcacheHeader& h) {
@@ -41,7 +43,7 @@ Line take_line(std::string_view key, std::string_view value, std::uint16_t minor
   if (key == "columns") {
     h.columns =
         std::uint32_t(std::find(kColumnsNames.begin(), kColumnsNames.end(), value) - kColumnsNames.begin());
-    return Line::good;
+    return result(!(h.columns & column_clearance) || minor >= kClearanceSince);
   }
   if (key == "rays") return result(parse_numbers(value, &h.rays, 1) && h.rays > 0);
   if (key == "error-bound") return result(parse_numbers(value, &h.error_bound, 1) && h.error_bound > 0);
@@ -70,7 +72,7 @@ bool has_least_cosine(const IrradcacheHeader& h) { return h.least_cosine != kLea
 
 Format format_of(const IrradcacheHeader& h) {
   Format format = kFormat;
-  format.minor = has_least_cosine(h) ? kLeastCosineSince : 0;
+  format.minor = h.columns & column_clearance ? kClearanceSince : has_least_cosine(h) ? kLeastCosineSince : 0;
   return format;
 }
 

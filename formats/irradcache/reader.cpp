@@ -12,12 +12,17 @@ void append_records(const std::vector<char>& body, std::uint32_t columns, const 
   const std::size_t count = body.size() / record_size(columns);
   const char* influences = body.data() + count * kRecordSize;
   const char* updates = influences + (columns & column_influence ? count * kInfluenceSize : 0);
+  const char* clearances = updates + (columns & column_update ? count * kUpdateSize : 0);
   for (std::size_t i = 0; i < count; ++i) {
     IrradianceCacheRecord& record = records.emplace_back();
     std::memcpy(static_cast<void*>(&record), body.data() + i * kRecordSize, kRecordSize);
     record.reserved = 0;
     if (columns & column_influence) record.influence = get<float>(influences + i * kInfluenceSize);
     if (columns & column_update) record.update = get<std::array<float, 3>>(updates + i * kUpdateSize);
+    if (columns & column_clearance) {
+      record.clearance_reach = get<float>(clearances + i * kClearanceSize);
+      record.clearance = get<std::array<std::uint32_t, 2>>(clearances + i * kClearanceSize + 4);
+    }
     if (const std::string_view fault = fault_of(record, columns); !fault.empty())
       in.bytes().fail(in.body_offset() + i * kRecordSize,
                       "record " + std::to_string(i) + " of the block: " + std::string(fault),

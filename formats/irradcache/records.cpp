@@ -35,7 +35,9 @@ std::string_view fault_of(const IrradianceCacheRecord& record, std::uint32_t col
   if (!is_finite(record.influence) || is_negative(record.influence))
     return "influence is not finite or is negative";
   if (!is_finite(record.update)) return "update is not finite";
-  if ((!(columns & column_influence) && !is_zero(record.influence)) ||
+  if (columns & column_clearance && !(record.clearance_reach > 0)) return "clearance does not reach anywhere";
+  if ((!(columns & column_clearance) && (!is_zero(record.clearance_reach) || record.clearance != std::array<std::uint32_t, 2>{})) ||
+      (!(columns & column_influence) && !is_zero(record.influence)) ||
       (!(columns & column_update) && !is_zero(record.update)))
     return "a value of a column that the header does not name";
   return "";
@@ -50,12 +52,13 @@ void RecordSums::add(const IrradianceCacheRecord& record) {
 
 std::string digest_of(const IrradcacheFile& file) {
   using namespace irradcache;
-  Hasher records, influences, updates;
+  Hasher records, influences, updates, clearances;
   for (IrradianceCacheRecord record : file.records) {
     record.reserved = 0;
     records.add_bytes(&record, kRecordSize);
     influences.add_bytes(&record.influence, kInfluenceSize);
     updates.add_bytes(record.update.data(), kUpdateSize);
+    clearances.add_bytes(&record.clearance_reach, kClearanceSize);
   }
   const auto column = [&](IrradcacheColumns bit, const Hasher& hash) {
     return file.header.columns & bit ? "#" + hash.hex() : std::string("none");
@@ -63,7 +66,8 @@ std::string digest_of(const IrradcacheFile& file) {
   return hash_hex("irradcache: 1\norigin: " + hex_of(file.header.origin) +
                   "\nrecords: " + std::to_string(file.records.size()) + " #" + records.hex() +
                   "\ninfluence: " + column(column_influence, influences) +
-                  "\nupdate: " + column(column_update, updates) + "\n");
+                  "\nupdate: " + column(column_update, updates) + "\n" +
+                  (file.header.columns & column_clearance ? "clearance: #" + clearances.hex() + "\n" : ""));
 }
 
 }  // namespace tempolux::formats

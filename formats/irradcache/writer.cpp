@@ -32,6 +32,11 @@ void IrradcacheWriter::State::write_block(std::span<const IrradianceCacheRecord>
     for (const IrradianceCacheRecord& record : records) put(body, record.influence);
   if (columns & column_update)
     for (const IrradianceCacheRecord& record : records) put(body, record.update);
+  if (columns & column_clearance)
+    for (const IrradianceCacheRecord& record : records) {
+      put(body, record.clearance_reach);
+      put(body, record.clearance);
+    }
   out.write_block(kBlockMark, {std::uint32_t(records.size())}, body);
 }
 

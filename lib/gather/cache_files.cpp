@@ -84,6 +84,8 @@ std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRe
     }
     r.radius = record.radius;
     r.radius_unclamped = record.radius_unclamped;
+    r.clearance_reach = record.clearance.reach;
+    r.clearance = {std::uint32_t(record.clearance.shares), std::uint32_t(record.clearance.shares >> 32)};
     return r;
   });
 }
@@ -101,6 +103,8 @@ std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCache
     }
     record.radius = r.radius;
     record.radius_unclamped = r.radius_unclamped;
+    if (r.clearance_reach > 0)
+      record.clearance = {r.clearance_reach, r.clearance[0] | std::uint64_t(r.clearance[1]) << 32};
     return record;
   });
 }

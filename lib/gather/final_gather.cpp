@@ -16,8 +16,9 @@
 namespace tempolux {
 namespace {
 
-/// Events S followed by one ray; roulette ends all but 4e-12 of them before, clear or not.
-constexpr int kDeepestSpecular = 512;
+/// Events followed by one ray; roulette ends all but 4e-12 of them before, clear or not.
+constexpr int kDeepest = 512;
+constexpr float kLargestSurvival = 0.95f;
 
 /// A key from where a point is, to the bit.
 std::uint64_t key_of(Vec3 p, Vec3 n, std::uint64_t seed) {
@@ -101,7 +102,7 @@ struct FinalGather::Shots {
 };
 
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options)
-    : tracer_(tracer), lights_(lights), points_(points), options_(options), few_(strata(std::min(kFewRays, options.rays))) {
+    : tracer_(tracer), reach_(tracer), lights_(lights), points_(points), options_(options), few_(strata(std::min(kFewRays, options.rays))) {
   for (std::size_t i = 0; i < strata_.size(); ++i) strata_[i] = strata(options.rays << i);
   for (const Material& material : tracer.frame().materials)
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
@@ -116,12 +117,13 @@ struct FinalGather::Met {
   std::optional<Bsdf> textured;   ///< what bsdf points to where the material has textures
 };
 
-/// A ray that goes on from a near hit, and what is to become of the radiance along it. All of a call follow together.
+/// A ray that goes on from a hit, and what is to become of the radiance along it. All of one depth follow together.
 struct FinalGather::Further {
   Ray ray;
   std::uint64_t key = 0;
   Rgb weight{0.0f};
-  std::size_t of = 0;   ///< the gather ray
+  std::size_t of = 0;        ///< the gather ray
+  bool sees_lamps = false;   ///< beyond events S: light of kind caustic where it started, which no point has told
 };
 
 /// Fills in the rest where met.hit is known. A material with textures is made for this hit; a normal map bends its normal.
@@ -154,7 +156,7 @@ void FinalGather::follow(std::span<const Ray> rays, bool alike, GatherCounts& co
       const Ray& ray = rays[first + i];
       tracer_.surface_points(std::span(hits).subspan(i, 1), &met[i].hit);
       meet(-ray.direction, length(met[i].hit.position - ray.origin), met[i]);
-      if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(met[i].hit.position, met[i].geometric, met[i].hit.object);
+      if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(met[i].hit.position, met[i].geometric);
     }
     const auto reads_point = [&](std::size_t i) { return met[i].bsdf && met[i].bsdf->has_diffuse(); };
     for (std::size_t i = 0; i < count; ++i)
@@ -167,59 +169,59 @@ void FinalGather::follow(std::span<const Ray> rays, bool alike, GatherCounts& co
 
 void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint64_t> keys,
                            std::span<Rgb> radiance, std::span<float> distance, GatherCounts& counts) const {
-  thread_local std::vector<Further> further;
+  thread_local std::vector<Further> now, next;
   thread_local std::vector<Ray> further_rays;
-  further.clear();
-  further_rays.clear();
   std::fill(radiance.begin(), radiance.end(), Rgb(0.0f));
   std::fill(distance.begin(), distance.end(), INFINITY);
-  follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
+  next.clear();
+  follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
     distance[i] = met.distance;
-    const std::size_t before = further.size();
-    radiance[i] = reflected(met, point, keys[i], 0, counts, &further);
-    if (further.size() > before) further.back().of = i;
+    radiance[i] = reflected(met, point, {{}, keys[i], Rgb(1.0f), i}, 0, counts, next);
   });
-  for (const Further& f : further) further_rays.push_back(f.ray);
-  follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLight* point) {
-    radiance[further[i].of] += further[i].weight * reflected(met, point, further[i].key, 1, counts, nullptr);
-  });
+  for (int depth = 1; !next.empty(); ++depth) {
+    std::swap(now, next);
+    next.clear();
+    further_rays.clear();
+    for (const Further& f : now) further_rays.push_back(f.ray);
+    follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
+      const Further from = now[i];
+      radiance[from.of] += from.weight * reflected(met, point, from, depth, counts, next);
+    });
+  }
 }
 
 /// From 1/2 to 1 1/2, for all that depends on how near a hit is: no seam where that begins.
 inline float FinalGather::threshold(const PathRandom& random) { return 0.5f + random.get1(0, Purpose::gather); }
 
 /// Is the hit too near for its point to be read: within about near_factor radii of the estimate behind it?
-inline bool FinalGather::is_near(const Met& met, const PointLight& point, const PathRandom& random) const {
+inline bool FinalGather::is_near(const Met& met, const PointLookup::Light& point, const PathRandom& random) const {
   // Most hits are far from the seam: they need no random number.
   const float reach = options_.near_factor * point.radius;
   if (!(met.distance < 1.5f * reach)) return false;
   return met.distance < 0.5f * reach || met.distance < reach * threshold(random);
 }
 
-/// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to
-/// read there (or one more bounce if the hit is near: `further` receives its ray), its other lobes by following one of
-/// them.
-Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts,
-                           std::vector<Further>* further) const {
+/// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to read there, or by
+/// going on where none stands for the hit or a first hit is near; its other lobes by following one of them. `further` receives
+/// the ray that goes on from a Lambert lobe, if any.
+Rgb FinalGather::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth, GatherCounts& counts,
+                           std::vector<Further>& further) const {
   const Bsdf& bsdf = *met.bsdf;
   const bool specular = bsdf.has_specular();
   std::optional<SeenSide> side;
   if (specular) side.emplace(met.hit, met.wo);
-  const PathRandom random(key, std::uint64_t(depth));
+  const PathRandom random(from.key, std::uint64_t(depth));
   Rgb result{0.0f};
   if (bsdf.has_diffuse()) {
-    if (!point) {
-      ++counts.unanswered;
-    } else {
+    const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
+    if (point && (depth > 0 || !is_near(met, *point, random))) {
       ++counts.points_read;
-      const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
-      result = scale * (further && is_near(met, *point, random)
-                            ? near_irradiance(met, *point, random, key, scale, counts, *further)
-                        : point->shadow_edge ? beside_shadow(met, *point, random, counts)
-                                             : point->total());
+      result = scale * (points_.is_even(*point) ? point->all : beside_edge(met, *point, random, counts));
+    } else {
+      result = scale * scattered(met, point, from, scale, random, depth, counts, further);
     }
   }
-  if (!specular || depth >= kDeepestSpecular) return result;
+  if (!specular || depth >= kDeepest) return result;
   // Other lobes: one sampled direction, by roulette on its weight; the Lambert lobe was read above.
   const MaterialValues& material = tracer_.frame().materials[met.hit.material];
   const bool front = dot(met.hit.normal_geometric, met.wo) > 0, solid = is_solid_glass(material);
@@ -229,42 +231,54 @@ Rgb FinalGather::reflected(const Met& met, const PointLight* point, std::uint64_
   if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, met.geometric) <= 0) return result;
   const float survival = std::min(0.95f, max_component(next.weight));
   if (!(random.get1(2, Purpose::roulette) < survival)) return result;
-  return result + next.weight * (1 / survival) *
-                      reflected_beyond(met.hit, travel, met.distance, mix64(key + 2), depth + 1, counts,
-                                       solid && front == next.transmitted ? &material : nullptr);
+  const Rgb weight = next.weight * (1 / survival);
+  Further beyond = from;
+  beyond.key = mix64(from.key + 2);
+  beyond.weight *= weight;
+  return result + weight * reflected_beyond(met.hit, travel, met.distance, beyond, depth + 1, counts, further,
+                                            solid && front == next.transmitted ? &material : nullptr);
 }
 
-/// Radiance along a ray that goes on from `from`, `distance` on the way already, inside a solid of glass or not.
-Rgb FinalGather::reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key,
-                                  int depth, GatherCounts& counts, const MaterialValues* inside) const {
+/// Radiance along a ray that goes on after an event S at `start`, `distance` on the way already, inside a solid of glass or not.
+Rgb FinalGather::reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth,
+                                  GatherCounts& counts, std::vector<Further>& further, const MaterialValues* inside) const {
   Hit hit;
   ++counts.rays;
-  if (!tracer_.intersect(spawn_ray(from, travel), hit)) return Rgb(0.0f);
+  if (!tracer_.intersect(spawn_ray(start, travel), hit))
+    return from.sees_lamps && lights_.has_environment() ? lights_.environment(travel) : Rgb(0.0f);
   Met met;
   met.hit = tracer_.surface_point(hit);
-  const float further = length(met.hit.position - from.position);
-  meet(-travel, distance + further, met);
-  const PointLight* point =
-      met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric, met.hit.object) : nullptr;
-  const Rgb radiance = reflected(met, point, key, depth, counts, nullptr);
-  return inside ? radiance * transmittance(*inside, further) : radiance;
+  const float on = length(met.hit.position - start.position);
+  const Rgb left = inside ? transmittance(*inside, on) : Rgb(1.0f);
+  from.weight *= left;
+  meet(-travel, distance + on, met);
+  const Rgb emitted = from.sees_lamps ? lights_.emitted(met.hit, met.wo, 0) : Rgb(0.0f);
+  const PointLookup::Light* point = met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric) : nullptr;
+  return left * (emitted + reflected(met, point, from, depth, counts, further));
 }
 
-/// Irradiance at such a hit: caustic light is the point's all the same; direct light too, which is known to the spacing
-/// of the points instead of an estimate's radius, or if the hit is nearer than about that, or at the edge of a hot spot,
-/// by light sampling; the rest by one ray more, which `further` receives: `weight` (1/sr) is for its irradiance.
-Rgb FinalGather::near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key,
-                                 Rgb weight, GatherCounts& counts, std::vector<Further>& further) const {
-  ++counts.near_hits;
+/// Irradiance at a hit but for what arrives along the ray that goes on, which `further` receives. Near hits take caustic light
+/// from the point that stands for them; direct light too, which is known to the spacing of the points instead of an estimate's
+/// radius, if they are farther than about that; else by light sampling. Without a point all but direct light is the ray's.
+Rgb FinalGather::scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale, const PathRandom& random,
+                           int depth, GatherCounts& counts, std::vector<Further>& further) const {
+  ++(point ? counts.near_hits : counts.unanswered);
   const SeenSide side(met.hit, met.wo);
-  const bool nearer = met.distance < points_.spacing() * threshold(random) || std::isinf(point.radius);
-  const Rgb irradiance =
-      nearer || point.shadow_edge ? points_.point(point).caustic + sampled_light(met, side, random, counts) : point.first;
+  Rgb irradiance{0.0f};
+  if (point) irradiance = points_.point(*point).caustic;
+  if (point && points_.is_even(*point) && met.distance >= points_.spacing() * threshold(random)) irradiance += points_.point(*point).direct;
+  else irradiance += sampled_light(met, side, random, counts);
   // Each by itself. Spread over near hits side by side (a sequence), records in corners had half the noise, but came out 5 %
-  // bright: it seems since cells get further rays by what neighbours saw, on which their own value must not depend.
+  // bright: cells get further rays by what neighbours saw, on which their own value must not depend.
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
-  if (dot(travel, met.geometric) > 0)
-    further.push_back({spawn_ray(met.hit, travel), mix64(key + 1), weight * (kPi * met.bsdf->arrival_weight(drawn.z)), 0});
+  if (!(dot(travel, met.geometric) > 0)) return irradiance;
+  Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn.z));
+  if (depth > 0) {
+    const float survival = std::min(kLargestSurvival, max_component(weight));
+    if (!(random.get1(1, Purpose::roulette) < survival)) return irradiance;
+    weight *= 1 / survival;
+  }
+  further.push_back({spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point});
   return irradiance;
 }
 
@@ -281,9 +295,14 @@ Rgb FinalGather::sampled_light(const Met& met, const SeenSide& side, const PathR
 }
 
 /// Irradiance at a hit where the point's direct light is not its own.
-Rgb FinalGather::beside_shadow(const Met& met, const PointLight& point, const PathRandom& random, GatherCounts& counts) const {
-  const IrradiancePoint& read = points_.point(point);
-  return read.indirect + read.caustic + sampled_light(met, SeenSide(met.hit, met.wo), random, counts);
+Rgb FinalGather::beside_edge(const Met& met, const PointLookup::Light& light, const PathRandom& random, GatherCounts& counts) const {
+  const IrradiancePoint& point = points_.point(light);
+  return point.indirect + point.caustic + sampled_light(met, SeenSide(met.hit, met.wo), random, counts);
+}
+
+void FinalGather::look_around(const SurfacePoint& from, IrradianceRecord& record) const {
+  const Vec3 lit = dot(from.normal_geometric, record.normal) < 0 ? -from.normal_geometric : from.normal_geometric;
+  record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);
 }
 
 float FinalGather::lit_share(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {

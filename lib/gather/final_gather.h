@@ -9,6 +9,7 @@
 
 #include "lib/core/random.h"
 #include "lib/gather/hemisphere.h"
+#include "lib/gather/reachable_area.h"
 #include "lib/irradcache/points.h"
 #include "lib/irradcache/records.h"
 #include "lib/light/lights.h"
@@ -24,6 +25,7 @@ struct GatherOptions {
   bool curvature = false;           ///< also IrradianceRecord::curvature
 };
 
+/// near_hits: went on though a point stood for them; unanswered: went on as none did.
 struct GatherCounts {
   std::uint64_t rays = 0, near_hits = 0, shadow_rays = 0, points_read = 0, unanswered = 0;
   GatherCounts& operator+=(const GatherCounts& o) {
@@ -47,6 +49,8 @@ class FinalGather {
   /// nearest of what the outermost ring met (limit_radius makes the validity of both). Random numbers come from the
   /// position: the record of a place does not depend on which records were made before, but for expected_share.
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share = 1) const;
+  /// Sets the clearance of a record gathered there, as far as its radius: once that is limited.
+  void look_around(const SurfacePoint& from, IrradianceRecord& record) const;
   /// Share of the hemisphere from which light comes (Hemisphere::lit_cells), by at most 64 rays that gather() does not use.
   float lit_share(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
   static constexpr float kEnoughLit = 1.0f / 16;
@@ -71,18 +75,19 @@ class FinalGather {
   struct Further;
   void meet(Vec3 wo, float distance, Met& met) const;
   template <class Take> void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take) const;
-  Rgb reflected(const Met& met, const PointLight* point, std::uint64_t key, int depth, GatherCounts& counts,
-                std::vector<Further>* further) const;
-  Rgb reflected_beyond(const SurfacePoint& from, Vec3 travel, float distance, std::uint64_t key, int depth,
-                       GatherCounts& counts, const MaterialValues* inside = nullptr) const;
+  Rgb reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth, GatherCounts& counts,
+                std::vector<Further>& further) const;
+  Rgb reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth, GatherCounts& counts,
+                       std::vector<Further>& further, const MaterialValues* inside) const;
+  Rgb scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale, const PathRandom& random,
+                int depth, GatherCounts& counts, std::vector<Further>& further) const;
   static float threshold(const PathRandom& random);
-  bool is_near(const Met& met, const PointLight& point, const PathRandom& random) const;
+  bool is_near(const Met& met, const PointLookup::Light& point, const PathRandom& random) const;
+  Rgb beside_edge(const Met& met, const PointLookup::Light& light, const PathRandom& random, GatherCounts& counts) const;
   Rgb sampled_light(const Met& met, const struct SeenSide& side, const PathRandom& random, GatherCounts& counts) const;
-  Rgb beside_shadow(const Met& met, const PointLight& point, const PathRandom& random, GatherCounts& counts) const;
-  Rgb near_irradiance(const Met& met, const PointLight& point, const PathRandom& random, std::uint64_t key, Rgb weight,
-                      GatherCounts& counts, std::vector<Further>& further) const;
 
   const Tracer& tracer_;
+  Reach reach_;
   const Lights& lights_;
   const PointLookup& points_;
   GatherOptions options_;

@@ -192,10 +192,8 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
   });
 }
 
-ReachTest point_reach(const Tracer& tracer) {
-  return [reach = Reach(tracer)](Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) {
-    return reach(from, normal, to, to_normal);
-  };
+ClearanceTest point_clearance(const Tracer& tracer) {
+  return [reach = Reach(tracer)](Vec3 position, Vec3 normal, float far) { return reach.clearance(position, normal, normal, far); };
 }
 
 }  // namespace tempolux

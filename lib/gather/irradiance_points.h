@@ -44,7 +44,7 @@ PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options);
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,
                      Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points);
 
-/// The reach test that PointLookup takes, on this scene; the tracer must outlive it.
-ReachTest point_reach(const Tracer& tracer);
+/// What PointLookup asks for, on this scene (Reach::clearance); the tracer must outlive it.
+ClearanceTest point_clearance(const Tracer& tracer);
 
 }  // namespace tempolux

@@ -138,6 +138,7 @@ class Placement {
         if (share < 0) share = gather_.lit_share(seen.surface, seen.normal, local);
         records[i] = gather_.gather(seen.surface, seen.normal, local, share);
         limit_radius(*records[i], seen.footprint, max_radius_, options_);
+        gather_.look_around(seen.surface, *records[i]);
       }
       const std::lock_guard lock(mutex);
       counts_ += local;

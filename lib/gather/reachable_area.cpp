@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kRim = 16;             ///< places on the rim that are looked at first
 constexpr int kMostProbes = 32;      ///< times the probes that must arrive
+constexpr int kMostBends = 4;
 constexpr int kMostInColumn = 8;     ///< surfaces on top of each other
 
 }  // namespace
@@ -36,6 +37,34 @@ bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
   if (!(below > 0)) return false;
   const Vec3 corner = end + normal * below;
   return free(start, corner) && free(corner, end);
+}
+
+/// m: how far one comes.
+float Reach::spoke(Vec3 position, Vec3 normal, Vec3 outwards, float reach) const {
+  float gone = 0;
+  Vec3 up = normal;
+  for (int bends = 0; bends <= kMostBends && gone < reach; ++bends) {
+    const Vec3 along = normalize(outwards - up * dot(outwards, up)) + up * Clearance::kRise;
+    Hit hit;
+    if (!tracer_.intersect({position + up * (2 * offset_), along, 0, reach - gone, true}, hit)) return reach;
+    const SurfacePoint there = tracer_.surface_point(hit);
+    gone += hit.t;
+    position = there.position;
+    up = dot(there.normal_geometric, along) > 0 ? -there.normal_geometric : there.normal_geometric;
+    if (!(dot(up, normal) > Clearance::kBend)) break;
+  }
+  return gone;
+}
+
+Clearance Reach::clearance(Vec3 position, Vec3 normal, Vec3 axis, float reach) const {
+  const Frame frame(axis);
+  Clearance seen;
+  seen.reach = reach;
+  for (std::uint32_t k = 0; k < Clearance::kSpokes; ++k) {
+    const Vec2 u = Clearance::spoke(k);
+    seen.set(k, spoke(position, normal, frame.tangent * u.x + frame.bitangent * u.y, reach));
+  }
+  return seen;
 }
 
 ReachableArea::ReachableArea(const Tracer& tracer) : tracer_(tracer), reach_(tracer) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lib/core/random.h"
+#include "lib/irradcache/clearance.h"
 #include "lib/trace/trace.h"
 
 namespace tempolux {
@@ -24,10 +25,16 @@ class Reach {
   bool operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const;
   /// Is nothing between the two, which lie above surfaces?
   bool free(Vec3 from, Vec3 to) const;
+  /// What is seen across the surface from a place (normal: unit, geometric, on the lit side), along spokes of the tangent plane
+  /// of `axis` (unit; the normal that Clearance::contains() will be given). A surface that faces the place at less than 45
+  /// degrees (Clearance::kBend) does not end a spoke: it goes on along that, over four bends at most.
+  Clearance clearance(Vec3 position, Vec3 normal, Vec3 axis, float reach) const;
   /// m: 2^-20 of the largest coordinate of the scene.
   float offset() const { return offset_; }
 
  private:
+  float spoke(Vec3 position, Vec3 normal, Vec3 outwards, float reach) const;
+
   const Tracer& tracer_;
   float offset_;
 };

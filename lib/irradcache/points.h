@@ -1,10 +1,7 @@
 // lib/irradcache/points.h -- irradiance points: what a gather ray reads at its hit.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,6 +11,7 @@
 #include "lib/core/random.h"
 #include "lib/core/vec.h"
 #include "lib/density/photon_index.h"
+#include "lib/irradcache/clearance.h"
 
 namespace tempolux {
 
@@ -29,136 +27,102 @@ struct IrradiancePoint {
   Rgb total() const { return direct + caustic + indirect; }
 };
 
-/// What a gather ray reads of a point: half a cache line instead of two.
-struct alignas(32) PointLight {
-  Rgb all{0.0f};            ///< W/m^2, of all kinds
-  float radius = 0;         ///< as IrradiancePoint's; infinite at the edge of a spot much brighter than the mean
-  Rgb first{0.0f};          ///< W/m^2, that no Lambert lobe has scattered before: direct and caustic
-  std::uint32_t point : 31 = 0;        ///< index of the IrradiancePoint
-  std::uint32_t shadow_edge : 1 = 0;   ///< its direct light is not that of all places near it
-  Rgb total() const { return all; }
-};
+/// What is seen around a place: its clearance up to `reach` [m]. lib/gather's point_clearance().
+using ClearanceTest = std::function<Clearance(Vec3 position, Vec3 normal, float reach)>;
 
-/// Can light at one place (with its normal on the lit side) be taken for light at the other? lib/gather's
-/// Reach.
-using ReachTest = std::function<bool(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal)>;
-
-/// Finds the point to read at a hit: the one nearest to the middle of the hit's cell (of the spacing of the
-/// points) among those of the same object that face the same way, else the nearest that faces the same way.
-/// A cell's answer depends on the cell alone and is remembered, so most look-ups are one table access;
-/// results are the same for any number of threads.
+/// Finds the point that stands for a hit: one that faces the same way, lies in the same plane, and from which the hit can be
+/// reached along the surface (Clearance). Where no point stands for the hit there is no answer: whoever asks follows the
+/// light further.
 ///
-/// With a reach test, hits near a point that something separates from one of its neighbours (a wall between
-/// two rooms, a box on a floor: the floor under it is dark) are answered one by one: the nearest point that
-/// can be reached from the hit.
+/// The point nearest to the middle of the hit's cell (a cube of 1/1.4 spacing, one of 64 directions) is asked first. A
+/// cell's first choice depends on the cell alone and is remembered, so that most look-ups are one table access; what a point
+/// sees around it depends on the point alone and is looked at when it is first read. If that one does not stand for the hit,
+/// the eight nearest to the hit are asked. Answers are the same for any number of threads.
 class PointLookup {
  public:
-  /// spacing: mean distance of neighbouring points, m, > 0. Keeps the span; it must outlive this.
-  /// Cells are larger where more than 2^63 numbers of cells, directions and objects would be needed.
-  PointLookup(std::span<const IrradiancePoint> points, const Box3& bounds, float spacing,
-              ReachTest reach = {});
-  ~PointLookup();
+  /// What a gather ray reads: a cache line.
+  struct alignas(64) Light {
+    Vec3 position, normal;
+    Rgb all{0.0f};            ///< W/m^2, of all kinds
+    float radius = 0;         ///< as IrradiancePoint's
+    std::uint32_t point = 0;  ///< index of the IrradiancePoint
+    mutable std::atomic<std::uint64_t> clearance{kNotLooked};
+    mutable std::atomic<std::uint8_t> even{kNotAsked};
+  };
+
+  /// spacing: mean distance of neighbouring points, m, > 0. Keeps the span; it must outlive this. Without a test a point
+  /// stands for all that faces its way and is asked first or near, whatever is between.
+  PointLookup(std::span<const IrradiancePoint> points, float spacing, ClearanceTest look = {});
 
   /// A look-up in three steps. Memory is slow: ask for several places, then take the answers, then read them;
   /// each step fetches what the next needs.
   struct Question {
     Vec3 position, normal;
-    std::uint32_t object = 0, bin = 0;
-    std::array<std::uint32_t, 3> cell{};
-    std::uint64_t key = 0;
+    std::uint64_t cell = 0;   ///< 0: too far out to have one
   };
   struct Answer {
-    std::uint32_t value = 0;
+    std::uint32_t value = 0;  ///< point + 1; 0: none faces this way
   };
   /// normal: unit, on the lit side. All thread-safe.
-  Question ask(Vec3 position, Vec3 normal, std::uint32_t object) const;
+  Question ask(Vec3 position, Vec3 normal) const;
   Answer answer(const Question& question) const;
-  /// nullptr if no point faces this way.
-  const PointLight* read(const Question& question, Answer answer) const;
+  /// nullptr if no point stands for the hit.
+  const Light* read(const Question& question, Answer answer) const;
   /// The three at once.
-  const PointLight* find(Vec3 position, Vec3 normal, std::uint32_t object) const {
-    const Question question = ask(position, normal, object);
+  const Light* find(Vec3 position, Vec3 normal) const {
+    const Question question = ask(position, normal);
     return read(question, answer(question));
   }
   std::size_t size() const { return points_.size(); }
   float spacing() const { return spacing_; }
-  const IrradiancePoint& point(const PointLight& read) const { return points_[read.point]; }
+  const IrradiancePoint& point(const Light& read) const { return points_[read.point]; }
+  /// Is the direct light of a point that of the places near it? Not where some of the points beside it (within 1.5 spacings)
+  /// get kContrast times the direct light of others: there a shadow or a bright spot ends, and a hit is to sample direct light
+  /// itself. Read instead, light would reach a spacing into shadows and out of gaps, where much of what sees it is: the ground in
+  /// a chair's shadow is seen by the chair. A point's own light has no say in it: it is known by a few shadow rays, and were
+  /// those that came out bright replaced, what is read would be dark in the mean.
+  bool is_even(const Light& light) const {
+    const std::uint8_t known = light.even.load(std::memory_order_relaxed);
+    return known == kNotAsked ? compare_neighbours(light) : known == kEven;
+  }
+  static constexpr float kContrast = 8;
 
-  static constexpr std::uint32_t kNormalBins = 8;   ///< per octahedral coordinate
-  static constexpr float kMostCells = 1 << 20;      ///< per axis: more than coordinates can tell apart
+  static constexpr float kReach = 2;   ///< spacings: farther off no point stands for a hit
 
  private:
-  static constexpr std::uint32_t kSeparated = 1;    ///< of an answer: its hits are answered one by one
-  static std::uint32_t normal_bin(Vec3 n);
+  static constexpr std::uint8_t kNotAsked = 0, kEven = 1, kUneven = 2;
+  static constexpr std::uint64_t kNotLooked = 0;   ///< a point walled in on all sides is kept as walled in on all but one
+  struct Entry {
+    std::atomic<std::uint64_t> cell{0};
+    std::atomic<std::uint32_t> answer{0};   ///< Answer::value + 1; 0: not there yet
+  };
+  bool compare_neighbours(const Light& light) const;
+  bool stands_for(const Light& light, const Question& question) const;
   Answer answer_anew(const Question& question) const;
-  Answer fetched(std::uint32_t value) const;
-  const PointLight* read_one_by_one(const Question& question, Answer answer) const;
-  void mark_hot_edges();
-  void mark_shadow_edges();
-  std::uint32_t search(Vec3 position, Vec3 normal, std::uint32_t object) const;
-  std::uint32_t search_cell(Vec3 middle, std::uint32_t bin, std::uint32_t object) const;
-  std::uint32_t search_reachable(const Question& question, const struct PointCrowd* tried) const;
-  std::uint32_t remember_crowd(Vec3 middle, Vec3 normal, std::uint32_t object) const;
-  std::uint32_t reachable_in(const struct PointCrowd& crowd, const Question& question) const;
-  bool separated(std::uint32_t point) const;
-  bool cut(Vec3 middle, std::uint32_t nearest) const;
+  std::uint32_t search_cell(std::uint64_t cell) const;
+  const Light* search(const Question& question) const;
 
   std::span<const IrradiancePoint> points_;
-  ReachTest reach_;
+  ClearanceTest look_;
   PhotonIndex index_;
-  Vec3 lower_;
-  float inverse_cell_ = 0, cell_ = 0, spacing_ = 0;
-  std::array<std::uint32_t, 3> size_{};  ///< of the grid, cells
-  std::uint32_t objects_ = 1;            ///< ids are below it
-  std::size_t mask_ = 0;
-  int value_bits_ = 0;
-  /// Number of cell, direction and object + 1, above value_bits_ bits of answer; 0: empty.
-  mutable std::unique_ptr<std::atomic<std::uint64_t>[]> entries_;
-  /// Of cells whose hits are answered one by one: the points near by.
-  std::unique_ptr<struct PointCrowd[]> crowds_;
-  mutable std::atomic<std::uint32_t> crowd_count_{0};
-  std::vector<PointLight> lights_;                                  ///< by point
-  mutable std::unique_ptr<std::atomic<std::uint8_t>[]> separated_;  ///< by point: 0 not known, 1 no, 2 yes
+  float spacing_, inverse_cell_;
+  std::vector<Light> lights_;   ///< by point
+  std::size_t mask_;
+  std::unique_ptr<Entry[]> entries_;
 };
 
-/// 3 bits of each octahedral coordinate; n need not be encoded to the last bit for that.
-inline std::uint32_t PointLookup::normal_bin(Vec3 n) {
-  const float scale = 1 / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
-  float u = n.x * scale, v = n.y * scale;
-  if (n.z < 0) {
-    const float folded = (1 - std::abs(v)) * std::copysign(1.0f, u);
-    v = (1 - std::abs(u)) * std::copysign(1.0f, v);
-    u = folded;
-  }
-  const auto bin = [](float x) {
-    return std::min(kNormalBins - 1, std::uint32_t((x + 1) * (0.5f * kNormalBins)));
-  };
-  return bin(u) * kNormalBins + bin(v);
-}
-
-inline PointLookup::Question PointLookup::ask(Vec3 position, Vec3 normal, std::uint32_t object) const {
-  const Vec3 local = (position - lower_) * inverse_cell_;
-  const auto coordinate = [this](float x, std::size_t axis) {
-    return x > 0 ? std::min(size_[axis] - 1, std::uint32_t(std::min(x, 2 * kMostCells))) : 0u;  // NaN: 0
-  };
-  Question q{position, normal, object, normal_bin(normal), {coordinate(local.x, 0), coordinate(local.y, 1), coordinate(local.z, 2)}, 0};
-  const std::uint64_t cell = (std::uint64_t(q.cell[2]) * size_[1] + q.cell[1]) * size_[0] + q.cell[0];
-  q.key = (cell * objects_ + std::min(object, objects_ - 1)) * (kNormalBins * kNormalBins) + q.bin + 1;
-  __builtin_prefetch(&entries_[mix64(q.key) & mask_]);
-  return q;
-}
-
-inline PointLookup::Answer PointLookup::answer(const Question& q) const {
-  const std::uint64_t there = entries_[mix64(q.key) & mask_].load(std::memory_order_acquire);
-  if (there >> value_bits_ != q.key || there & kSeparated) return answer_anew(q);
-  const Answer answer{std::uint32_t(there & ((std::uint64_t(1) << value_bits_) - 1))};
-  if (answer.value) __builtin_prefetch(&lights_[answer.value / 2 - 1]);
+inline PointLookup::Answer PointLookup::answer(const Question& question) const {
+  const Entry& entry = entries_[mix64(question.cell) & mask_];
+  const std::uint32_t known = entry.cell.load(std::memory_order_relaxed) == question.cell ? entry.answer.load(std::memory_order_relaxed) : 0;
+  const Answer answer = known ? Answer{known - 1} : answer_anew(question);
+  if (answer.value) __builtin_prefetch(&lights_[answer.value - 1]);
   return answer;
 }
 
-inline const PointLight* PointLookup::read(const Question& q, Answer answer) const {
-  if (answer.value & kSeparated) return read_one_by_one(q, answer);
-  return answer.value ? &lights_[answer.value / 2 - 1] : nullptr;
+inline const PointLookup::Light* PointLookup::read(const Question& question, Answer answer) const {
+  if (!answer.value) return nullptr;
+  const Light& light = lights_[answer.value - 1];
+  return stands_for(light, question) ? &light : search(question);
 }
 
 }  // namespace tempolux

@@ -12,7 +12,7 @@
 namespace tempolux {
 namespace {
 
-constexpr int kFinest = 40;               ///< smallest cells: largest / 2^kFinest, below float spacing
+constexpr std::size_t kMostLevels = 277;   ///< powers of two that a radius above 0 in float may lie below
 
 bool is_usable(const IrradianceRecord& r) {
   bool finite = is_finite(r.position) && is_finite(r.normal) && std::isfinite(channel_sum(r.irradiance));
@@ -25,9 +25,6 @@ bool is_usable(const IrradianceRecord& r) {
 float least_cosine_of(float error_bound) {
   return 1 - std::clamp(0.375f * error_bound * error_bound, 0.00375f, 1 - kWideCosine);
 }
-
-RecordStore::RecordStore(const Box3& bounds, const InterpolationOptions& options)
-    : lower_(bounds.empty() ? Vec3{} : bounds.lower), largest_cell_(std::max(double(bounds.diagonal()), 1e-30)), options_(options) {}
 
 template <class Found>
 inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine, const Found& found) {
@@ -47,14 +44,14 @@ inline bool RecordStore::any_of(std::span<const Eight> eights, Vec3 position, Ve
   return false;
 }
 
-/// The level whose cells are between one and two radii wide.
+/// The level whose cells are from one to two radii wide.
 RecordStore::Level& RecordStore::level_of(float radius) {
-  const int exponent = std::clamp(int(std::floor(std::log2(largest_cell_ / double(radius)))), 0, kFinest);
+  const int exponent = std::ilogb(radius) + 1;
   for (Level& level : levels_)
     if (level.exponent == exponent) return level;
   Level& level = levels_.emplace_back();
   level.exponent = exponent;
-  level.inverse_cell = std::ldexp(1 / largest_cell_, exponent);
+  level.inverse_cell = std::ldexp(1.0, -exponent);
   if (options_.only_read) return level;
   level.buckets.resize(kFirstBuckets);
   level.around.resize(kFirstBuckets);
@@ -63,9 +60,8 @@ RecordStore::Level& RecordStore::level_of(float radius) {
 
 bool RecordStore::add(const IrradianceRecord& record) {
   TEMPOLUX_CHECK(!options_.only_read);
-  Level* level = nullptr;
-  if (!keep(record, level)) return false;
-  if (!level) return true;
+  Level* const level = keep(record);
+  if (!level) return false;
   if (level->listed < 4 * level->buckets.size()) {
     list(*level, level->members.back());
     return true;
@@ -84,42 +80,31 @@ void RecordStore::add(std::span<const IrradianceRecord> records) {
   }
   TEMPOLUX_CHECK(records_.empty());
   records_.reserve(records.size());
-  Level* level = nullptr;
-  for (const IrradianceRecord& record : records) keep(record, level);
+  for (const IrradianceRecord& record : records) keep(record);
   for (Level& made : levels_) pack(made);
 }
 
-/// The record as such; level: that whose lists it belongs into, null if it is larger than all cells.
-bool RecordStore::keep(const IrradianceRecord& record, Level*& level) {
-  level = nullptr;
+/// The record as such; the level whose lists it belongs into, null if it is refused.
+RecordStore::Level* RecordStore::keep(const IrradianceRecord& record) {
   if (!is_usable(record)) {
     ++refused_;
-    return false;
+    return nullptr;
   }
-  const auto index = std::uint32_t(records_.size());
+  Level& level = level_of(record.radius);
+  level.members.push_back(std::uint32_t(records_.size()));
   records_.push_back(record);
-  if (double(record.radius) > largest_cell_) {
-    everywhere_.add(entry_of(index));
-    return true;
-  }
-  level = &level_of(record.radius);
-  level->members.push_back(index);
-  return true;
+  return &level;
 }
 
 /// A smaller radius: the record stays on its level and in its cells.
 void RecordStore::shrink(std::uint32_t record, float radius) {
-  const float before = records_[record].radius;
-  if (double(before) > largest_cell_) everywhere_.set_radius(record, radius);
   for (Level& level : levels_) {
     if (!std::binary_search(level.members.begin(), level.members.end(), record)) continue;
-    const Vec3d local = Vec3d(records_[record].position) - lower_;
-    for_each_cell(local, before, level.inverse_cell,
-                  [&](Cell c) {
-                    const std::size_t at = bucket_of(c, level.buckets.size());
-                    level.buckets[at].set_radius(record, radius);
-                    level.around[at].set_radius(record, radius);
-                  });
+    for_each_cell(Vec3d(records_[record].position), records_[record].radius, level.inverse_cell, [&](Cell c) {
+      const std::size_t at = bucket_of(c, level.buckets.size());
+      level.buckets[at].set_radius(record, radius);
+      level.around[at].set_radius(record, radius);
+    });
   }
   records_[record].radius = radius;
 }
@@ -127,10 +112,10 @@ void RecordStore::shrink(std::uint32_t record, float radius) {
 template <class Found>
 inline bool RecordStore::any_near(std::vector<Bucket> Level::*listed, float least_cosine, Vec3 position, Vec3 normal,
                                   const Found& found) const {
-  const Vec3d local = Vec3d(position) - lower_;
+  const Vec3d local(position);
   if (options_.only_read) {
     // Where the lists are is asked of all levels at once: they lie far apart in memory.
-    std::size_t at[kFinest + 1];
+    std::size_t at[kMostLevels];
     for (std::size_t i = 0; i < levels_.size(); ++i) {
       const Level& level = levels_[i];
       at[i] = bucket_of(cell_at(local, level.inverse_cell), level.first.size() - 1);
@@ -148,7 +133,7 @@ inline bool RecordStore::any_near(std::vector<Bucket> Level::*listed, float leas
       if (any_of(bucket.eights(), position, normal, least_cosine, found)) return true;
     }
   }
-  return any_of(everywhere_.eights(), position, normal, least_cosine, found);
+  return false;
 }
 
 void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first) {
@@ -167,7 +152,7 @@ void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, s
     if (i >= first && own + slope * d < records_[i].radius) shrink(i, own + slope * d);
 }
 
-inline float RecordStore::weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal) {
+inline float RecordStore::weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal) const {
   const Vec3 d = position - entry.position;
   const float d2 = length2(d);
   if (d2 >= radius * radius) return 0;
@@ -175,7 +160,11 @@ inline float RecordStore::weight_of(const Entry& entry, float radius, float leas
   if (cosine <= least_cosine) return 0;
   if (std::abs(dot(d, normal + entry.normal)) > 2 * kOffPlane * entry.radius) return 0;
   const float angle = std::sqrt(std::max(0.0f, 1 - cosine) / (1 - least_cosine));
-  return std::max(0.0f, (1 - std::sqrt(d2) / radius) * (1 - angle));
+  const float weight = std::max(0.0f, (1 - std::sqrt(d2) / radius) * (1 - angle));
+  if (!(weight > 0)) return 0;
+  const Clearance& seen = records_[entry.record].clearance;
+  const bool relaxed = radius > entry.radius && seen.shares == Clearance::kOpen;
+  return relaxed || seen.contains(d, entry.normal) ? weight : 0;
 }
 
 inline void RecordStore::accumulate(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lib/core/vec.h"
+#include "lib/irradcache/clearance.h"
 
 namespace tempolux {
 
@@ -25,6 +26,7 @@ struct IrradianceRecord {
   float lit_share = 1;                  ///< lit_cells / all cells; not in files
   float expected_share = 1;             ///< what was thought of lit_share before its own rays; not in files
   float curvature = 0;                  ///< W/m^4: size of the second derivatives (hemisphere.h); not in files
+  Clearance clearance;                  ///< what was seen around it, about `normal`: beyond it does not count
   std::uint32_t object = 0;             ///< the object it rides on
 };
 
@@ -44,11 +46,11 @@ float least_cosine_of(float error_bound);
 inline constexpr float kWideCosine = 0.94f;
 
 /// Records found by place: each is listed in the cells its validity sphere meets near its tangent plane, on the level of
-/// a hierarchy of hashed grids whose cells are between one and two radii wide. What a look-up costs does not grow with the number
+/// a hierarchy of hashed grids whose cells are a power of two, from one to two radii wide. What a look-up costs does not grow with the number
 /// of records, only with how many overlap there. Look-ups are thread-safe while nothing is added.
 class RecordStore {
  public:
-  explicit RecordStore(const Box3& bounds, const InterpolationOptions& options = {});
+  explicit RecordStore(const InterpolationOptions& options = {}) : options_(options) {}
 
   /// From now on records count in this angle only, if it is the narrower one.
   void narrow(float least_cosine) { options_.least_cosine = std::max(options_.least_cosine, least_cosine); }
@@ -83,7 +85,8 @@ class RecordStore {
   /// the hat weights of Tabellion & Lamorlette 2004 and Krivanek, which go to zero at the border of validity, so
   /// that no record is seen to begin. Every extrapolation is clamped at 0. A record is left out if the point is not on one
   /// surface with it: |(x - x_i) . (n + n_i)/2| > 0.05 r_i, which is 0 along circles. Behind it as Ward 1988; in front as
-  /// well, or the bright ground below the rim of a plate shines on top of the plate. Where no record counts those in the
+  /// well, or the bright ground below the rim of a plate shines on top of the plate. And if something is in between
+  /// (clearance). Where no record counts those in the
   /// angle of kWideCosine do.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
   /// Mean lit_share of the records that are valid there, so weighted; below 0 if none is.
@@ -124,7 +127,7 @@ class RecordStore {
     std::uint32_t count_ = 0, last_ = 0;   ///< last_: the record that came last
   };
   struct Level {
-    int exponent = 0;                   ///< cells are largest_cell / 2^exponent wide
+    int exponent = 0;                   ///< cells are 2^exponent m wide
     double inverse_cell = 0;
     std::size_t listed = 0;             ///< entries in all buckets
     std::vector<std::uint32_t> members;
@@ -135,7 +138,7 @@ class RecordStore {
     std::vector<Eight> eights;
   };
   Level& level_of(float radius);
-  bool keep(const IrradianceRecord& record, Level*& level);
+  Level* keep(const IrradianceRecord& record);
   void list(Level& level, std::uint32_t record) const;
   /// body(cell, near) for the cells that the validity sphere meets; near: the record may be valid in it.
   template <class Body> void for_each_cell_of(const Level& level, const IrradianceRecord& record, const Body& body) const;
@@ -151,16 +154,13 @@ class RecordStore {
                 const Found& found) const;
   Interpolated interpolate(Vec3 position, Vec3 normal, float least_cosine) const;
   /// Of a record at a point, were its radius another one; 0 where it is not valid.
-  static float weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal);
+  float weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal) const;
   void accumulate(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal, Rgb& sum,
                   Interpolated& result) const;
 
-  Vec3d lower_;
-  double largest_cell_;
   InterpolationOptions options_;
   std::vector<IrradianceRecord> records_;
   std::vector<Level> levels_;           ///< those that have members, in the order they came
-  Bucket everywhere_;                   ///< records larger than the largest cell
   std::uint64_t refused_ = 0;
 };
 

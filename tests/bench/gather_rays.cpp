@@ -196,7 +196,7 @@ void run(const Options& options) {
   RTCScene tree = bare_tree(frame, device);
   GatherOptions gather_options;
   gather_options.rays = options.rays;
-  const PointLookup first_lookup(points, frame.bounds, spacing, point_reach(tracer));
+  const PointLookup first_lookup(points, spacing, point_clearance(tracer));
   const std::vector<Ray> rays =
       gather_rays(tracer, points, FinalGather(tracer, lights, first_lookup, gather_options), options);
   double distance = 0, sum = 0;
@@ -207,7 +207,7 @@ void run(const Options& options) {
                             double(counts.shadow_rays) / double(rays.size()));
   std::vector<double> bare, bare_first, with_lookup, filling, ratio, ratio_first;
   for (int repeat = 0; repeat < 5; ++repeat) {
-    const PointLookup lookup(points, frame.bounds, spacing, point_reach(tracer));
+    const PointLookup lookup(points, spacing, point_clearance(tracer));
     const FinalGather gather(tracer, lights, lookup, gather_options);
     bare_first.push_back(time_bare(tree, rays, distance));
     bare.push_back(bare_first.back() + time_bare(tree, further.cosine, distance) +

@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing;
 
-constexpr std::uint32_t kAllColumns = column_influence | column_update;
+constexpr std::uint32_t kAllColumns = column_influence | column_update | column_clearance;
 const std::string kPage = "../formats/irradcache/irradcache.md", kFiles = "formats/irradcache/";
 
 std::string bytes_of(const IrradcacheHeader& header,
@@ -44,6 +44,7 @@ IrradianceCacheRecord record(std::uint32_t i, std::uint32_t columns = 0) {
   r.radius_unclamped = i % 3 ? x : std::numeric_limits<float>::infinity();
   if (columns & column_influence) r.influence = x + 0.5f;
   if (columns & column_update) r.update = {-x, x, 1};
+  if (columns & column_clearance) r.clearance_reach = x + 1, r.clearance = {i * 77, ~i};
   return r;
 }
 std::vector<IrradianceCacheRecord> records(std::uint32_t count, std::uint32_t columns = 0,
@@ -137,15 +138,15 @@ TEST(Irradcache, WhatIsNotKnownOfTheGatheringComesBackAsNotKnown) {
   EXPECT_TRUE(file.records.empty());
 }
 
-// Columns: 4 and 12 bytes per record; "none", "influence", "influence,update" are 4, 9 and 16 letters.
+// Columns: 4, 12 and 12 bytes per record; "none", "influence", "influence,update,clearance" are 4, 9 and 26 letters.
 TEST(Irradcache, ColumnsThatAreNotNamedTakeNoRoom) {
   IrradcacheHeader header;
   const auto size_of = [&](std::uint32_t columns) {
     header.columns = columns;
-    return bytes_of(header, {records(100)}).size();
+    return bytes_of(header, {records(100, columns)}).size();
   };
   EXPECT_EQ(size_of(column_influence) - size_of(0), 400u + 9 - 4);
-  EXPECT_EQ(size_of(kAllColumns) - size_of(column_influence), 1200u + 16 - 9);
+  EXPECT_EQ(size_of(kAllColumns) - size_of(column_influence), 2400u + 26 - 9);
 }
 
 TEST(Irradcache, ManyRecordsAreCutIntoBlocksAndComeBackInOrder) {
@@ -228,7 +229,9 @@ TEST(Irradcache, DigestIsOfTheDataAlone) {
   const std::string bare = digest(other, {records(5)});
   EXPECT_NE(bare, whole);
   other.columns = kAllColumns;
-  EXPECT_NE(digest(other, {records(5)}), bare);  // a column of zeros is more than no column
+  std::vector<IrradianceCacheRecord> zeros = records(5);
+  for (auto& r : zeros) r.clearance_reach = 1;   // which cannot be 0
+  EXPECT_NE(digest(other, {zeros}), bare);       // a column of zeros is more than no column
   const auto changed = [&](const std::function<void(IrradianceCacheRecord&)>& change) {
     std::vector<IrradianceCacheRecord> all = records(5, kAllColumns);
     change(all[4]);
@@ -238,6 +241,7 @@ TEST(Irradcache, DigestIsOfTheDataAlone) {
   EXPECT_NE(changed([](auto& r) { r.position[0] += 1; }), whole);
   EXPECT_NE(changed([](auto& r) { r.influence += 1; }), whole);
   EXPECT_NE(changed([](auto& r) { r.update[2] += 1; }), whole);
+  EXPECT_NE(changed([](auto& r) { r.clearance[1] ^= 1; }), whole);
   EXPECT_EQ(changed([](auto& r) { r.reserved = 1; }), whole);
   IrradcacheFile file = load_irradcache(folder / "a");
   file.records[1].reserved = 1;  // never so in a file that was read, but in one made in memory
@@ -268,6 +272,7 @@ TEST(Irradcache, TheWriterWritesNothingThatAReaderWouldRefuse) {
   refused([&](auto& r) { r.radius_unclamped = -inf; });
   refused([&](auto& r) { r.influence = 1e-45f; });  // columns the header does not name
   refused([&](auto& r) { r.update[0] = -1; });
+  refused([&](auto& r) { r.clearance_reach = 1; });
   std::vector<IrradianceCacheRecord> good = records(3);
   good[0].normal = {0, 0, 1.00009f};
   EXPECT_NO_THROW(writer.write(good));
@@ -278,7 +283,7 @@ TEST(Irradcache, TheWriterWritesNothingThatAReaderWouldRefuse) {
     change(bad);
     EXPECT_THROW(IrradcacheWriter(sink, bad), std::invalid_argument);
   };
-  header_refused([&](auto& h) { h.columns = 4; });
+  header_refused([&](auto& h) { h.columns = 8; });
   header_refused([&](auto& h) { h.error_bound = double(nan); });
   header_refused([&](auto& h) { h.min_radius = 3; });
   header_refused([&](auto& h) { h.max_radius = double(inf); });

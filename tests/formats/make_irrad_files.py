@@ -192,9 +192,10 @@ def make_cache():
     m = Maker("irradcache", cache.encode_irradcache, good)
     m.common()
     m.save("accept/worked-example", good)
-    for columns in ("influence", "update", "influence,update"):
+    for columns in ("influence", "update", "influence,update", "clearance", "influence,update,clearance"):
         c = m.with_header(columns=columns)
         c.records[0].influence, c.records[0].update = 0.75, (0.5, -0.25, 1)
+        c.records[0].clearance = (0.515625, 0xffff4321, 0xffffffff)
         m.save("accept/columns-" + columns.replace(",", "-"), c)
     empty = copy.deepcopy(good)
     empty.records = []
@@ -240,6 +241,11 @@ def make_cache():
     columns.records = [dataclass_with(record, influence=1, update=(1, 1, 1))]
     data = cache.encode_irradcache(columns)
     m.save("refuse/influence-negative", m.with_block(12 + 120, struct.pack("<f", -1), data))
+    cleared = m.with_header(columns="clearance")
+    for name, reach in (("zero", 0), ("negative", -1), ("nan", NAN)):
+        cleared.records = [dataclass_with(record, clearance=(reach, 0, 0))]
+        m.save("refuse/clearance-reach-" + name, cache.encode_irradcache(cleared))
+    m.save("refuse/clearance-before-1.2", m.with_text(text.replace(b"columns: none", b"columns: clearance"), minor=1))
     m.save("refuse/update-nan", m.with_block(12 + 124, struct.pack("<f", NAN), data))
 
 

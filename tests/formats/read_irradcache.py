@@ -21,12 +21,13 @@ from containers import cut, encode_container, exact_sums, integers, read_contain
 MAGIC, MARK = b"\x89TIRRC\r\n", b"IRRC"
 # Section 3: position, normal, object, set, reserved, irradiance, rotational, translational, radius, radius_unclamped
 RECORD = struct.Struct("<3f3fHBB3f9f9fff")
-INFLUENCE, UPDATE = struct.Struct("<f"), struct.Struct("<3f")      # section 4
+INFLUENCE, UPDATE, CLEARANCE = struct.Struct("<f"), struct.Struct("<3f"), struct.Struct("<f2I")      # section 4
 END = "<Q3d"                                                       # section 5, without mark and chain
-COLUMNS = {"none": [], "influence": ["influence"], "update": ["update"], "influence,update": ["influence", "update"]}
-SIZES = {"influence": INFLUENCE.size, "update": UPDATE.size}
+NAMES = ["influence", "update", "clearance"]
+COLUMNS = {",".join(some) or "none": some for some in ([n for i, n in enumerate(NAMES) if bits >> i & 1] for bits in range(8))}
+SIZES = {"influence": INFLUENCE.size, "update": UPDATE.size, "clearance": CLEARANCE.size}
 KEYS = ["columns", "origin", "rays", "error-bound", "least-cosine", "radii", "placed"]
-SINCE = {"least-cosine": 1}                                         # section 9
+SINCE = {"least-cosine": 1, "clearance": 2}                         # section 9; clearance is no key but a column
 
 
 def good_radii(text):
@@ -65,6 +66,7 @@ class Record:
     radius_unclamped: float
     influence: float = 0
     update: tuple = (0, 0, 0)
+    clearance: tuple = (0, 0, 0)   # reach, shares of spokes 0 to 7, of 8 to 15
 
 
 @dataclasses.dataclass
@@ -93,7 +95,9 @@ def read_irradcache(path):
                 r.influence, = INFLUENCE.unpack_from(columns["influence"], INFLUENCE.size * i)
             if "update" in columns:
                 r.update = UPDATE.unpack_from(columns["update"], UPDATE.size * i)
-            if not is_good(r):
+            if "clearance" in columns:
+                r.clearance = CLEARANCE.unpack_from(columns["clearance"], CLEARANCE.size * i)
+            if not is_good(r) or ("clearance" in columns and not r.clearance[0] > 0):
                 refuse(offset + RECORD.size * i, f"record out of range: {r}")
             records.append(r)
     c = Irradcache(header, history, records)
@@ -118,9 +122,11 @@ def encode_irradcache(c):
             parts.append(b"".join(INFLUENCE.pack(r.influence) for r in records))
         if "update" in columns:
             parts.append(b"".join(UPDATE.pack(*r.update) for r in records))
+        if "clearance" in columns:
+            parts.append(b"".join(CLEARANCE.pack(*r.clearance) for r in records))
         blocks.append((len(records), parts))
-    return encode_container(MAGIC, MARK, KEYS, c.header, c.history, blocks, struct.pack(END, *totals(c)),
-                            int("least-cosine" in c.header))
+    minor = 2 if "clearance" in COLUMNS.get(c.header["columns"], []) else int("least-cosine" in c.header)
+    return encode_container(MAGIC, MARK, KEYS, c.header, c.history, blocks, struct.pack(END, *totals(c)), minor)
 
 
 def write_irradcache(path, c):

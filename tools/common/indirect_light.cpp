@@ -28,7 +28,7 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
               ": mirrors, glass and gloss throw caustic light, which a cache does not hold: it is left out; "
               "give --photons FILE");
   tool.stats().phase("read cache");
-  records_ = std::make_unique<RecordStore>(frame.bounds, InterpolationOptions{.least_cosine = 0, .only_read = true});
+  records_ = std::make_unique<RecordStore>(InterpolationOptions{.least_cosine = 0, .only_read = true});
   history_ = read_records(tool, frame_name(options.irradcache, number), InputRole::file, frame, *records_);
   cache_ = std::make_unique<CacheLight>(*records_, [this, number] { return make_gather(number); }, photons_.get());
 }
@@ -46,7 +46,7 @@ const FinalGather* IndirectLight::make_gather(int number) {
                      ": has no record near some of what is seen, and there is nothing to "
                      "gather one from; give --points FILE or --photons FILE");
   lookup_ =
-      std::make_unique<PointLookup>(points_.points, tracer_.frame().bounds, points_.spacing, point_reach(tracer_));
+      std::make_unique<PointLookup>(points_.points, points_.spacing, point_clearance(tracer_));
   gather_ = std::make_unique<FinalGather>(tracer_, lights_, *lookup_, options_.gather);
   return gather_.get();
 }

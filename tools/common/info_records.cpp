@@ -55,6 +55,7 @@ std::string column_names(std::uint32_t columns) {
   std::string names;
   if (columns & column_influence) names = "influence";
   if (columns & column_update) names += names.empty() ? "update" : ",update";
+  if (columns & column_clearance) names += names.empty() ? "clearance" : ",clearance";
   return names.empty() ? "none" : names;
 }
 
@@ -198,7 +199,7 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
   for (const IrradianceCacheRecord& record : file.records) white = std::max(white, largest(record.irradiance));
   std::vector<PointTable::Column> columns{{"irradiance", "W_m2", 3}, {"radius", "m", 1}, {"radius_unclamped", "m", 1}};
   const bool csv = format == "csv", influence = csv && file.header.columns & column_influence,
-             update = csv && file.header.columns & column_update;
+             update = csv && file.header.columns & column_update, clearance = csv && file.header.columns & column_clearance;
   if (csv)
     for (const auto& [gradient, unit] : {std::pair{"rotational", "W_m2"}, {"translational", "W_m3"}})
       for (const char* channel : {"_r", "_g", "_b"})
@@ -206,6 +207,8 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
           columns.push_back({std::string(gradient) + channel + axis, unit, 1});
   if (influence) columns.push_back({"influence", "W_m2", 1});
   if (update) columns.push_back({"update", "W_m2", 3});
+  if (clearance)
+    for (int k = 0; k < 16; ++k) columns.push_back({"clearance_" + std::to_string(k), "m", 1});
   PointTable table(format, output, file.records.size(), "irradiance records; irradiance in W/m^2, positions in m",
                    columns);
   for (const IrradianceCacheRecord& record : file.records) {
@@ -220,6 +223,9 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
     if (influence) table.add(double(record.influence));
     if (update)
       for (const float e : record.update) table.add(double(e));
+    if (clearance)
+      for (std::size_t k = 0; k < 16; ++k)
+        table.add(double(record.clearance_reach) * double(record.clearance[k / 8] >> 4 * (k % 8) & 15) / 15);
     add_colour(table, record.irradiance, white);
     table.end_row(record.object, std::uint8_t(record.set));
   }

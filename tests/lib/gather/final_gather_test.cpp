@@ -44,7 +44,7 @@ Means gather_many(HalfPlane& plane, int rays, int repeats) {
   const SceneFrame& frame = plane.scene.frame();
   const Tracer tracer(frame);
   const Lights lights(frame, EmissionTable{});
-  const PointLookup lookup(plane.points, frame.bounds, 1);
+  const PointLookup lookup(plane.points, 1);
   Means means;
   for (int r = 0; r < repeats; ++r) {
     GatherOptions options;
@@ -82,7 +82,7 @@ TEST(FinalGather, FurtherRaysKeepTheMean) {
   const SceneFrame& frame = scene.frame();
   const Tracer tracer(frame);
   const Lights lights(frame, EmissionTable{});
-  const PointLookup lookup(points, frame.bounds, 1);
+  const PointLookup lookup(points, 1);
   SurfacePoint from;
   from.normal = from.normal_geometric = {0, 1, 0};
   from.offset = 1e-6f;
@@ -121,7 +121,7 @@ TEST(FinalGather, LightCountsByWhatTheCoatLetsIn) {
       const std::vector<IrradiancePoint> points{point};
       const Tracer tracer(scene.frame());
       const Lights lights(scene.frame(), EmissionTable{});
-      const PointLookup lookup(points, scene.frame().bounds, 1);
+      const PointLookup lookup(points, 1);
       SurfacePoint from;
       from.normal = from.normal_geometric = {0, 1, 0};
       from.offset = 1e-6f;
@@ -166,7 +166,7 @@ TEST(FinalGather, UniformRoomIsUniform) {
   }
   const Tracer tracer(frame);
   const Lights lights(frame, EmissionTable{});
-  const PointLookup lookup(points, frame.bounds, 2);
+  const PointLookup lookup(points, 2);
   const FinalGather gather(tracer, lights, lookup, {});
   SurfacePoint from;
   from.position = {0.3f, -1, 0.2f};
@@ -191,7 +191,7 @@ TEST(FinalGather, AllMissesGiveNothingAndAnInfiniteRadius) {
   const SceneFrame& frame = scene.frame();
   const Tracer tracer(frame);
   const Lights lights(frame, EmissionTable{});
-  const PointLookup lookup({}, frame.bounds, 1);
+  const PointLookup lookup({}, 1);
   const FinalGather gather(tracer, lights, lookup, {});
   SurfacePoint from;
   from.normal = from.normal_geometric = {0, 1, 0};
@@ -231,7 +231,7 @@ TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
       }
   const Tracer tracer(frame);
   const Lights lights(frame, build_emission_table({&frame, 1}));
-  const PointLookup lookup(points, frame.bounds, step);
+  const PointLookup lookup(points, step);
   SurfacePoint from;
   from.position = {0, h, 0};
   from.normal = from.normal_geometric = {0, -1, 0};

@@ -39,7 +39,7 @@ struct Room {
       }
     tracer = std::make_unique<Tracer>(*frame);
     lights = std::make_unique<Lights>(*frame, EmissionTable{});
-    lookup = std::make_unique<PointLookup>(points, frame->bounds, 2.0f);
+    lookup = std::make_unique<PointLookup>(points, 2.0f);
     GatherOptions options;
     options.rays = 50;
     gather = std::make_unique<FinalGather>(*tracer, *lights, *lookup, options);
@@ -79,7 +79,7 @@ TEST(LimitRadius, GradientsOfAFewRaysAreNoise) {
 
 TEST(PlaceRecords, EveryPixelIsCoveredAndASecondTimeNothingIsAdded) {
   const Room room;
-  RecordStore store(room.frame->bounds);
+  RecordStore store;
   GatherCounts counts;
   const std::size_t added = room.place(96, 64, store, counts);
   EXPECT_EQ(added, store.records().size());
@@ -112,7 +112,7 @@ TEST(PlaceRecords, SmallBrightThingsAreNotOutweighedByRecordsThatMissThem) {
   const std::vector<IrradiancePoint> points{bright};
   const Tracer tracer(scene.frame());
   const Lights lights(scene.frame(), EmissionTable{});
-  const PointLookup lookup(points, scene.frame().bounds, 1);
+  const PointLookup lookup(points, 1);
   const PixelView floor = [](float x, float y, const PathRandom*) {
     SeenPoint seen;
     seen.surface.position = {kHalf * (2 * x / kSize - 1), 0, kHalf * (2 * y / kSize - 1)};
@@ -125,7 +125,7 @@ TEST(PlaceRecords, SmallBrightThingsAreNotOutweighedByRecordsThatMissThem) {
   for (int run = 0; run < kRuns; ++run) {
     const GatherOptions options{.seed = std::uint64_t(run), .rays = 500};
     const FinalGather gather(tracer, lights, lookup, options);
-    RecordStore store({{-2, 0, -2}, {2, 1, 2}});
+    RecordStore store;
     GatherCounts counts;
     place_records(gather, floor, kSize, kSize, {{-2, 0, -2}, {2, 1, 2}}, {}, store, counts);
     for (int y = 0; y < kSize; ++y)
@@ -144,7 +144,7 @@ TEST(PlaceRecords, TheSameRecordsForAnyNumberOfThreads) {
   std::vector<IrradianceRecord> first;
   for (int threads : {1, 2, 3, 7}) {
     const ThreadLimit limit(threads);
-    RecordStore store(room.frame->bounds);
+    RecordStore store;
     GatherCounts counts;
     room.place(64, 48, store, counts);
     if (first.empty()) first.assign(store.records().begin(), store.records().end());
@@ -161,10 +161,10 @@ TEST(PlaceRecords, TheSameRecordsForAnyNumberOfThreads) {
 /// A pixel bigger than the room still gets its record; a picture of nothing gets none.
 TEST(PlaceRecords, PicturesOfOnePixelAndOfNothing) {
   const Room room;
-  RecordStore store(room.frame->bounds);
+  RecordStore store;
   GatherCounts counts;
   EXPECT_GE(room.place(1, 1, store, counts), 1u);
-  RecordStore none(room.frame->bounds);
+  RecordStore none;
   const PixelView nothing = [](float, float, const PathRandom*) { return std::optional<SeenPoint>(); };
   EXPECT_EQ(place_records(*room.gather, nothing, 32, 32, room.frame->bounds, {}, none, counts), 0u);
 }
@@ -172,7 +172,7 @@ TEST(PlaceRecords, PicturesOfOnePixelAndOfNothing) {
 /// What is seen through a choice (glass) is looked at within pixels too, with random numbers to draw it.
 TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
   const Room room;
-  RecordStore store(room.frame->bounds);
+  RecordStore store;
   GatherCounts counts;
   int drawn = 0;
   const PixelView view = [&](float x, float y, const PathRandom* random) {
@@ -190,7 +190,7 @@ TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
 /// of those covers all of this small patch, so that the batches after gather nothing.
 TEST(PlaceRecords, RecordsOfOneBatchServeTheNext) {
   const Room room;
-  RecordStore store(room.frame->bounds);
+  RecordStore store;
   GatherCounts counts;
   const PixelView patch = [](float x, float y, const PathRandom*) {
     SeenPoint seen;
@@ -208,7 +208,7 @@ TEST(PlaceRecords, StepsBetweenParallelPlanesAreEdges) {
   const Room room;
   constexpr int kSize = 12;
   const auto looked_within = [&](float step, Vec3 across) {
-    RecordStore store(room.frame->bounds);
+    RecordStore store;
     GatherCounts counts;
     int within = 0;
     const PixelView view = [&](float x, float y, const PathRandom* random) {

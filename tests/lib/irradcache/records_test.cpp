@@ -12,13 +12,6 @@
 namespace tempolux {
 namespace {
 
-Box3 box(Vec3 lower, Vec3 upper) {
-  Box3 b;
-  b.add(lower);
-  b.add(upper);
-  return b;
-}
-
 IrradianceRecord record_at(Vec3 position, Vec3 normal, float radius, Rgb irradiance) {
   IrradianceRecord r;
   r.position = position;
@@ -57,7 +50,7 @@ void expect_brute_force(Vec3 centre, float far) {
   const PathRandom random(7, 0);
   std::uint32_t drawn = 0;
   const auto uniform = [&] { return random.get1(drawn++, Purpose::gather); };
-  RecordStore store(box(centre, centre + Vec3{1, 1, 1}));
+  RecordStore store;
   for (int i = 0; i < 600; ++i) {
     const Vec3 position = centre + Vec3{uniform(), uniform(), uniform()};
     const Vec2 u{uniform(), uniform()};
@@ -69,7 +62,7 @@ void expect_brute_force(Vec3 centre, float far) {
     }
     ASSERT_TRUE(store.add(r));
   }
-  RecordStore read(box(centre, centre + Vec3{1, 1, 1}), {.only_read = true});
+  RecordStore read({.only_read = true});
   read.add(store.records());
   const float lost = 2e-5f + 1e-6f * far;
   int covered = 0;
@@ -108,7 +101,7 @@ TEST(RecordStore, NoCellIsForgotten) {
     const auto at = std::uint32_t(4 * i);
     const float radius = std::exp(std::log(1e-6f) + random.get1(at, Purpose::gather) * std::log(1e7f));
     const Vec2 u = random.get2(at + 1, Purpose::gather);
-    RecordStore store(box({-3, 1, 5}, {5, 3, 6}));
+    RecordStore store;
     store.add(record_at({-3 + 8 * u.x, 1 + 2 * u.y, 5.5f}, {0, 0, 1}, radius, Rgb(1.0f)));
     const Vec3 p = store.records()[0].position;
     for (Vec3 axis : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}}) {
@@ -121,14 +114,14 @@ TEST(RecordStore, NoCellIsForgotten) {
 }
 
 TEST(RecordStore, NoRecordIsLostWhenTheTableGrows) {
-  RecordStore store(box({0, 0, 0}, {1, 0, 1}));
+  RecordStore store;
   for (int i = 0; i < 100; ++i)
     for (int j = 0; j < 100; ++j)
       store.add(record_at({0.01f * float(i), 0, 0.01f * float(j)}, {0, 1, 0}, 0.004f, Rgb(float(100 * i + j))));
   for (int i = 0; i < 100; ++i)
     for (int j = 0; j < 100; ++j)
       ASSERT_EQ(store.interpolate({0.01f * float(i), 0, 0.01f * float(j)}, {0, 1, 0}).irradiance.r, float(100 * i + j));
-  RecordStore read(box({0, 0, 0}, {1, 0, 1}), {.only_read = true});
+  RecordStore read({.only_read = true});
   read.add(store.records());
   for (int i = 0; i < 100; ++i)
     for (int j = 0; j < 100; ++j)
@@ -138,7 +131,7 @@ TEST(RecordStore, NoRecordIsLostWhenTheTableGrows) {
 /// E(x) = a + b . x on a plane: with exact gradients every mix of records gives it back.
 TEST(RecordStore, LinearFieldIsExact) {
   const Vec3 slope{0.3f, 0, -0.2f};
-  RecordStore store(box({0, 0, 0}, {1, 0.1f, 1}));
+  RecordStore store;
   const PathRandom random(3, 0);
   for (std::uint32_t i = 0; i < 200; ++i) {
     const Vec2 u = random.get2(i, Purpose::gather);
@@ -158,7 +151,7 @@ TEST(RecordStore, LinearFieldIsExact) {
 
 /// E(n) = 1 + 0.5 n_x, rotational gradient (n_i x n) . g with n_i = z: n_i x n = (-n_y, n_x, 0), so g = (0, 0.5, 0).
 TEST(RecordStore, TurnsWithTheNormal) {
-  RecordStore store(box({-1, -1, -1}, {1, 1, 1}));
+  RecordStore store;
   IrradianceRecord r = record_at({}, {0, 0, 1}, 1, Rgb(1.0f));
   r.rotational = {Vec3{0, 0.5f, 0}, Vec3{0, 0.5f, 0}, Vec3{0, 0.5f, 0}};
   store.add(r);
@@ -167,7 +160,7 @@ TEST(RecordStore, TurnsWithTheNormal) {
 }
 
 TEST(RecordStore, NeverNegative) {
-  RecordStore store(box({-1, -1, -1}, {1, 1, 1}));
+  RecordStore store;
   IrradianceRecord r = record_at({}, {0, 1, 0}, 1, Rgb(0.1f, 1, 1));
   r.translational = {Vec3{1, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 0, 0}};
   store.add(r);
@@ -178,7 +171,7 @@ TEST(RecordStore, NeverNegative) {
 
 /// A hat: 1 in the middle, half at half the radius, nothing at the border; the same over the angle's root.
 TEST(RecordStore, WeightIsAHat) {
-  RecordStore store(box({-1, -1, -1}, {1, 1, 1}));
+  RecordStore store;
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
   EXPECT_EQ(store.interpolate({}, {0, 1, 0}).weight, 1);
   EXPECT_NEAR(store.interpolate({0.25f, 0, 0}, {0, 1, 0}).weight, 0.5f, 1e-6f);
@@ -200,7 +193,7 @@ TEST(RecordStore, TheAngleInWhichRecordsCountFollowsTheErrorBound) {
 /// A normal 16 degrees off is beyond 10: covered only as far as a record that close is as fine as they may be, by the weight it has
 /// in 20 degrees with that radius, and interpolated there with its own.
 TEST(RecordStore, WhereNormalsTurnFastRecordsNeedNotBeFiner) {
-  RecordStore store(box({-1, -1, -1}, {1, 1, 1}), {.least_cosine = 0.985f});
+  RecordStore store({.least_cosine = 0.985f});
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
   const float c = 0.96f, turn = 1 - std::sqrt(0.04f / 0.06f);
   const Vec3 beside{0.05f, 0, 0}, normal{0, c, std::sqrt(1 - c * c)};
@@ -214,7 +207,7 @@ TEST(RecordStore, WhereNormalsTurnFastRecordsNeedNotBeFiner) {
 
 /// The narrower angle of all that were asked for, but where nothing is in it.
 TEST(RecordStore, CanBeNarrowed) {
-  RecordStore store(box({-1, -1, -1}, {1, 1, 1}), {.least_cosine = 0});
+  RecordStore store({.least_cosine = 0});
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
   const auto count_at = [&](float cosine) {
     return store.interpolate({}, {std::sqrt(1 - cosine * cosine), cosine, 0}).count;
@@ -232,7 +225,7 @@ TEST(RecordStore, CanBeNarrowed) {
 }
 
 TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {
-  RecordStore store(box({-1, -1, -1}, {1, 1, 1}));
+  RecordStore store;
   store.add(record_at({}, {0, 1, 0}, 0.5f, Rgb(1.0f)));
   EXPECT_EQ(store.interpolate({0, -0.02f, 0}, {0, 1, 0}).count, 1);    // within 0.05 x 0.5
   EXPECT_EQ(store.interpolate({0, -0.03f, 0}, {0, 1, 0}).count, 0);
@@ -240,7 +233,7 @@ TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {
 }
 
 TEST(RecordStore, OneRecordAndNone) {
-  RecordStore store(box({0, 0, 0}, {1, 1, 1}));
+  RecordStore store;
   EXPECT_EQ(store.interpolate({0.5f, 0.5f, 0.5f}, {0, 1, 0}).weight, 0);
   EXPECT_EQ(store.interpolate_relaxed({0.5f, 0.5f, 0.5f}, {0, 1, 0}).weight, 0);
   store.add(record_at({0.5f, 0.5f, 0.5f}, {0, 1, 0}, 0.1f, Rgb(2.0f)));
@@ -252,7 +245,7 @@ TEST(RecordStore, OneRecordAndNone) {
 
 /// Five records in one place, and two one float apart: all count, the mean is theirs.
 TEST(RecordStore, RecordsCloserThanFloatSpacing) {
-  RecordStore store(box({0, 0, 0}, {1000, 1000, 1000}));
+  RecordStore store;
   const float x = 777.7f;
   for (int i = 0; i < 5; ++i) store.add(record_at({x, 5, 5}, {0, 1, 0}, 1e-7f, Rgb(float(i))));
   const auto found = store.interpolate({x, 5, 5}, {0, 1, 0});
@@ -264,12 +257,12 @@ TEST(RecordStore, RecordsCloserThanFloatSpacing) {
 
 /// Radii beyond the scene and below what a float can tell apart there; a scene of no size.
 TEST(RecordStore, RadiiAtBothEnds) {
-  RecordStore store(box({0, 0, 0}, {1, 1, 1}));
+  RecordStore store;
   store.add(record_at({0.5f, 0, 0.5f}, {0, 1, 0}, 1e30f, Rgb(1.0f)));
   store.add(record_at({0.5f, 0, 0.5f}, {0, 1, 0}, 1e-18f, Rgb(3.0f)));
   EXPECT_EQ(store.interpolate({1e6f, 0, 0}, {0, 1, 0}).irradiance, Rgb(1.0f));
   EXPECT_NEAR(store.interpolate({0.5f, 0, 0.5f}, {0, 1, 0}).irradiance.r, 2, 1e-6f);
-  RecordStore flat(box({2, 2, 2}, {2, 2, 2}));
+  RecordStore flat;
   flat.add(record_at({2, 2, 2}, {0, 1, 0}, 0.1f, Rgb(1.0f)));
   EXPECT_EQ(flat.interpolate({2, 2, 2}, {0, 1, 0}).count, 1);
 }
@@ -277,14 +270,14 @@ TEST(RecordStore, RadiiAtBothEnds) {
 /// The ground below the rim of a plate and the top of the plate, 2 cm above: neither's records of 10 cm count on the other.
 /// Along a bowl's and a ball's great circle of 1 m records of 20 cm count 10 cm away, where the normal is 5.7 degrees off.
 TEST(RecordStore, ParallelPlanesKeepTheirLight) {
-  RecordStore store(box({-2, -2, -2}, {2, 2, 2}));
+  RecordStore store;
   store.add(record_at({0, 0, 0}, {0, 1, 0}, 0.1f, Rgb(9.0f)));
   EXPECT_EQ(store.interpolate({0.01f, 0.02f, 0}, {0, 1, 0}).count, 0);
   EXPECT_EQ(store.interpolate({0.01f, -0.02f, 0}, {0, 1, 0}).count, 0);
   EXPECT_EQ(store.interpolate({0.01f, 0.004f, 0}, {0, 1, 0}).count, 1);
   const float s = std::sin(0.1f), c = std::cos(0.1f);
   for (const float side : {1.0f, -1.0f}) {   // ball: normals outwards; bowl: inwards
-    RecordStore round(box({-2, -2, -2}, {2, 2, 2}));
+    RecordStore round;
     round.add(record_at({0, 1, 0}, {0, side, 0}, 0.2f, Rgb(1.0f)));
     EXPECT_EQ(round.interpolate({s, c, 0}, {side * s, side * c, 0}).count, 1);
   }
@@ -293,7 +286,7 @@ TEST(RecordStore, ParallelPlanesKeepTheirLight) {
 /// Slope 0.5: a record of 0.1 m at 0.3 m from one of 1 m leaves that one 0.25 m; one of 2 m at 0.2 m from it gets 1.1 m
 /// itself, as its neighbour saw nothing nearer than 1 m (radius_unclamped) whatever others left it.
 TEST(RecordStore, NeighboursClampEachOther) {
-  RecordStore store(box({-4, -4, -4}, {4, 4, 4}));
+  RecordStore store;
   store.add(record_at({0, 0, 0}, {0, 1, 0}, 1, Rgb(1.0f)));
   IrradianceRecord small = record_at({0.3f, 0, 0}, {0, 1, 0}, 0.1f, Rgb(1.0f));
   store.clamp_with_neighbours(small, 0.5f);
@@ -322,7 +315,7 @@ TEST(RecordStore, NeighboursClampEachOther) {
 }
 
 TEST(RecordStore, WhatIsNotFiniteIsLeftOutAndCounted) {
-  RecordStore store(box({0, 0, 0}, {1, 1, 1}));
+  RecordStore store;
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   IrradianceRecord bad_gradient = record_at({}, {0, 1, 0}, 1, Rgb(1.0f));
   bad_gradient.translational[2].y = nan;

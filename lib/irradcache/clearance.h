@@ -1,0 +1,70 @@
+// lib/irradcache/clearance.h -- how far one can go from a place over its surface before something is in the way.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "lib/core/frame.h"
+#include "lib/core/vec.h"
+
+namespace tempolux {
+
+/// What was seen from a place along sixteen spokes across its surface: light known there may be taken for light at places
+/// inside the polygon of the spokes' ends, and nowhere else. Between two spokes a straight wall is found exactly.
+struct Clearance {
+  static constexpr std::uint32_t kSpokes = 16;
+  static constexpr std::uint32_t kFull = 15;            ///< a spoke that nothing ended
+  static constexpr std::uint64_t kOpen = ~std::uint64_t{0};   ///< no spoke was ended
+  /// cosine between the normals of two places of one surface, at least: more is a bend, not a wall.
+  static constexpr float kBend = 0.7f;
+  /// tangent of the angle by which spokes rise: lower things do not part light.
+  static constexpr float kRise = 0.05f;
+
+  float reach = INFINITY;         ///< m: how far was looked
+  std::uint64_t shares = kOpen;   ///< spoke k: bits 4k to 4k + 3, its length in fifteenths of reach, rounded down
+
+  /// Direction of spoke k in the tangent plane, unit: (1 - f, f) / |(1 - f, f)|, f = (k mod 4) / 4, turned by k / 4 quadrants.
+  static Vec2 spoke(std::uint32_t k) {
+    const float f = float(k % 4) / 4, x = (1 - f) / kLength[k % 4], y = f / kLength[k % 4];
+    switch (k / 4) {
+      case 0: return {x, y};
+      case 1: return {-y, x};
+      case 2: return {-x, -y};
+      default: return {y, -x};
+    }
+  }
+  void set(std::uint32_t k, float length) {
+    const auto share = std::uint64_t(std::clamp(length / reach * float(kFull), 0.0f, float(kFull)));
+    shares = (shares & ~(std::uint64_t{15} << 4 * k)) | share << 4 * k;
+  }
+  /// To look this many radii far: then the polygon holds the disc of that radius.
+  static constexpr float kPerRadius = 1.0277402f;   // 1 / cos of half of 26.6 degrees, the widest angle between spokes
+
+  /// Is the place `d` [m] away inside? normal: the place's own, as when it was looked. Height above the plane does not count.
+  bool contains(Vec3 d, Vec3 normal) const {
+    if (shares == kOpen) return length2(d) < reach * reach;
+    const Frame frame(normal);
+    float x = dot(d, frame.tangent), y = dot(d, frame.bitangent);
+    std::uint32_t first = 0;
+    for (; first < 12 && !(x > 0 && y >= 0); first += 4) x = std::exchange(y, -x);   // back by a quadrant each
+    const float sum = std::abs(x) + std::abs(y);
+    if (!(sum > 0)) return true;
+    // d = sum ((1 - t) v_k + t v_k+1), v the spokes of |x| + |y| = 1: inside if sum ((1 - t) / r_k + t / r_k+1) < 1.
+    const float along = std::min(std::abs(y) / sum * 4, 3.9999998f), t = along - std::floor(along);
+    const std::uint32_t k = std::uint32_t(along);
+    return sum * ((1 - t) * inverse(first + k, k) + t * inverse((first + k + 1) % kSpokes, (k + 1) % 4)) < reach;
+  }
+  bool operator==(const Clearance&) const = default;
+
+ private:
+  static constexpr std::array<float, 4> kLength{1, 0.79056942f, 0.70710678f, 0.79056942f};
+  /// reach / length of spoke k in multiples of v_k
+  float inverse(std::uint32_t k, std::uint32_t of_quadrant) const {
+    return kLength[of_quadrant] * float(kFull) / std::max(float(shares >> 4 * k & 15), 1e-6f);
+  }
+};
+
+}  // namespace tempolux
