@@ -34,6 +34,14 @@ $draw points "$work/photons.csv" "$work/frame.json" $out/photon-trace.png 0.02
 $draw points "$work/points.csv" "$work/frame.json" $out/irradcache-build-points.png 0.08
 $draw dots "$work/records.csv" "$work/frame.json" $out/frame-render.png $out/irradcache-build-records.png
 
+# The frame of one sample, and filtered with two frames before and after.
+for f in 10 11 12 13 14; do
+  "$bin/frame-render" $scene --frame $f --size 320x180 --spp 1 --pixel-error 0 --seed-mode frame --irradcache "$work/c.irradcache" --points "$work/p.irradpoints" \
+    --allow-stale -q --channels RGBA,layers,Z,N,id,albedo,motion,coverage,samples -o "$work/one.$f.exr"
+done
+"$bin/st-filter" "$work"/one.1[0-4].exr -o "$work/filtered.exr"
+"$info" --sheet $out/st-filter.png --columns 1 --tile 160 "$work/one.12.exr" "$work/filtered.exr"
+
 # Where light is bright: a room lit by indirect light alone.
 room=pipelines/scenes/S3_indirect_room.glb
 "$bin/photon-trace" $room --frame 1 --photons 200k --kinds indirect,caustic -o "$work/p.photons"

@@ -28,10 +28,11 @@ may gather   'core scene trace material light density irradcache'
 may render   'core image scene trace material light photon density irradcache gather'
 may warp     'core image scene trace material render'
 may aqm      'core image'
+may filter   'core image'
 may plan     'core scene material light'
 may report   'core image aqm'
 for folder in lib/*/; do
-  case " lib/core/ lib/image/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/photon/ lib/density/ lib/irradcache/ lib/gather/ lib/render/ lib/warp/ lib/aqm/ lib/plan/ lib/report/ " in
+  case " lib/core/ lib/image/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/photon/ lib/density/ lib/irradcache/ lib/gather/ lib/render/ lib/warp/ lib/aqm/ lib/filter/ lib/plan/ lib/report/ " in
     *" $folder "*) ;; *) echo "$folder: has no line in tests/layering.sh"; bad=1;; esac
 done
 # each third-party header in one file of the tree (tests and benchmarks apart; JSON and CLI: one layer)

@@ -5,83 +5,106 @@
 #include <cmath>
 #include <span>
 
-#include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/image/pixel_surfaces.h"
 
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kRays = 16, kAround = 9, kCentre = 4;
+constexpr std::size_t kRays = 16, kAround = 9, kCentre = 4, kOther = 9;
 constexpr std::uint64_t kPattern = 0x636f766572616765ull;   // one pattern of rays for all pixels and frames
 
 /// What a ray meets.
 struct Seen {
-  std::uint32_t object = kNone;
+  std::uint32_t object = kNone, material = kNone;
   Vec3 position, normal;
   float footprint = 0;   ///< m: a pixel's width there
 
   /// Is `other` a place of the same smooth surface, about a pixel away? Its plane passes it within a pixel's width.
   bool same_as(const Seen& other) const {
     if (object == kNone || other.object == kNone) return object == other.object;
-    return object == other.object && dot(normal, other.normal) > PixelSurfaces::kSameNormal &&
+    return object == other.object && material == other.material && dot(normal, other.normal) > PixelSurfaces::kSameNormal &&
            std::abs(dot(normal, other.position - position)) < footprint;
   }
 };
 
 class PixelCoverage {
  public:
-  PixelCoverage(const RenderScene& scene, const CameraView& view) : scene_(scene), view_(view) {
+  PixelCoverage(const RenderScene& scene, const CameraView& view)
+      : scene_(scene), view_(view), width_(std::size_t(view.width())), centres_(width_ * std::size_t(view.height())) {
     for (std::size_t r = 0; r < kRays; ++r) spread_[r] = sobol_owen_2d(std::uint32_t(r), kPattern);
+    parallel_chunks(centres_.size(), 1024, [&](std::size_t first, std::size_t last) {
+      std::array<Vec2, kTogether> places;
+      for (std::size_t p = first; p < last; p += kTogether) {
+        const std::size_t count = std::min(kTogether, last - p);
+        for (std::size_t i = 0; i < count; ++i) places[i] = {float((p + i) % width_) + 0.5f, float((p + i) / width_) + 0.5f};
+        look(std::span(places).first(count), &centres_[p]);
+      }
+    });
   }
 
-  std::uint32_t at(int x, int y) const {
-    std::array<Vec2, kAround> centres;
-    for (std::size_t n = 0; n < kAround; ++n) centres[n] = {0.5f + float(int(n % 3) - 1), 0.5f + float(int(n / 3) - 1)};
-    std::array<Seen, kAround> around;
+  struct Counts {
+    std::uint32_t around = 0, other = 0;   ///< as in the two channels
+  };
+  Counts at(int x, int y) const {
+    if (!is_edge(x, y)) return {};
+    std::array<Vec2, kRays> places;
     std::array<Seen, kRays> rays;
-    look(x, y, centres, around);
-    look(x, y, spread_, rays);
-    std::array<std::uint32_t, kAround> count{};
-    for (std::size_t r = 0; r < kRays; ++r) ++count[nearest(x, y, spread_[r], rays[r], centres, around)];
+    for (std::size_t r = 0; r < kRays; ++r) places[r] = {float(x) + spread_[r].x, float(y) + spread_[r].y};
+    for (std::size_t r = 0; r < kRays; r += kTogether) look(std::span(places).subspan(r, kTogether), &rays[r]);
+    std::array<std::uint32_t, kAround + 1> count{};
+    for (std::size_t r = 0; r < kRays; ++r) ++count[nearest(x, y, spread_[r], rays[r])];
     std::uint32_t packed = 0, bit = 0;
     for (std::size_t n = 0; n < kAround; ++n) {
       if (n == kCentre) continue;
       packed |= std::min(count[n], 15u) << bit;
       bit += 4;
     }
-    return packed;
+    return {packed, count[kOther]};
   }
 
  private:
-  /// places: within the pixel, [0, 1) each way, or outside it.
-  void look(int x, int y, std::span<const Vec2> places, std::span<Seen> seen) const {
-    constexpr std::size_t kTogether = 8;   // a packet
+  static constexpr std::size_t kTogether = 8;   // a packet
+  static_assert(kRays % kTogether == 0);
+
+  /// places: raster positions, at most kTogether.
+  void look(std::span<const Vec2> places, Seen* seen) const {
     std::array<Ray, kTogether> rays;
     std::array<Hit, kTogether> hits;
-    for (std::size_t first = 0; first < places.size(); first += kTogether) {
-      const std::size_t count = std::min(kTogether, places.size() - first);
-      for (std::size_t i = 0; i < count; ++i) rays[i] = view_.ray(float(x) + places[first + i].x, float(y) + places[first + i].y);
-      for (std::size_t i = 0; i < count; ++i) hits[i] = {};
-      scene_.tracer.intersect(std::span(rays).first(count), std::span(hits).first(count));
-      for (std::size_t i = 0; i < count; ++i) {
-        if (hits[i].surface == kNone) continue;
-        const SurfacePoint point = scene_.tracer.surface_point(hits[i]);
-        seen[first + i] = {point.object, point.position, dot(point.normal, rays[i].direction) > 0 ? -point.normal : point.normal,
-                           view_.pixel_size(hits[i].t)};
-      }
+    for (std::size_t i = 0; i < places.size(); ++i) rays[i] = view_.ray(places[i].x, places[i].y);
+    scene_.tracer.intersect(std::span(rays).first(places.size()), std::span(hits).first(places.size()));
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (hits[i].surface == kNone) continue;
+      const SurfacePoint point = scene_.tracer.surface_point(hits[i]);
+      seen[i] = {point.object, point.material, point.position,
+                 dot(point.normal, rays[i].direction) > 0 ? -point.normal : point.normal, view_.pixel_size(hits[i].t)};
     }
   }
 
-  /// Which pixel's surface a ray meets: the pixel's own, else that of the nearest one around that lies in the picture.
-  std::size_t nearest(int x, int y, Vec2 place, const Seen& ray, std::span<const Vec2> centres, std::span<const Seen> around) const {
-    if (around[kCentre].same_as(ray)) return kCentre;
-    std::size_t best = kCentre;
+  /// Centre of the pixel that is number `around` of the nine about (x, y); nullptr: beyond the picture.
+  const Seen* centre(int x, int y, std::size_t around) const {
+    x += int(around % 3) - 1;
+    y += int(around / 3) - 1;
+    return x < 0 || y < 0 || x >= view_.width() || y >= view_.height() ? nullptr : &centres_[std::size_t(y) * width_ + std::size_t(x)];
+  }
+
+  bool is_edge(int x, int y) const {
+    const Seen& own = *centre(x, y, kCentre);
+    for (std::size_t n = 0; n < kAround; ++n)
+      if (const Seen* other = centre(x, y, n); other && !(own.same_as(*other) && other->same_as(own))) return true;
+    return false;
+  }
+
+  /// Which pixel's surface a ray meets that passes `place` in the pixel: the pixel's own, else that of the nearest one around, else kOther.
+  std::size_t nearest(int x, int y, Vec2 place, const Seen& ray) const {
+    if (centre(x, y, kCentre)->same_as(ray)) return kCentre;
+    std::size_t best = kOther;
     float best_distance2 = 8;
     for (std::size_t n = 0; n < kAround; ++n) {
-      const int nx = x + int(n % 3) - 1, ny = y + int(n / 3) - 1;
-      if (n == kCentre || nx < 0 || ny < 0 || nx >= view_.width() || ny >= view_.height() || !around[n].same_as(ray)) continue;
-      const float dx = centres[n].x - place.x, dy = centres[n].y - place.y, distance2 = dx * dx + dy * dy;
+      const Seen* other = centre(x, y, n);
+      if (n == kCentre || !other || !other->same_as(ray)) continue;
+      const float dx = float(int(n % 3) - 1) + 0.5f - place.x, dy = float(int(n / 3) - 1) + 0.5f - place.y;
+      const float distance2 = dx * dx + dy * dy;
       if (distance2 < best_distance2) {
         best_distance2 = distance2;
         best = n;
@@ -92,21 +115,25 @@ class PixelCoverage {
 
   const RenderScene& scene_;
   const CameraView& view_;
+  std::size_t width_;
   std::array<Vec2, kRays> spread_;
+  std::vector<Seen> centres_;
 };
 
 }  // namespace
 
 void add_coverage_channel(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels, Image& image) {
   if (std::find(channels.begin(), channels.end(), "coverage") == channels.end()) return;
-  if (!image.find("Z") || !image.find("N.X") || !image.find("id.object"))
-    throw InputError("--channels coverage: needs Z, N and id beside it; add them");
-  const std::vector<std::uint8_t> edges = PixelSurfaces(image).edges();
-  std::vector<std::uint32_t>& coverage = image.add_ids("coverage").ids;
+  image.add_ids("coverage");
+  std::vector<std::uint32_t>& other = image.add_ids("coverage.other").ids;
+  std::vector<std::uint32_t>& around = image.find("coverage")->ids;
   const PixelCoverage pixels(scene, view);
-  parallel_chunks(edges.size(), 1024, [&](std::size_t first, std::size_t last) {
-    for (std::size_t p = first; p < last; ++p)
-      if (edges[p]) coverage[p] = pixels.at(int(p % std::size_t(view.width())), int(p / std::size_t(view.width())));
+  parallel_chunks(around.size(), 1024, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      const PixelCoverage::Counts counts = pixels.at(int(p % std::size_t(view.width())), int(p / std::size_t(view.width())));
+      around[p] = counts.around;
+      other[p] = counts.other;
+    }
   });
 }
 

@@ -75,6 +75,22 @@ constexpr ManualText kTexts[] = {
      "# Frames of another renderer, with Z and the matrices of their cameras.\n"
      "ibr-warp left.exr --view right.exr -o warped.exr --mask why.exr",
      "frame-render aqm-compare tempolux-info"},
+    {"st-filter",
+     "Takes noise out of a frame of few samples: light is collected from the frames before and after along the pixel flow and a plane is fitted "
+     "to it around each pixel. A pixel counts if it sees the same surface (id.object, Z, N) and differs by no more than both "
+     "pixels' noise explains. Noise is told by the channels variance or diffuse.variance, or by neighbours where samples is below "
+     "2. Where albedo is there light alone is filtered, not textures. Emission and specular pass. With coverage edges are put "
+     "together from the surfaces that a pixel sees, else they stay as they are.\n"
+     "\n"
+     "Frames of other programs, which know neither variance nor samples, are filtered as far as a viewer cannot see it.",
+     "frame .exr: read and written (formats/frames/frames.md)\n"
+     "flow .exr: where pixels go and came from (formats/flow/flow.md)",
+     "frame-render room.glb --frames 0-47 --spp 1 --pixel-error 0 --seed-mode frame --irradcache c.####.irradcache "
+     "--channels RGBA,layers,Z,N,id,albedo,motion,coverage,samples -o f.####.exr\n"
+     "st-filter f.####.exr --frames 0-47 -o filtered.####.exr\n"
+     "# One frame, by its five files.\n"
+     "st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o filtered.0010.exr",
+     "frame-render aqm-compare tempolux-info"},
     {"aqm-compare",
      "Says how wrong a frame or a sequence is against a reference: RMSE, relMSE, bias, PSNR, flicker. With two "
      "independent "

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "formats/error.h"
 #include "tests/support/frames.h"
 
 namespace tempolux {
@@ -52,16 +51,41 @@ TEST(Coverage, OfACornerGoesToTheNearestPixelThatSeesIt) {
   EXPECT_EQ(packed >> 16 & 15, 0u);
 }
 
-TEST(Coverage, NeedsDepthNormalsAndObjects) {
+/// A strip of half a pixel's width, between pixel centres: nobody shows it. Its half of the pixels beside counts as other.
+TEST(Coverage, WhatNoCentreSeesIsOther) {
   test::HandMadeScene made;
-  made.add({{-3, -3, -1}, {3, -3, -1}, {3, 3, -1}}, {{0, 1, 2}}, test::matte(Rgb(0.5f)));
+  const float left = 0.75f / 32, right = 1.25f / 32;
+  made.add({{left, -2, 0}, {right, -2, 0}, {right, 2, 0}, {left, 2, 0}, {-3, -3, -1}, {3, -3, -1}, {3, 3, -1}, {-3, 3, -1}},
+           {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, test::matte(Rgb(0.5f)));
+  made.add({{left, -2, 0.1f}, {right, -2, 0.1f}, {right, 0, 0.1f}, {left, 0, 0.1f}}, {{0, 1, 2}, {0, 2, 3}}, test::matte(Rgb(0.1f)));
+  made.add({{right, 0.1f, 0.2f}, {0.1f, 0.1f, 0.2f}, {0.1f, 0.5f, 0.2f}, {right, 0.5f, 0.2f}}, {{0, 1, 2}, {0, 2, 3}}, test::matte(Rgb(0.1f)));
+  made.add_point_light({0, 0, 3}, Rgb(1.0f));
   const SceneFrame& frame = made.frame();
   const Tracer tracer(frame);
   const Lights lights(frame, build_emission_table({&frame, 1}));
   Image image{64, 36, {}, {}, {}, {}};
-  EXPECT_THROW(add_coverage_channel({tracer, lights}, test::from_above(), {"coverage"}, image), InputError);
+  add_coverage_channel({tracer, lights}, test::from_above(), {"coverage"}, image);
+  // At the third sheet's edge rays are cast: a quarter of pixel (32, 10) sees the strip.
+  EXPECT_EQ(image.find("coverage.other")->ids[10 * 64 + 32], 4u);
+  EXPECT_EQ(image.find("coverage.other")->ids[10 * 64 + 40], 0u);
+}
+
+/// Two materials in one plane are two surfaces: the pixel between them is put together from both.
+TEST(Coverage, MaterialsOfOneMeshAreToldApart) {
+  test::HandMadeScene made;
+  const float x = 0.25f / 32;
+  made.add({{-2, -2, 0}, {x, -2, 0}, {x, 2, 0}, {-2, 2, 0}}, {{0, 1, 2}, {0, 2, 3}}, test::matte(Rgb(0.5f)));
+  made.add({{x, -2, 0}, {2, -2, 0}, {2, 2, 0}, {x, 2, 0}}, {{0, 1, 2}, {0, 2, 3}}, test::matte(Rgb(0.1f)));
+  made.add_point_light({0, 0, 3}, Rgb(1.0f));
+  const SceneFrame& frame = made.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  Image image{64, 36, {}, {}, {}, {}};
   add_coverage_channel({tracer, lights}, test::from_above(), {"RGBA"}, image);
   EXPECT_TRUE(image.channels.empty());
+  add_coverage_channel({tracer, lights}, test::from_above(), {"coverage"}, image);
+  EXPECT_EQ(coverage_at(image, 32, 18), 4u << 12);
+  EXPECT_EQ(coverage_at(image, 31, 18), 0u);
 }
 
 }  // namespace

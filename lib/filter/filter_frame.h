@@ -1,0 +1,26 @@
+// lib/filter/filter_frame.h -- a frame filtered in space and time: fewer samples for the same picture.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lib/filter/flow_path.h"
+
+namespace tempolux {
+
+struct FilterOptions {
+  int radius = 6;                     ///< pixels of the window in space, at most kMargin
+  double pixels_per_degree = 30;      ///< of the viewer's screen; where nothing is known of noise (visible_blur.h)
+};
+
+/// Filters the frame `image`, which window[middle] was made of: light in kFilteredLayers (or R G B where none of them is there) is collected along the flow
+/// (collect.h) and fitted in space (fit.h), put together at edges where `image` has coverage (resolve.h), multiplied by albedo again. Emission
+/// and specular pass by but at edges; R G B is the sum of the layers in their order where all five are there. Pixels at edges keep their own
+/// values where coverage is not known. Other channels and all attributes are the frame's.
+/// Where nothing is known of noise (LightFrame::noise) frames count by a Gaussian over the window, which ends at 1.5 of its standard
+/// deviation, and pixels by one that cannot be seen, both by the speed of the pixel (VisibleBlur); slow ones take nothing from other frames.
+/// Throws InputError if frames of the window differ in size or layers; std::invalid_argument for options out of range.
+Image filter_frame(Image image, std::span<const WindowFrame> window, std::size_t middle, const FilterOptions& options);
+
+}  // namespace tempolux

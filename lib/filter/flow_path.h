@@ -1,0 +1,65 @@
+// lib/filter/flow_path.h -- where a pixel's surface point is in the frames around, followed along the pixel flow.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lib/filter/light_frame.h"
+#include "lib/image/image.h"
+
+namespace tempolux {
+
+/// Pixel flow of one frame (formats/flow/flow.md; a frame with the channels of --channels motion will do), y down as in pictures.
+/// Where only one direction is there, the other is its opposite. No flow at all: nothing moves.
+struct FlowFrame {
+  struct Step {
+    float right = 0, down = 0;   ///< pixels
+    bool known = true;
+  };
+  FlowFrame() = default;
+  /// Copies what it needs. InputError if the size is not that of the frame, names `file`.
+  FlowFrame(const Image& flow, int width, int height, const std::string& file);
+
+  bool has_forward() const { return !forward_u_.empty(); }
+  bool has_backward() const { return !backward_u_.empty(); }
+  bool empty() const { return !has_forward() && !has_backward(); }
+  /// direction: +1 to the next frame, -1 to the previous.
+  Step step(std::size_t pixel, int direction) const;
+
+ private:
+  std::vector<float> forward_u_, forward_v_, backward_u_, backward_v_;
+  std::vector<std::uint32_t> valid_;
+};
+
+/// One frame of the window.
+struct WindowFrame {
+  const LightFrame* light = nullptr;
+  const FlowFrame* flow = nullptr;
+};
+
+/// Follows pixel (x, y) of window[from] to the frames towards `direction`, one after the other: body(frame's index in the window, x, y there)
+/// for as long as the point is seen. It is not seen, or it is another point, where the nearest pixel lies outside the picture, shows another object
+/// or a normal turned by more than PixelSurfaces::kSameNormal, or has come from elsewhere: the flow there and back ends more than
+/// kReturn pixels, and kReturnShare of its length, from where it began.
+inline constexpr float kReturn = 0.75f, kReturnShare = 0.05f;
+template <class Body>
+void follow(std::span<const WindowFrame> window, std::size_t from, int direction, int x, int y, const Body& body);
+
+/// The next pixel on the way of one that is at `px`, `py` (pixel centres are whole numbers) in frame `at`; false: lost.
+bool follow_step(const WindowFrame& at, const WindowFrame& next, int direction, const LightFrame& origin, std::size_t origin_x,
+                 int origin_y, float& px, float& py);
+
+template <class Body>
+void follow(std::span<const WindowFrame> window, std::size_t from, int direction, int x, int y, const Body& body) {
+  float px = float(x), py = float(y);
+  for (std::ptrdiff_t i = std::ptrdiff_t(from); i + direction >= 0 && i + direction < std::ptrdiff_t(window.size()); i += direction) {
+    const auto here = std::size_t(i), next = std::size_t(i + direction);
+    if (!follow_step(window[here], window[next], direction, *window[from].light, std::size_t(x), y, px, py)) return;
+    body(next, int(px + 0.5f), int(py + 0.5f));
+  }
+}
+
+}  // namespace tempolux

@@ -1,0 +1,230 @@
+#include "lib/filter/light_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/parallel.h"
+#include "lib/filter/coverage.h"
+#include "lib/filter/surface_weight.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kRows = 16;            ///< of a chunk
+constexpr int kNear = 2;             ///< means are of 5 x 5 pixels
+constexpr float kDarkest = 0.01f;    ///< albedo is taken to be at least this: what is nearly black has nearly no light to filter
+
+template <class Body>
+void for_each_row(int height, const Body& body) {
+  parallel_chunks(std::size_t(height), kRows, [&](std::size_t first, std::size_t last) {
+    for (int y = int(first); y < int(last); ++y) body(y);
+  });
+}
+
+bool has_rgb(const Image& image, const std::string& layer) {
+  const Channel* red = image.find(layer.empty() ? "R" : layer + ".R");
+  return red && !red->values.empty();
+}
+
+void take(const Image& image, const std::string& layer, ColourPlane& planes) {
+  const auto samples = image.rgb(layer);
+  for (std::size_t c = 0; c < 3; ++c) {
+    planes[c] = Plane(image.width, image.height);
+    planes[c].take(*samples[c], image.width);
+  }
+}
+
+/// Brings the frame's light to one number that its noise is told by.
+class Preparation {
+ public:
+  Preparation(const Image& image, LightFrame& frame) : image_(image), frame_(frame), width_(std::size_t(frame.width)) {}
+
+  void take_surfaces() {
+    const PixelSurfaces surfaces(image_);
+    frame_.object = PlaneT<std::uint32_t>(image_.width, image_.height);
+    frame_.object.take(surfaces.object, image_.width);
+    const std::pair<Plane*, const std::vector<float>*> planes[] = {
+        {&frame_.w, &surfaces.w}, {&frame_.w_right, &surfaces.w_right}, {&frame_.w_down, &surfaces.w_down},
+        {&frame_.nx, &surfaces.nx}, {&frame_.ny, &surfaces.ny}, {&frame_.nz, &surfaces.nz}};
+    for (const auto& [plane, samples] : planes) {
+      *plane = Plane(image_.width, image_.height);
+      plane->take(*samples, image_.width);
+    }
+    const Coverage coverage(image_);
+    frame_.use = Plane(image_.width, image_.height);
+    frame_.inside = Plane(image_.width, image_.height);
+    for_each_strip([&](int y, std::size_t x0, std::size_t count) {
+      Lane inside;
+      one_surface_around(y, x0, count, inside);
+      for (std::size_t i = 0; i < count; ++i) {
+        const bool whole = coverage.known() ? coverage.is_whole(int(x0 + i), y) : inside[i] != 0;
+        frame_.use.row(y)[x0 + i] = whole ? 1.0f : 0.0f;
+        frame_.inside.row(y)[x0 + i] = whole ? inside[i] : 0.0f;
+      }
+    });
+  }
+
+  void take_light() {
+    for (const char* layer : kFilteredLayers)
+      if (has_rgb(image_, layer)) frame_.layers.push_back(layer);
+    if (frame_.layers.empty()) frame_.layers.push_back("");
+    const bool albedo = has_rgb(image_, "albedo");
+    if (albedo) take(image_, "albedo", frame_.albedo);
+    frame_.light.resize(frame_.layers.size());
+    sum_ = {Plane(image_.width, image_.height), Plane(image_.width, image_.height), Plane(image_.width, image_.height)};
+    for (std::size_t l = 0; l < frame_.layers.size(); ++l)
+      if (!is_black(frame_.layers[l])) take(image_, frame_.layers[l], frame_.light[l]);
+    for_each_row(frame_.height, [&](int y) {
+      float* use = frame_.use.row(y);
+      for (std::size_t c = 0; c < 3; ++c) {
+        float *sum = sum_[c].row(y), *rho = albedo ? frame_.albedo[c].row(y) : nullptr;
+        if (rho)
+          for (std::size_t x = 0; x < width_; ++x) rho[x] = rho[x] >= kDarkest && rho[x] < kLargestLight ? rho[x] : kDarkest;
+        for (ColourPlane& planes : frame_.light) {
+          if (planes[c].empty()) continue;
+          float* light = planes[c].row(y);
+          for (std::size_t x = 0; x < width_; ++x) {
+            if (rho) light[x] /= rho[x];
+            if (!(std::abs(light[x]) < kLargestLight)) light[x] = use[x] = 0;
+            sum[x] += light[x];
+          }
+        }
+      }
+    });
+  }
+
+  void take_noise() {
+    frame_.variance = Plane(image_.width, image_.height);
+    const bool diffuse = !frame_.layers[0].empty() && has_rgb(image_, "diffuse.variance");
+    const bool told = diffuse || has_rgb(image_, "variance");
+    const Channel* samples = image_.find("samples");
+    if (samples && samples->values.empty()) samples = nullptr;
+    frame_.noise = told ? NoiseKnowledge::told : samples ? NoiseKnowledge::estimated : NoiseKnowledge::none;
+    if (frame_.noise == NoiseKnowledge::none) return;
+    std::array<const std::vector<float>*, 3> variance{};
+    if (told) variance = image_.rgb(diffuse ? "diffuse.variance" : "variance");
+    if (!told || samples) estimate_variance();
+    for_each_row(frame_.height, [&](int y) {
+      float* to = frame_.variance.row(y);
+      const std::size_t row = std::size_t(y) * width_;
+      // A variance channel without `samples` is believed everywhere.
+      for (std::size_t x = 0; told && x < width_; ++x)
+        if (!samples || samples->values[row + x] >= 2) to[x] = told_variance(variance, int(x), y);
+    });
+  }
+
+  /// Means over the window, of the sum of the layers and of the variance; a pixel's variance becomes the window's.
+  void take_means() {
+    for (Plane& plane : frame_.mean) plane = Plane(image_.width, image_.height);
+    frame_.mean_variance = Plane(image_.width, image_.height);
+    Plane smooth(image_.width, image_.height);
+    const std::array<const Plane*, 4> from{&sum_[0], &sum_[1], &sum_[2], &frame_.variance};
+    const std::array<Plane*, 4> to{&frame_.mean[0], &frame_.mean[1], &frame_.mean[2], &smooth};
+    for_each_strip([&](int y, std::size_t x0, std::size_t count) {
+      Lane total{}, weight;
+      std::array<Lane, 4> sums{};
+      for (int dy = -kNear; dy <= kNear; ++dy)
+        for (int dx = -kNear; dx <= kNear; ++dx) {
+          SurfaceRow(frame_, y, dx, dy).weigh(x0, count, weight);
+          for (std::size_t i = 0; i < count; ++i) total[i] += weight[i];
+          for (std::size_t v = 0; v < from.size(); ++v) {
+            const float* values = from[v]->row(y + dy) + x0 + dx;
+            for (std::size_t i = 0; i < count; ++i) sums[v][i] += weight[i] * values[i];
+          }
+        }
+      for (std::size_t v = 0; v < from.size(); ++v) {
+        const float* own = from[v]->row(y) + x0;
+        float* mean = to[v]->row(y) + x0;
+        // Without any pixel of use the own one stands alone.
+        for (std::size_t i = 0; i < count; ++i) mean[i] = total[i] > 0 ? sums[v][i] / total[i] : own[i];
+      }
+      const float* variance = smooth.row(y) + x0;
+      float* mean_variance = frame_.mean_variance.row(y) + x0;
+      for (std::size_t i = 0; i < count; ++i) mean_variance[i] = variance[i] / std::max(total[i], 1.0f);
+    });
+    frame_.variance = std::move(smooth);
+  }
+
+ private:
+  bool is_black(const std::string& layer) const {
+    for (const std::vector<float>* samples : image_.rgb(layer))
+      if (std::any_of(samples->begin(), samples->end(), [](float v) { return v != 0; })) return false;
+    return true;
+  }
+
+  float told_variance(const std::array<const std::vector<float>*, 3>& variance, int x, int y) const {
+    const std::size_t p = std::size_t(y) * width_ + std::size_t(x);
+    float sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float rho = frame_.albedo[c].empty() ? 1 : frame_.albedo[c].at(x, y), v = (*variance[c])[p] / (rho * rho);
+      if (v > 0) sum += std::min(v, kLargestLight * kLargestLight);
+    }
+    return sum;
+  }
+
+  /// inside[i]: 1 if pixel x0 + i and those around it in the picture are on one surface, both ways asked (PixelSurfaces::edges), else 0.
+  void one_surface_around(int y, std::size_t x0, std::size_t count, Lane& inside) const {
+    inside.fill(1);
+    for (int dy = std::max(-1, -y); dy <= std::min(1, frame_.height - 1 - y); ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (dx == 0 && dy == 0) continue;
+        const SurfaceRow there(frame_, y, dx, dy), back(frame_, y + dy, -dx, -dy);
+        // Columns beyond the picture do not count.
+        const std::size_t first = x0 == 0 && dx < 0 ? 1 : 0, last = x0 + count == width_ && dx > 0 ? count - 1 : count;
+        for (std::size_t i = first; i < last; ++i)
+          inside[i] *= there.surface(x0 + i) * back.surface(std::size_t(std::ptrdiff_t(x0 + i) + dx));
+      }
+  }
+
+  /// body(y, x0, count) for strips of rows, in parallel.
+  template <class Body>
+  void for_each_strip(const Body& body) const {
+    for_each_row(frame_.height, [&](int y) {
+      for (std::size_t x0 = 0; x0 < width_; x0 += kStrip) body(y, x0, std::min(kStrip, width_ - x0));
+    });
+  }
+
+  /// Half the square of the difference to the four pixels beside, above and below on the surface: with noise alone its mean is the
+  /// variance, and smooth light adds little to it.
+  void estimate_variance() {
+    for_each_strip([&](int y, std::size_t x0, std::size_t count) {
+      Lane total{}, sum{}, weight;
+      for (const auto& [dx, dy] : {std::pair{-1, 0}, std::pair{1, 0}, std::pair{0, -1}, std::pair{0, 1}}) {
+        SurfaceRow(frame_, y, dx, dy).weigh(x0, count, weight);
+        const float* use = frame_.use.row(y) + x0;
+        for (std::size_t i = 0; i < count; ++i) weight[i] *= use[i];
+        for (std::size_t i = 0; i < count; ++i) total[i] += weight[i];
+        for (const Plane& plane : sum_) {
+          const float *own = plane.row(y) + x0, *other = plane.row(y + dy) + x0 + dx;
+          for (std::size_t i = 0; i < count; ++i) {
+            const float difference = own[i] - other[i];
+            sum[i] += weight[i] * 0.5f * (difference * difference);
+          }
+        }
+      }
+      float* variance = frame_.variance.row(y) + x0;
+      for (std::size_t i = 0; i < count; ++i) variance[i] = sum[i] / std::max(total[i], 1.0f);
+    });
+  }
+
+  const Image& image_;
+  LightFrame& frame_;
+  std::size_t width_;
+  ColourPlane sum_;   ///< of the layers
+};
+
+}  // namespace
+
+LightFrame::LightFrame(const Image& image) : width(image.width), height(image.height) {
+  Preparation preparation(image, *this);
+  preparation.take_surfaces();
+  preparation.take_light();
+  preparation.take_noise();
+  preparation.take_means();
+}
+
+bool LightFrame::on_surface(int x, int y, int dx, int dy) const {
+  return SurfaceRow(*this, y, dx, dy).surface(std::size_t(x)) != 0;
+}
+
+}  // namespace tempolux

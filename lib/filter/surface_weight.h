@@ -1,0 +1,48 @@
+// lib/filter/surface_weight.h -- may a pixel take light from another one of its frame? One row of pixels at a time.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+
+#include "lib/filter/lane.h"
+#include "lib/filter/light_frame.h"
+
+namespace tempolux {
+
+/// Rows of pixels p and of those (dx, dy) away. weight(i) is `use` of the pixel away if it is on the surface of pixel i, as PixelSurfaces::same
+/// says, else 0.
+class SurfaceRow {
+ public:
+  /// `use`: row y + dy of LightFrame::use or of another plane in its place.
+  SurfaceRow(const LightFrame& frame, int y, int dx, int dy, const float* use)
+      : object_(frame.object.row(y)), other_object_(frame.object.row(y + dy) + dx), w_(frame.w.row(y)),
+        other_w_(frame.w.row(y + dy) + dx), w_right_(frame.w_right.row(y)), w_down_(frame.w_down.row(y)), nx_(frame.nx.row(y)),
+        ny_(frame.ny.row(y)), nz_(frame.nz.row(y)), other_nx_(frame.nx.row(y + dy) + dx), other_ny_(frame.ny.row(y + dy) + dx),
+        other_nz_(frame.nz.row(y + dy) + dx), other_use_(use + dx), dx_(float(dx)), dy_(float(dy)) {}
+
+  SurfaceRow(const LightFrame& frame, int y, int dx, int dy) : SurfaceRow(frame, y, dx, dy, frame.use.row(y + dy)) {}
+
+  float weight(std::size_t i) const { return other_use_[i] * surface(i); }
+  /// weights[i] = weight(first + i) for i below count, at most kStrip.
+  void weigh(std::size_t first, std::size_t count, Lane& weights) const {
+    const SurfaceRow row = *this;   // a local object: nothing that is written can change it
+    for (std::size_t i = 0; i < count; ++i) weights[i] = row.weight(first + i);
+  }
+  /// Whether it is of use or not.
+  float surface(std::size_t i) const {
+    const float facing = nx_[i] * other_nx_[i] + ny_[i] * other_ny_[i] + nz_[i] * other_nz_[i];
+    const float length2 = nx_[i] * nx_[i] + ny_[i] * ny_[i] + nz_[i] * nz_[i];
+    const float right = w_right_[i] * dx_, down = w_down_[i] * dy_;
+    const float off = std::abs(other_w_[i] - w_[i] - right - down);
+    const float allowed = PixelSurfaces::kSameDepth * w_[i] + std::abs(right) + std::abs(down);
+    // Products of conditions, not && : all lanes of a vector do the same.
+    return float(object_[i] == other_object_[i]) * float(facing >= PixelSurfaces::kSameNormal * length2) * float(off <= allowed);
+  }
+
+ private:
+  const std::uint32_t *object_, *other_object_;
+  const float *w_, *other_w_, *w_right_, *w_down_, *nx_, *ny_, *nz_, *other_nx_, *other_ny_, *other_nz_, *other_use_;
+  float dx_, dy_;
+};
+
+}  // namespace tempolux

@@ -1,0 +1,191 @@
+// st-filter -- frames of few samples filtered in space and along the pixel flow in time.
+//
+//     st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o 10.exr
+//     st-filter f.####.exr --flow flow.####.exr --frames 0-47 -o filtered.####.exr
+//
+// How: docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "formats/error.h"
+#include "lib/filter/filter_frame.h"
+#include "lib/image/exr_io.h"
+#include "lib/image/frame_identity.h"
+#include "tools/common/option_words.h"
+#include "tools/common/tool_main.h"
+
+using namespace tempolux;
+
+namespace {
+
+struct Options {
+  std::vector<std::string> frames, flow;
+  std::string output, range, compression = "zip";
+  int width = 5, position = 0;
+  FilterOptions filter;
+};
+
+/// A frame's files.
+struct Names {
+  std::string frame, flow;   ///< flow "": in the frame itself, if anywhere
+};
+
+/// A frame that is read, with what the filter needs of it.
+struct LoadedFrame {
+  Image image;
+  std::unique_ptr<LightFrame> light;
+  FlowFrame flow;
+};
+
+class FilterRun {
+ public:
+  FilterRun(tools::Tool& tool, const Options& options, std::vector<Names> names) : tool_(tool), options_(options), names_(std::move(names)) {}
+
+  /// Filters frame `at` of the list with those from `first` to `last`.
+  void run(std::size_t first, std::size_t at, std::size_t last, const std::string& file, std::optional<int> number) {
+    tools::Output output(file, tool_.common().no_clobber);
+    loaded_.erase(loaded_.begin(), loaded_.lower_bound(first));
+    std::vector<WindowFrame> window;
+    for (std::size_t i = first; i <= last; ++i) {
+      const LoadedFrame& loaded = load(i);
+      window.push_back({loaded.light.get(), &loaded.flow});
+    }
+    tool_.stats().phase("filter", true);
+    Image image;
+    try {
+      image = filter_frame(loaded_.at(at).image, window, at - first, options_.filter);
+    } catch (const InputError& error) {
+      throw InputError(names_[at].frame + ": " + error.what());
+    }
+    image.text["tempolux:history"] += tool_.history_line(number);
+    tool_.stats().phase("write");
+    save_exr(output.temporary_path(), image,
+             {false, options_.compression == "none" ? ExrWriteOptions::Compression::none : ExrWriteOptions::Compression::zip});
+    output.commit();
+    tool_.stats().end_phase();
+    tool_.stats().count("frames", 1);
+    tool_.stats().count("pixels", double(image.pixel_count()));
+  }
+
+ private:
+  const LoadedFrame& load(std::size_t index) {
+    const auto [found, is_new] = loaded_.try_emplace(index);
+    LoadedFrame& loaded = found->second;
+    if (!is_new) return loaded;
+    const Names& names = names_[index];
+    tool_.stats().phase("read");
+    loaded.image = read(names.frame, true);
+    const Image flow = names.flow.empty() ? Image{} : read(names.flow, false);
+    tool_.stats().phase("prepare", true);
+    try {
+      loaded.light = std::make_unique<LightFrame>(loaded.image);
+    } catch (const InputError& error) {
+      throw InputError(names.frame + ": " + error.what());
+    }
+    if (!names.flow.empty()) loaded.flow = FlowFrame(flow, loaded.image.width, loaded.image.height, names.flow);
+    else if (loaded.image.find("forward.u") || loaded.image.find("backward.u"))
+      loaded.flow = FlowFrame(loaded.image, loaded.image.width, loaded.image.height, names.frame);
+    explain(names, loaded);
+    return loaded;
+  }
+
+  Image read(const std::string& file, bool colour) {
+    Image image = load_exr(file, {.allow_nan = colour});   // pixels that hold no numbers are filled from those around
+    tool_.depends_on(file);
+    return image;
+  }
+
+  /// Warnings once per run, in the words of the first file that they are about.
+  void explain(const Names& names, const LoadedFrame& loaded) {
+    if (options_.width > 1 && loaded.flow.empty())
+      warn("motion", names.frame + ": no flow (forward.u, forward.v, backward.u, backward.v) and no --flow; filtered as if nothing moved");
+    else if (!loaded.flow.empty() && !(loaded.flow.has_forward() && loaded.flow.has_backward()))
+      warn("direction", (names.flow.empty() ? names.frame : names.flow) + ": flow in one direction only; the other is taken for its opposite");
+    if (loaded.light->noise == NoiseKnowledge::none)
+      warn("noise", names.frame + ": no variance and no samples; filtered by what cannot be seen at " +
+                        std::to_string(int(options_.filter.pixels_per_degree)) + " pixels per degree");
+    if (!loaded.image.find("Z") && !loaded.image.find("id.object"))
+      warn("surfaces", names.frame + ": neither Z nor id.object; surfaces cannot be told apart");
+    if (!identity_in(loaded.image).known()) warn("identity", names.frame + ": does not say which scene it shows; taken as it is");
+  }
+  void warn(const std::string& about, const std::string& message) {
+    if (!std::exchange(warned_[about], true)) tool_.warn(message);
+  }
+
+  tools::Tool& tool_;
+  const Options& options_;
+  std::vector<Names> names_;
+  std::map<std::size_t, LoadedFrame> loaded_;   ///< of the current window
+  std::map<std::string, bool> warned_;
+};
+
+void filter_files(tools::Tool& tool, const Options& options) {
+  const std::size_t count = options.frames.size();
+  if (!options.flow.empty() && options.flow.size() != count)
+    throw InputError("--flow: " + std::to_string(options.flow.size()) + " files for " + std::to_string(count) +
+                     " frames; name one for each, in the same order");
+  if (options.position < 0 || std::size_t(options.position) > count)
+    throw InputError("--position: there are " + std::to_string(count) + " frames; the first is 1");
+  std::vector<Names> names;
+  for (std::size_t i = 0; i < count; ++i) names.push_back({options.frames[i], options.flow.empty() ? "" : options.flow[i]});
+  const std::size_t at = options.position > 0 ? std::size_t(options.position) - 1 : (count - 1) / 2;
+  FilterRun(tool, options, std::move(names)).run(0, at, count - 1, options.output, std::nullopt);
+}
+
+void filter_range(tools::Tool& tool, const Options& options) {
+  if (options.frames.size() != 1 || !tools::has_frame_pattern(options.frames[0]) || options.flow.size() > 1)
+    throw InputError("--frames: name the frames, and their flow, by one pattern each, for example f.####.exr");
+  if (!tools::has_frame_pattern(options.output)) throw InputError("--output: several frames need a pattern, for example f.####.exr");
+  if (options.position != 0) throw InputError("--position: is for frames named one by one; leave it out, or --frames");
+  std::vector<int> numbers = tools::parse_frames(options.range);
+  std::sort(numbers.begin(), numbers.end());
+  std::vector<Names> names;
+  for (const int number : numbers)
+    names.push_back({tools::frame_name(options.frames[0], number), options.flow.empty() ? "" : tools::frame_name(options.flow[0], number)});
+  FilterRun run(tool, options, std::move(names));
+  const int reach = (options.width - 1) / 2;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    // Flow leads to the next frame: the window ends where a number is missing.
+    std::size_t first = i, last = i;
+    while (first > 0 && i - first < std::size_t(reach) && numbers[first - 1] == numbers[first] - 1) --first;
+    while (last + 1 < numbers.size() && last - i < std::size_t(reach) && numbers[last + 1] == numbers[last] + 1) ++last;
+    run.run(first, i, last, tools::frame_name(options.output, numbers[i]), numbers[i]);
+    tool.progress(double(i + 1) / double(numbers.size()));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tools::Tool tool("st-filter", "Filter frames of few samples, in space and along the pixel flow in time.", argc, argv);
+  Options options;
+  CLI::App& app = tool.app();
+  app.add_option("input", options.frames, "frames in the order of time, EXR, or with --frames a pattern such as f.####.exr")
+      ->required()->type_name("FILE");
+  app.add_option("--flow", options.flow, "their pixel flow, EXR, as many, or a pattern; without: the frames' own forward and backward")
+      ->type_name("FILE");
+  app.add_option("--frames", options.range, "filter these frames, each with those around it in this range: 0-47")->type_name("SPEC");
+  app.add_option("--width", options.width, "with --frames: frames that a frame is filtered with, itself included; odd")
+      ->capture_default_str()->check(tools::number_between(1, 63));
+  app.add_option("--position", options.position, "which of the frames named is filtered, 1: the first; 0: the one in the middle")
+      ->capture_default_str()->check(tools::number_between(0, 1 << 20));
+  app.add_option("--radius", options.filter.radius, "of the window in space, pixels; 0: filter in time alone")
+      ->capture_default_str()->check(tools::number_between(0, kMargin));
+  app.add_option("--pixels-per-degree", options.filter.pixels_per_degree,
+                 "of the viewer's sight, for frames that know neither variance nor samples")
+      ->capture_default_str()->check(tools::number_between(1.0, 1000.0));
+  app.add_option("--compression", options.compression, "EXR compression")->capture_default_str()->check(CLI::IsMember({"zip", "none"}));
+  tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
+  tool.common_options(0);
+  return tool.run([&] {
+    if (options.width % 2 == 0) throw InputError("--width: an odd number of frames has one in the middle; give 3 or 5");
+    if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
+    if (options.range.empty()) filter_files(tool, options);
+    else filter_range(tool, options);
+    return tools::exit_ok;
+  });
+}
