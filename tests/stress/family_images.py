@@ -210,3 +210,34 @@ def far(s):
         s.true("aqm-compare of infinite depths: JSON without NaN", s.read_json(out)["total"] is not None)
     else:
         s.refused("aqm-compare of infinite depths", run, out)
+
+
+@case("images", "st-filter: 1x1, black, constant, NaN and infinity, motion of 10^4 pixels")
+def filtered(s):
+    """A constant picture stays; what is no number is left out and filled from around, and none comes out."""
+    def frame(width, height, value, motion=0.0, odd=None):
+        count, path = width * height, s.path(".exr")
+        colour = [value] * count
+        if odd is not None:
+            colour[count // 2] = odd
+        channels = {c: colour for c in "RGB"} | {"Z": [2.0] * count, "samples": [1.0] * count}
+        channels |= {f"{way}.{c}": [sign * motion] * count for way, sign in (("forward", 1), ("backward", -1)) for c in "uv"}
+        exr.write(path, width, height, channels)
+        return path
+
+    def run(name, path, expected, tolerance):
+        out = s.path(".exr")
+        s.done(s.run("st-filter", "-q", path, path, path, "-o", out))
+        image = exr.read(out)
+        s.near(f"st-filter, {name}: not finite", 0, len(image.not_finite()), 0)
+        s.near(f"st-filter, {name}: largest", expected, max(image.rgb()), tolerance)
+        s.near(f"st-filter, {name}: least", expected, min(image.rgb()), tolerance)
+
+    for width, height in ((1, 1), (1, 100), (100, 1)):
+        run(f"{width}x{height}", frame(width, height, 0.5), 0.5, 1e-6)
+    for value in (0.0, 1e-30, 1.0, 1e17, 3e38):   # above 1e18 light stays as it is
+        run(f"constant {value:g}", frame(16, 16, value), value, 1e-6)
+    for name, odd in (("NaN", NAN), ("+inf", INF), ("-inf", -INF)):
+        run(name, frame(16, 16, 0.5, odd=odd), 0.5, 1e-6)
+    for motion in (1e4, -1e4, 3e38):
+        run(f"motion {motion:g}", frame(16, 16, 0.5, motion), 0.5, 1e-6)
