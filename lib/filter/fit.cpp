@@ -17,7 +17,7 @@ constexpr float kPull = 0.02f;
 struct Moments {
   Lane one{}, x{}, y{}, xx{}, xy{}, yy{};
 };
-/// Sums of weight value, weight value dx, weight value dy of one plane.
+/// Sums of weight value, weight value dx, weight value dy of one plane; value: less that of the pixel in the middle.
 struct ValueMoments {
   Lane one{}, x{}, y{};
 };
@@ -60,9 +60,10 @@ class StripFit {
       }
       for (std::size_t v = 0; v < values_.size(); ++v) {
         const float* value = plane(*planes_[v].from, dy) + dx;
+        const float* own = plane(*planes_[v].from);   // differences from it: what is constant comes out to the bit
         Lane &sum = rows_[v][0], &sum_x = rows_[v][1];
         for (std::size_t i = 0; i < count_; ++i) {
-          const float weighted = weight[i] * value[i];
+          const float weighted = weight[i] * (value[i] - own[i]);
           sum[i] += weighted;
           sum_x[i] += weighted * fx;
         }
@@ -126,10 +127,10 @@ class StripFit {
       const double to_x = -(mx * yy - my * xy) / determinant, to_y = -(my * xx - mx * xy) / determinant;
       for (std::size_t v = 0; v < values_.size(); ++v) {
         const ValueMoments& sums = values_[v];
-        const double mean = double(sums.one[i]) / one;
-        const double value = mean + to_x * (double(sums.x[i]) - mean * double(sums_.x[i])) +
+        const double own = double(planes_[v].from->at(x, y_)), mean = double(sums.one[i]) / one;   // the mean less own
+        const double value = own + mean + to_x * (double(sums.x[i]) - mean * double(sums_.x[i])) +
                              to_y * (double(sums.y[i]) - mean * double(sums_.y[i]));
-        planes_[v].to->at(x, y_) = float(std::max(value, std::min(mean, 0.0)));
+        planes_[v].to->at(x, y_) = float(std::max(value, std::min(own + mean, 0.0)));
       }
     }
   }
