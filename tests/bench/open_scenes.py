@@ -20,7 +20,7 @@ import zlib
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
-from scenes import Scene, add, box_mesh, cross, grid_mesh, normalize, sphere_mesh
+from scenes import Scene, box_mesh, grid_mesh, leaves_mesh, sphere_mesh
 
 SKY = ("--environment-color", "0.5,0.7,1")     # W/m^2/sr: gives an open horizontal surface about 2.3 W/m^2
 SUN = (20, 19, 17)                             # W/m^2 across its direction: nine times the sky's
@@ -93,22 +93,8 @@ def leaves(count=3600):
     """Twelve bushes of 300 leaves each, 5 x 3 cm, in a room of 4 x 3 x 2.6 m."""
     scene, rng = Scene(), random.Random(3600)
     scene.room((-2, 0, -1.5), (2, 2.6, 1.5), scene.material(0.7))
-    positions, triangles = array.array("f"), array.array("I")
-    for i in range(count):
-        bush = i % 12
-        middle = [-1.5 + (bush % 4), 0.5 + 0.1 * (bush % 3), -0.8 + 0.8 * (bush // 4)]
-        while True:
-            offset = [rng.uniform(-1, 1) for _ in range(3)]
-            if sum(x * x for x in offset) < 1:
-                break
-        n = normalize([rng.gauss(0, 1) for _ in range(3)])
-        u = normalize(cross(n, [rng.gauss(0, 1) for _ in range(3)]))
-        v, first = cross(n, u), len(positions) // 3
-        centre = add(middle, offset, 0.4)
-        for s, t in ((-0.025, 0), (0, -0.015), (0.025, 0), (0, 0.015)):
-            positions.extend(add(add(centre, u, s), v, t))
-        triangles.extend(first + k for k in (0, 1, 2, 0, 2, 3))
-    scene.mesh(positions, triangles, scene.material((0.2, 0.5, 0.12)))
+    bushes = [(-1.5 + i % 4, 0.5 + 0.1 * (i % 3), -0.8 + 0.8 * (i // 4)) for i in range(12)]
+    scene.mesh(*leaves_mesh(rng, count, bushes, 0.4, 0.025, 0.015), scene.material((0.2, 0.5, 0.12)))
     lamp = scene.material(0.0, 18, one_sided=True)
     scene.quad((-0.5, 2.59, -0.3), (0.5, 2.59, -0.3), (0.5, 2.59, 0.3), (-0.5, 2.59, 0.3), lamp)
     scene.camera((-1.8, 1.6, 1.35), (0.4, 0.5, -0.4), fov=1.0)

@@ -129,6 +129,24 @@ def sphere_mesh(centre, radii, n, inwards=True):
     return positions, triangles, normals
 
 
+def leaves_mesh(rng, count, bushes, radius, half_length, half_width):
+    """Diamonds turned at random, spread over balls of `radius` about the bushes' middles in turn."""
+    positions, triangles = array.array("f"), array.array("I")
+    for i in range(count):
+        while True:
+            offset = [rng.uniform(-1, 1) for _ in range(3)]
+            if sum(x * x for x in offset) < 1:
+                break
+        n = normalize([rng.gauss(0, 1) for _ in range(3)])
+        u = normalize(cross(n, [rng.gauss(0, 1) for _ in range(3)]))
+        v, first = cross(n, u), len(positions) // 3
+        centre = add(bushes[i % len(bushes)], offset, radius)
+        for s, t in ((-half_length, 0), (0, -half_width), (half_length, 0), (0, half_width)):
+            positions.extend(add(add(centre, u, s), v, t))
+        triangles.extend(first + k for k in (0, 1, 2, 0, 2, 3))
+    return positions, triangles
+
+
 class Scene:
     def __init__(self):
         self.data = bytearray()

@@ -1,0 +1,77 @@
+"""Cycles beside us, on the same machine in the same run, where Blender is installed: `make -f Makefile.example bench PEERS=1`."""
+import math
+import os
+import shutil
+import statistics
+import subprocess
+from pathlib import Path
+
+import cases
+import exr
+import pixels
+from measure import Missing, figure, percent, quantity
+from references import Reference
+from shipped import Side, yardstick
+
+SCENES = ("S2", "S3", "S4", "S8")
+SAMPLES = 64
+HEADER = ["scene", "Cycles' CPU s", "its RMSE / mean", "preset", "our CPU s", "our RMSE / mean", "Cycles' CPU s at our RMSE", "ratio",
+          "mean of the picture, Cycles / our paths - 1"]
+
+
+def blender():
+    """The program, if it renders glTF: its importer wants numpy."""
+    program = shutil.which("blender")
+    if not program:
+        raise Missing("Blender is not installed (Debian: apt-get install --no-install-recommends blender python3-numpy)")
+    return program
+
+
+def by_cycles(bench, program, case, size, samples, seed):
+    """(picture, CPU seconds), Blender's start and its reading of the file counted, as ours are."""
+    image = bench.out / "tmp" / "cycles.exr"
+    image.unlink(missing_ok=True)
+    words = dict(zip(case.shared[::2], case.shared[1::2]))
+    before = os.times()
+    done = subprocess.run([program, "-b", "--factory-startup", "-noaudio", "--python-use-system-env", "--python",
+                           str(Path(__file__).with_name("cycles_render.py")), "--", str(case.file), str(case.frame), size, str(samples), str(seed),
+                           words.get("--environment-color", "0,0,0"), "SPEC" if words.get("--light-units") == "spec" else "COMPAT", str(image)],
+                          capture_output=True, text=True)
+    after = os.times()
+    if not image.exists():
+        lines = [line for line in (done.stdout + done.stderr).splitlines() if "Error" in line]
+        raise Missing(f"Blender rendered nothing: {lines[-1] if lines else 'no message'}")
+    return exr.read(image), after.children_user - before.children_user + after.children_system - before.children_system
+
+
+def cycles(bench, _):
+    """Cycles beside the shipped presets, same machine, same run."""
+    program, rows = blender(), []
+    if bench.tiny:
+        raise Missing("short form")
+    for case in (case for case in cases.ours(bench) if case.name in SCENES):
+        side, reference = Side(bench, case, bench.size, 10**4), Reference(bench, case, bench.size, yardstick(bench))
+        reference.until(lambda a, b: reference.facts["spp"] >= 512, 10**4)
+        a, b = reference.halves
+        mean, _ = pixels.mean_of_halves(a, b)
+        theirs, runs = [], {"draft": [], "final": []}
+        for seed in (1, 2, 3):             # the sides alternate
+            theirs.append(by_cycles(bench, program, case, bench.size, SAMPLES, seed))
+            for quality, found in runs.items():
+                image, cpu, _ = side.chain(seed, quality)
+                found.append((pixels.squared_error(image, a, b)[0], cpu))
+        cpu = statistics.median(c for _, c in theirs)
+        mse = statistics.mean(pixels.half_error(p, q) for (p, _), (q, _) in ((theirs[0], theirs[1]), (theirs[1], theirs[2])))
+        their_mean = statistics.mean(pixels.mean(image) for image, _ in theirs)
+        for quality, found in runs.items():
+            ours, our_cpu = max(1e-30, statistics.mean(e for e, _ in found)), statistics.median(c for _, c in found)
+            equal = cpu * mse / ours
+            rows.append([case.name, quantity(cpu), percent(math.sqrt(mse) / their_mean, 1), quality, quantity(our_cpu),
+                         percent(math.sqrt(ours) / mean, 1), quantity(equal), f"{quantity(equal / our_cpu)}x", f"{100 * (their_mean / mean - 1):+.1f} %"])
+    return figure(f"Cycles of Blender 3.4, {SAMPLES} samples, beside the presets at {bench.size}", "printed", HEADER, rows, None,
+                  ["Cycles' error is its noise, of pairs of its own pictures: its materials are not quite ours (last column). At our RMSE: by its "
+                   "1/sqrt law. Three runs each, in turn; every process counted from its start."],
+                  measured=", ".join(f"{row[0]} {row[3]} {row[7]}" for row in rows))
+
+
+FIGURES = {"cycles": cycles}
