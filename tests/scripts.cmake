@@ -35,6 +35,9 @@ add_test(NAME pipelines.plan_example COMMAND sh tests/pipelines/plan_example.sh 
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.plan_refuses COMMAND sh tests/pipelines/plan_refuses.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+add_test(NAME pipelines.walkthrough COMMAND sh tests/pipelines/walkthrough.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.walkthrough PROPERTIES TIMEOUT 300)
 add_test(NAME pipelines.drop_kind COMMAND sh tests/pipelines/drop_kind.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.environment COMMAND sh tests/pipelines/environment.sh $<TARGET_FILE_DIR:scene-plan>

@@ -24,7 +24,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string test, reference, layer, mask, smooth, json, difference, metric = "error";
+  std::string test, reference, layer, mask, except, smooth, json, difference, metric = "error", fail_by = "rmse";
   std::vector<std::string> halves;
   bool own_halves = false, perceptual = false, allow_stale = false;
   double fail_above = -1, difference_scale = 0;
@@ -45,6 +45,8 @@ void declare(tools::Tool& tool, Options& o) {
       ->type_name("NAME");
   app.add_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count")
       ->type_name("FILE");
+  app.add_option("--except", o.except, "EXR; pixels where one of its channels is not 0 do not count: a mask of ibr-warp")
+      ->type_name("FILE");
   app.add_option("--relative-to", o.smooth,
                  "EXR; stands for the reference in relMSE's denominator, where the reference's noise would count")
       ->type_name("FILE");
@@ -57,8 +59,10 @@ void declare(tools::Tool& tool, Options& o) {
                      "--difference");
   app.add_option("--difference-scale", o.difference_scale, "difference at full red in the PNG; 0: automatic")
       ->type_name("VALUE")->capture_default_str()->check(tools::number_between(0));
-  app.add_option("--fail-above", o.fail_above, "exit 1 if the RMSE is above this")->type_name("RMSE")
+  app.add_option("--fail-above", o.fail_above, "exit 1 if the RMSE is above this, or what --fail-by names")->type_name("VALUE")
       ->check(tools::number_between(0));
+  app.add_option("--fail-by", o.fail_by, "what --fail-above judges: rmse or relmse")->capture_default_str()
+      ->check(CLI::IsMember({"rmse", "relmse"}));
   tool.leave_out_of_history(
       app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
   tool.common_options(tools::uses_frames);
@@ -117,6 +121,12 @@ Comparison description(const tools::Tool& tool, const Options& o) {
   return comparison;
 }
 
+/// relMSE as something to judge by: where it does not exist, as the reference is black, 0 of equal frames and infinity of others.
+double relative_error(const Comparison& result) {
+  if (const auto& relative = result.total.relative_squared_error) return relative->value;
+  return result.total.squared_error.root() > 0 ? INFINITY : 0;
+}
+
 int compare(tools::Tool& tool, const Options& o, bool frames_given) {
   check(tool, o, frames_given);
   std::optional<tools::Output> json, difference;
@@ -131,7 +141,7 @@ int compare(tools::Tool& tool, const Options& o, bool frames_given) {
 
   ComparisonBuilder builder(description(tool, o), o.min_object_pixels);
   tools::IdentityGuard identities(tool, o.allow_stale);
-  const tools::ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb(), o.smooth};
+  const tools::ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb(), o.smooth, o.except};
   double scale = o.difference_scale;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     tool.stats().phase("load");
@@ -157,7 +167,8 @@ int compare(tools::Tool& tool, const Options& o, bool frames_given) {
   std::snprintf(line, sizeof line, ": red +%g, blue -%g\n", scale, scale);
   if (o.difference.ends_with(".png")) table += o.difference + line;
   if (!tool.common().quiet) std::fputs(table.c_str(), json && json->is_stdout() ? stderr : stdout);
-  const bool fails = o.fail_above >= 0 && result.total.squared_error.root() > o.fail_above;
+  const double judged = o.fail_by == "rmse" ? result.total.squared_error.root() : relative_error(result);
+  const bool fails = o.fail_above >= 0 && judged > o.fail_above;
   return fails ? tools::exit_differs : tools::exit_ok;
 }
 

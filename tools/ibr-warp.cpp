@@ -135,7 +135,7 @@ void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& in
                                       {&frames.at(number - 1), &frames.camera(number - 1)}, input.time().fps);
   tool.stats().phase("warp", true);
   WarpTarget target{&seen.camera(), &seen.seen(), {}, &flow.speed, {}};
-  target.look = [&](std::span<const RasterPoint> at, SeenPoint* points) { seen.look(at, points); };
+  target.look = [&](std::span<const RasterPoint> at, FacePoint* points) { seen.look(at, points); };
   if (!has_layer(*keys[0].key, "specular")) {
     target.gloss = seen.gloss();
     if (std::find(target.gloss.begin(), target.gloss.end(), 1) != target.gloss.end())

@@ -13,6 +13,7 @@
 
 #include "formats/error.h"
 #include "lib/gather/cache_files.h"
+#include "lib/image/images_by_module.h"
 #include "lib/render/cache_light.h"
 #include "tools/common/gather_input.h"
 #include "tools/common/option_words.h"
@@ -26,7 +27,7 @@ constexpr std::uint64_t kMaxPoints = 1 << 28;   ///< per side of all surfaces
 
 struct Options {
   std::vector<std::string> inputs;  // [points|records] SCENE
-  std::string photons, points, records, output, keep_points, radii = "ward";
+  std::string photons, points, records, mask, output, keep_points, radii = "ward";
   std::uint64_t point_count = PointOptions{}.count;
   int width = 640, height = 360;
   PointOptions point;
@@ -91,6 +92,18 @@ formats::IrradcacheHeader cache_header(const Options& options, const SceneFrame&
 /// from what the first was worth; a stricter first keeps the others from adding a few everywhere.
 constexpr float kLaterWeight = 0.5f;
 
+/// By pixel of the frame, 0: nobody looks there; empty without --mask.
+std::vector<std::uint8_t> wanted_pixels(tools::Tool& tool, const Options& options, int number) {
+  if (options.mask.empty()) return {};
+  const std::string name = tools::frame_name(options.mask, number);
+  tool.depends_on(name);
+  MaskPixels mask = mask_by_module(name, 512ull << 20);
+  if (mask.width != options.width || mask.height != options.height)
+    throw InputError(name + ": " + std::to_string(mask.width) + "x" + std::to_string(mask.height) +
+                     " pixels; a mask has the size of the picture, --size");
+  return std::move(mask.pixels);
+}
+
 /// Records for the cameras of all frames: one cache, valid while nothing but the camera changes.
 void build_records(tools::Tool& tool, tools::SceneInput& input, Options options, const std::vector<int>& frames) {
   tools::Output output(options.output, tool.common().no_clobber);
@@ -127,8 +140,11 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
     const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
     PlacementOptions placement = options.placement;
     if (number != frames.front()) placement.min_weight *= kLaterWeight;
+    const std::vector<std::uint8_t> wanted = wanted_pixels(tool, options, number);
     const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
       seen_through(tracer, view, looks, seen);
+      for (std::size_t i = 0; i < looks.size() && !wanted.empty(); ++i)
+        if (!wanted[std::size_t(looks[i].y) * std::size_t(options.width) + std::size_t(looks[i].x)]) seen[i].reset();
     };
     const std::size_t added = place_records(gather, views, options.width, options.height, first.bounds, placement,
                                             store, counts, [&](double done) { tool.progress(done); });
@@ -165,7 +181,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
     throw InputError("name either the photon map, --photons FILE, or the points made from it, --points FILE");
   if (mode == "points")
     refuse_unread(app, "points", {"--points", "--records", "--rays", "--error-bound", "--radii", "--free-radii",
-                                  "--min-radius-px", "--min-weight", "--size", "--keep-points"});
+                                  "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points",
                   {"--photons", "--point-count", "--neighbours", "--light-samples", "--keep-points"});
@@ -213,6 +229,9 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()->check(tools::number_above(0));
   app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
       ->capture_default_str()->check(tools::number_between(1e-6, 0.99));
+  app.add_option("--mask", options.mask,
+                 "EXR file, or a pattern: records only where pixels look at which a channel is not 0, as of ibr-warp")
+      ->type_name("FILE");
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.keep_points, "also write the points made from --photons, .irradpoints", "--keep-points");
   tool.output_option(options.output, ".irradcache file (points: .irradpoints); - for standard output")->required();

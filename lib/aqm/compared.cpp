@@ -56,6 +56,16 @@ std::vector<std::uint8_t> pixels_of_mask(const NamedImage& mask) {
   return counted;
 }
 
+/// Takes pixels where `except` is not 0 out of those that count (empty: all do).
+void leave_out(const NamedImage& except, std::vector<std::uint8_t>& counted) {
+  if (counted.empty()) counted.assign(except.image->pixel_count(), 1);
+  for (const Channel& channel : except.image->channels)
+    for (std::size_t i = 0; i < counted.size(); ++i)
+      if (channel.ids.empty() ? channel.values[i] != 0.0f : channel.ids[i] != 0) counted[i] = 0;
+  if (std::ranges::count(counted, 0) == std::ptrdiff_t(counted.size()))
+    throw InputError(except.name + ": leaves no pixel to compare; it is other than 0 everywhere that counts");
+}
+
 void check_finite(const Compared& pair, const std::vector<const std::vector<float>*>& planes,
                   const std::string& name, const std::string& layer) {
   for (std::size_t c = 0; c < planes.size(); ++c)
@@ -95,8 +105,8 @@ LayerPlanes layer_planes(const NamedImage& image, const std::string& layer) {
 }
 
 Compared compare_layers(const ComparedInputs& inputs) {
-  const auto& [test, reference, second, mask, layer, smooth] = inputs;
-  for (const NamedImage* other : {&reference, &second, &mask, &smooth})
+  const auto& [test, reference, second, mask, layer, smooth, except] = inputs;
+  for (const NamedImage* other : {&reference, &second, &mask, &smooth, &except})
     if (other->image) check_size(*other, test);
 
   Compared pair;
@@ -109,6 +119,7 @@ Compared compare_layers(const ComparedInputs& inputs) {
   if (second.image) pair.second = planes_like(second, layer, pair.channels);
   if (smooth.image) pair.smooth = planes_like(smooth, layer, pair.channels);
   if (mask.image) pair.counted = pixels_of_mask(mask);
+  if (except.image) leave_out(except, pair.counted);
   for (const NamedImage* from : {&test, &reference}) {
     const Channel* ids = from->image->find("id.object");
     if (!pair.objects && ids && !ids->ids.empty()) pair.objects = &ids->ids;

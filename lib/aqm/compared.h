@@ -53,10 +53,10 @@ struct Compared {
 struct ComparedInputs {
   NamedImage test, reference, second, mask;
   std::string layer;
-  NamedImage smooth = {};
+  NamedImage smooth = {}, except = {};
 };
 
-/// Lays a frame beside its reference. Pixels where all channels of `mask` are 0 do not count. Throws
+/// Lays a frame beside its reference. Pixels where all channels of `mask` are 0, or one of `except` is not, do not count. Throws
 /// InputError, naming file and remedy, if sizes or channels differ, the layer is missing, no pixel counts, or
 /// a sample that counts is infinite or not a number.
 Compared compare_layers(const ComparedInputs& inputs);

@@ -24,4 +24,12 @@ struct LinearPixels {
 /// without memory.
 LinearPixels load_by_module(const std::string& path, std::uint64_t max_pixels);
 
+/// A mask: nonzero_pixels() of an image.
+struct MaskPixels {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> pixels;
+};
+/// InputError and std::bad_alloc as above.
+MaskPixels mask_by_module(const std::string& path, std::uint64_t max_pixels);
+
 }  // namespace tempolux

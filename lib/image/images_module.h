@@ -5,12 +5,13 @@
 
 namespace tempolux {
 
-inline constexpr std::uint32_t kPixelsAbi = 1;
+inline constexpr std::uint32_t kPixelsAbi = 2;
 
 /// One call: the image to read, where its pixels go, what went wrong.
 struct PixelsRequest {
   std::uint32_t abi;           ///< kPixelsAbi; another: refused
   const char* path;            ///< a file, read as load_image does: linear R, G, B; null: `bytes`
+  std::int32_t mask;           ///< 1: of the file nonzero_pixels(), one channel of 8 bits
   const unsigned char* bytes;  ///< a PNG or JPEG in memory, decoded as decode_image does: its codes
   std::uint64_t size;          ///< of bytes
   const char* place;           ///< where the bytes come from, for messages

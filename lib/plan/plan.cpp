@@ -177,6 +177,22 @@ std::size_t different(const Plan& plan, int PlannedFrame::*member) {
   return values.size();
 }
 
+/// Frames from one key to the next that warping needs between them at least; with fewer each picture is a key or beside two.
+constexpr std::size_t kFewestForKeys = 4;
+
+/// Are there pictures between key frames that warping could make? By what decides it. `other`: which materials mirror or shine, whose light
+/// is traced in every frame all the same.
+Stage plan_walkthrough(const Plan& plan, const std::string& other) {
+  const std::size_t pictures = different(plan, &PlannedFrame::picture), states = different(plan, &PlannedFrame::lit_frame);
+  const bool moves = std::ranges::any_of(plan.segments, &PlannedSegment::camera_moves) || pictures > states;
+  if (pictures < kFewestForKeys) return {"ibr-warp", false, counted(pictures, "different picture") + ": too few to lie between keys"};
+  if (!moves) return {"ibr-warp", false, "the camera stands: what is still costs little, and what moves must be traced"};
+  if (states == pictures)
+    return {"ibr-warp", false, "light transport differs in all " + counted(pictures, "picture") + ": keys lend little light to others"};
+  return {"ibr-warp", true, "the camera moves through " + counted(pictures, "picture") + " of " + counted(states, "state") +
+                                " of light transport; " + other};
+}
+
 /// The stages, and by which fact each is needed or not.
 void plan_stages(const Scene& scene, Plan& plan) {
   const std::set<std::uint32_t> used = used_materials(scene);
@@ -203,7 +219,9 @@ void plan_stages(const Scene& scene, Plan& plan) {
       {"photon-trace --kinds direct", false, "frame-render samples the lights for direct light"},
       {"irradcache-build points", indirect, indirect ? states : lambert},
       {"irradcache-build records", indirect, indirect ? states + ", " + pictures : lambert},
+      plan_walkthrough(plan, other),
       {"frame-render", true, frames + ", " + pictures}};
+  plan.walkthrough = plan.stages[plan.stages.size() - 2].needed;
 }
 
 }  // namespace

@@ -55,6 +55,7 @@ struct Plan {
   std::vector<int> frames;          ///< those asked for, in the order asked, each once
   std::vector<PlannedSegment> segments;  ///< by first frame
   std::vector<Stage> stages;
+  bool walkthrough = false;         ///< key frames and warping pay: METHOD=auto follows it
   std::string photon_kinds;         ///< what photon-trace has to record: "caustic,indirect"; "" if no photons
   std::vector<std::string> warnings;
 };

@@ -116,6 +116,7 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   }
   text += variable("plan_frames", plan.frames) + variable("plan_pictures", pictures);
   text += variable("plan_photons", photon_frames) + "plan_kinds := " + plan.photon_kinds + "\n";
+  text += std::string("plan_method := ") + (plan.walkthrough ? "walkthrough" : "frames") + "\n";
   for (const std::string& file : scene_files)  // the empty rule: a file that is gone asks for a new plan
     text += folder + "/plan.mk: " + escaped_for_make(file) + "\n" + escaped_for_make(file) + ":\n";
   for (const PlannedSegment& segment : plan.segments) {

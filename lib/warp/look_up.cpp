@@ -24,7 +24,7 @@ KeyView::KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCame
 }
 
 LookUp KeyView::find(const Wanted& wanted, Taps& taps, float& magnification) const {
-  const SeenPoint& point = wanted.point;
+  const FacePoint& point = wanted.point;
   const bool moves = point.object < moved_.size();
   if (moves) {
     const ObjectMotion::Kind kind = motions_.of(point.object).kind;
@@ -39,7 +39,7 @@ LookUp KeyView::find(const Wanted& wanted, Taps& taps, float& magnification) con
   if (!raster || !(raster->x >= 0 && raster->y >= 0 && raster->x < seen.width && raster->y < seen.height))
     return LookUp::outside;
 
-  SeenPoint face{infinite ? INFINITY : float(there.z), point.object, point.normal};   // in the key's world
+  FacePoint face{infinite ? INFINITY : float(there.z), point.object, point.normal};   // in the key's world
   float facing = 1;
   magnification = 1;
   if (!infinite) {
@@ -56,7 +56,7 @@ LookUp KeyView::find(const Wanted& wanted, Taps& taps, float& magnification) con
   return gather(raster->x - 0.5, raster->y - 0.5, face, tolerance, taps);
 }
 
-LookUp KeyView::gather(double cx, double cy, const SeenPoint& face, float tolerance, Taps& taps) const {
+LookUp KeyView::gather(double cx, double cy, const FacePoint& face, float tolerance, Taps& taps) const {
   const SeenSurfaces& seen = key_.seen();
   const int width = seen.width, height = seen.height;
   const auto index = [&](int x, int y) { return std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x); };

@@ -36,7 +36,7 @@ class KeyView {
   /// A point of the target to be found: `at` in the target's camera space (if it is infinitely far away, its direction).
   struct Wanted {
     Vec3d at;
-    SeenPoint point;
+    FacePoint point;
     double area = 1;       ///< FrameCamera::area_of_pixel() there
   };
 
@@ -56,7 +56,7 @@ class KeyView {
 
  private:
   /// At a position of the key, counted in pixels from the centre of its first: of pixels that show the face.
-  LookUp gather(double cx, double cy, const SeenPoint& face, float tolerance, Taps& taps) const;
+  LookUp gather(double cx, double cy, const FacePoint& face, float tolerance, Taps& taps) const;
 
   const KeyFrame& key_;
   const FrameCamera &camera_, &target_;

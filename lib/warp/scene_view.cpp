@@ -28,7 +28,7 @@ SceneView::SceneView(const Tracer& tracer, const CameraView& view)
                             float((i + j) / std::size_t(view.width())) + 0.5f);
       tracer_.intersect(std::span(rays).first(count), std::span(hits_).subspan(i, count));
       for (std::size_t j = 0; j < count; ++j) {
-        const SeenPoint point = point_of(hits_[i + j], rays[j]);
+        const FacePoint point = point_of(hits_[i + j], rays[j]);
         seen_.depth[i + j] = point.depth;
         seen_.object[i + j] = point.object;
         seen_.normal[i + j] = point.normal;
@@ -37,7 +37,7 @@ SceneView::SceneView(const Tracer& tracer, const CameraView& view)
   });
 }
 
-SeenPoint SceneView::point_of(const Hit& hit, const Ray& ray) const {
+FacePoint SceneView::point_of(const Hit& hit, const Ray& ray) const {
   if (hit.surface == kNone) return {INFINITY, kNoObject, {}};
   SurfacePoint point = tracer_.surface_point(hit);
   const RayCone cone = view_.cone();
@@ -46,7 +46,7 @@ SeenPoint SceneView::point_of(const Hit& hit, const Ray& ray) const {
   return {float(view_.depth(point.position)), point.object, normal};
 }
 
-void SceneView::look(std::span<const RasterPoint> at, SeenPoint* points) const {
+void SceneView::look(std::span<const RasterPoint> at, FacePoint* points) const {
   std::array<Ray, kTogether> rays;
   std::array<Hit, kTogether> hits;
   for (std::size_t i = 0; i < at.size(); i += kTogether) {

@@ -22,7 +22,7 @@ class SceneView {
   const SceneFrame& frame() const { return tracer_.frame(); }
 
   /// The same for any raster positions, points[i] of at[i].
-  void look(std::span<const RasterPoint> at, SeenPoint* points) const;
+  void look(std::span<const RasterPoint> at, FacePoint* points) const;
 
   /// By pixel, 1: the material has a lobe that mirrors, shines or lets through.
   std::vector<std::uint8_t> gloss() const;
@@ -31,7 +31,7 @@ class SceneView {
   void add_channels(const std::vector<std::string>& groups, Image& image) const;
 
  private:
-  SeenPoint point_of(const Hit& hit, const Ray& ray) const;
+  FacePoint point_of(const Hit& hit, const Ray& ray) const;
 
   const Tracer& tracer_;
   const CameraView& view_;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kNothingDepth = 1e10f;   // what Blender writes where nothing is
 
-SeenPoint point_at(const SeenSurfaces& seen, std::size_t p) {
+FacePoint point_at(const SeenSurfaces& seen, std::size_t p) {
   return {seen.depth[p], seen.object_at(p), seen.normal_at(p)};
 }
 
@@ -47,7 +47,7 @@ std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCame
   parallel_chunks(height, 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t y = first, p = first * width; y < last; ++y)
       for (std::size_t x = 0; x < width; ++x, ++p) {
-        const SeenPoint here = point_at(seen, p);
+        const FacePoint here = point_at(seen, p);
         // The larger tolerance of the two: the same answer from either side.
         const auto differs = [&](std::size_t q) { return !same_face(here, point_at(seen, q), std::max(tolerance[p], tolerance[q])); };
         std::uint8_t bits = 0;

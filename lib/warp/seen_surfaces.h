@@ -28,7 +28,7 @@ struct SeenSurfaces {
 };
 
 /// One point that a picture shows, to be found in another.
-struct SeenPoint {
+struct FacePoint {
   float depth = 0;
   std::uint32_t object = kNoObject;
   Vec3 normal;                           ///< world space; 0: not known
@@ -45,7 +45,7 @@ inline float depth_tolerance(float pixel_angle, float facing) {
 inline constexpr float kSameFace = 0.9f;
 
 /// Are two points, at most a pixel or two apart in a picture, on one face of one object? tolerance: of depths, relative.
-inline bool same_face(const SeenPoint& a, const SeenPoint& b, float tolerance) {
+inline bool same_face(const FacePoint& a, const FacePoint& b, float tolerance) {
   if (a.object != b.object) return false;
   if (!(a.depth < INFINITY && b.depth < INFINITY)) return a.depth == b.depth;
   if (!(std::abs(a.depth - b.depth) <= tolerance * a.depth)) return false;

@@ -53,7 +53,7 @@ class Compositor {
     }
   }
 
-  void pixel(std::size_t p, std::span<const SeenPoint> parts, std::span<const RasterPoint> at, Pixel& pixel) const {
+  void pixel(std::size_t p, std::span<const FacePoint> parts, std::span<const RasterPoint> at, Pixel& pixel) const {
     start(pixel);
     if (take_what_stands(p, pixel)) return;
     pixel.resampled = true;
@@ -105,7 +105,7 @@ class Compositor {
     return standing > 0;
   }
 
-  void add_part(const SeenPoint& point, RasterPoint at, Pixel& pixel) const {
+  void add_part(const FacePoint& point, RasterPoint at, Pixel& pixel) const {
     const FrameCamera& camera = *target_.camera;
     KeyView::Wanted wanted{point.depth < INFINITY ? camera.unproject(at, double(point.depth)) : camera.direction(at), point};
     if (point.depth < INFINITY) {
@@ -229,7 +229,7 @@ WarpedFrame warp(const WarpTarget& target, std::span<const WarpKey> keys, const 
 
   parallel_chunks(pixels, 4096, [&](std::size_t first, std::size_t last) {
     Pixel pixel;
-    std::array<SeenPoint, kParts> points;
+    std::array<FacePoint, kParts> points;
     std::array<RasterPoint, kParts> at;
     for (std::size_t p = first; p < last; ++p) {
       const double x = double(p % width), y = double(p / width);

@@ -22,7 +22,7 @@ struct WarpTarget {
   const FrameCamera* camera = nullptr;
   const SeenSurfaces* seen = nullptr;
   /// What is seen between pixel centres; empty: not known, then pixels with an edge are masked.
-  std::function<void(std::span<const RasterPoint>, SeenPoint*)> look;
+  std::function<void(std::span<const RasterPoint>, FacePoint*)> look;
   const std::vector<float>* speed = nullptr;     ///< deg/s by pixel; nullptr: not known, none is slow
   std::vector<std::uint8_t> gloss;               ///< by pixel, 1: a surface that mirrors or lets light through; empty: not known
 };

@@ -30,6 +30,14 @@ try x.exr r.exr --quiet --json out.json; ls out.json
 # thresholds: 1 means that the frame fails, nothing else
 try x.exr r.exr --quiet --fail-above 0.25
 try x.exr r.exr --quiet --fail-above 0.24
+# relMSE is (1/16) / (1/4 + .05^2) = .24752
+try x.exr r.exr --quiet --fail-above 0.2476 --fail-by relmse
+try x.exr r.exr --quiet --fail-above 0.2475 --fail-by relmse
+# what --except leaves out may be anything: the left half, then all
+exr left.exr 32x16 'why:id=64|0'
+exr all.exr 32x16 why:id=1
+try hole.exr ones.exr --except left.exr
+try hole.exr ones.exr --except all.exr
 # sequences: x alternates between .75 and .25 over .5: flicker 1/2
 for f in 00 02; do cp x.exr s.$f.exr; cp r.exr t.$f.exr; done
 for f in 01 03; do cp a.exr s.$f.exr; cp r.exr t.$f.exr; done

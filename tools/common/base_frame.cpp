@@ -5,21 +5,17 @@
 #include "formats/error.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
+#include "lib/image/nonzero_pixels.h"
 
 namespace tempolux::tools {
 namespace {
 
-/// A pixel is traced where any channel of the mask is not 0.
 std::vector<std::uint8_t> read_mask(const std::string& name, const Picture& picture) {
   const Image image = load_exr(name);
   if (image.width != picture.width || image.height != picture.height)
     throw InputError(name + ": " + std::to_string(image.width) + "x" + std::to_string(image.height) +
                      " pixels; a mask has the size of the picture");
-  std::vector<std::uint8_t> mask(image.pixel_count());
-  for (const Channel& channel : image.channels)
-    for (std::size_t p = 0; p < mask.size(); ++p)
-      mask[p] |= channel.ids.empty() ? channel.values[p] != 0 : channel.ids[p] != 0;
-  return mask;
+  return nonzero_pixels(image);
 }
 
 /// Matrices are stored as float32, so that of one camera they are equal to the bit; absent: not known, not another.

@@ -20,6 +20,7 @@ LoadedFrame::LoadedFrame(Tool& tool, const ComparedFiles& files, std::optional<i
   if (files.references.size() > 1) inputs_.second = load(files.references[1], second_);
   if (!files.smooth.empty()) inputs_.smooth = load(files.smooth, smooth_);
   if (!files.mask.empty()) inputs_.mask = load(files.mask, mask_);
+  if (!files.except.empty()) inputs_.except = load(files.except, except_);
 }
 
 int LoadedFrame::frame_number() const {

@@ -10,11 +10,11 @@
 
 namespace tempolux::tools {
 
-/// Names or patterns; one reference or its two halves; mask and smooth may be empty.
+/// Names or patterns; one reference or its two halves; mask, smooth and except may be empty.
 struct ComparedFiles {
   std::string test;
   std::vector<std::string> references;
-  std::string mask, layer, smooth;
+  std::string mask, layer, smooth, except;
 };
 
 /// The images of one frame. Adds their files to the tool's dependencies.
@@ -31,7 +31,7 @@ class LoadedFrame {
   int frame_number() const;
 
  private:
-  Image test_, reference_, second_, mask_, smooth_;
+  Image test_, reference_, second_, mask_, smooth_, except_;
   ComparedInputs inputs_;
 };
 

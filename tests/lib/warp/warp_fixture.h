@@ -90,7 +90,7 @@ struct Warped {
       list.push_back({views.back().get(), source.frames_away, source.cut_off, source.light_may_differ});
     }
     WarpTarget wanted{&target.seen.camera(), &target.seen.seen(), {}, nullptr, {}};
-    wanted.look = [&](std::span<const RasterPoint> at, SeenPoint* points) { target.seen.look(at, points); };
+    wanted.look = [&](std::span<const RasterPoint> at, FacePoint* points) { target.seen.look(at, points); };
     frame = warp(wanted, list, options);
   }
   /// Of the composed picture; channels are A B G R.

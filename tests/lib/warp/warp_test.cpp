@@ -128,10 +128,10 @@ TEST(Warp, EdgesAreComposedFromWhatLiesBesideThem) {
     double mean = 0, low = 99, high = 0;
     for (int i = 0; i < 64; ++i) {
       std::array<RasterPoint, 64> at;
-      std::array<SeenPoint, 64> points;
+      std::array<FacePoint, 64> points;
       for (int j = 0; j < 64; ++j) at[std::size_t(j)] = {double(p % 96) + (i + 0.5) / 64, double(p / 96) + (j + 0.5) / 64};
       view.seen.look(at, points.data());
-      for (const SeenPoint& point : points) {
+      for (const FacePoint& point : points) {
         mean += double(point.object) / 4096;
         low = std::min(low, double(point.object));
         high = std::max(high, double(point.object));

@@ -1,0 +1,50 @@
+#!/bin/sh
+# METHOD=walkthrough on a room in which the camera pans: sh tests/pipelines/walkthrough.sh BIN [MOMENTS]
+# Run at the top of the tree; BIN is the folder with the tools. Keys are the rendered frames to the bit, a second run makes nothing, a frame that was
+# deleted comes back the same, other threads and other orders give the same frames, and so does a run that is killed with -9 MOMENTS times (2) on its way.
+bin=$1 moments=${2:-2} failed=0
+work=$(mktemp -d) || exit 3
+trap 'rm -rf "$work"' EXIT
+bad() { echo "FAILED: $*"; failed=1; }
+python3 -B pipelines/scenes/make_walkthrough.py pan pipelines/scenes/S3_indirect_room.glb "$work/pan.glb" || exit 1
+run() {
+  make -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
+    CACHE='--rays 20 --error-bound 1' PIXELS='--spp 2 --pixel-error 0' KEY_DISTANCE=4 "$@" > "$work/log" 2>&1
+}
+digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
+
+run METHOD=walkthrough OUT="$work/a" || { cat "$work/log"; exit 1; }
+digests "$work/a" > "$work/expected"
+[ "$(wc -l < "$work/expected")" = 7 ] || bad "7 frames, not $(wc -l < "$work/expected")"
+[ "$(tail -n +1 "$work/a/walk.log" | grep -cE '^[0-9]{4} [0-9]{4}  (middle [0-9]{4}  difference [^ ]+  traced .*  (warp|split)|neighbours)$')" = "$(wc -l < "$work/a/walk.log")" ] ||
+  bad "log: $(cat "$work/a/walk.log")"
+run METHOD=walkthrough OUT="$work/a"; grep -q 'Nothing to be done' "$work/log" || bad "a second run: $(head -3 "$work/log")"
+
+# Every frame rendered: a key is that to the bit, but for the layer that keys have more.
+run METHOD=frames OUT="$work/f" CHANNELS=RGBA,Z,N,id,specular || { cat "$work/log"; exit 1; }
+for key in 0000 0004 0006; do
+  [ "$("$bin/tempolux-info" --digest "$work/a/frames/$key.exr" | cut -d' ' -f1)" = "$("$bin/tempolux-info" --digest "$work/f/frames/$key.exr" | cut -d' ' -f1)" ] ||
+    bad "key $key is not the frame rendered"
+done
+
+warped=$(basename "$(ls "$work"/a/walk/*.keys | head -n 1)" .keys)
+[ -n "$warped" ] || bad 'no frame was warped'
+rm "$work/a/frames/$warped.exr"; run METHOD=walkthrough OUT="$work/a"
+digests "$work/a" | diff "$work/expected" - || bad "$warped, deleted, came back as another"
+
+RUN= run METHOD=walkthrough OUT="$work/b" -j1 RUN='taskset -c 0' || { cat "$work/log"; exit 1; }
+digests "$work/b" | diff "$work/expected" - || bad 'one processor, one job: other frames'
+
+# Killed after a while, ever longer, with all it has started.
+for moment in $(seq 1 "$moments"); do
+  setsid make -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
+    CACHE='--rays 20 --error-bound 1' PIXELS='--spp 2 --pixel-error 0' KEY_DISTANCE=4 METHOD=walkthrough OUT="$work/k" > "$work/log" 2>&1 &
+  group=$!
+  sleep "$(awk "BEGIN { print 0.3 + 3 * ($moment - 1) / $moments }")"
+  kill -9 -- -$group 2> /dev/null
+  wait $group 2> /dev/null
+done
+run METHOD=walkthrough OUT="$work/k" || { cat "$work/log"; exit 1; }
+digests "$work/k" | diff "$work/expected" - || bad 'killed on its way: other frames'
+[ $failed = 0 ] && echo ok
+exit $failed
