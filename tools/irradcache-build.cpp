@@ -255,7 +255,8 @@ int main(int argc, char** argv) {
     options.gather.curvature = options.placement.by_curvature = options.radii == "hessian";
     options.point.seed = options.gather.seed = tool.common().seed_for_frame(frames.front());
     tool.stats().phase("load");
-    tools::SceneInput input(tool, options.scene(), tools::SceneInput::light);
+    const unsigned camera = options.mode() == "points" ? tools::SceneInput::nothing : tools::SceneInput::a_camera;
+    tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | camera);
     StandingTree standing;
     if (options.mode() == "points")
       for (int frame : frames) build_points(tool, input, options, frame, standing);

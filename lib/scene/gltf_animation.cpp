@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "formats/error.h"
 #include "lib/scene/gltf_check.h"
 #include "lib/scene/gltf_gate.h"
 #include "lib/scene/gltf_pointer.h"
@@ -123,36 +124,54 @@ std::size_t target_count(const tinygltf::Mesh& mesh) {
   return mesh.primitives.empty() ? 0 : mesh.primitives.front().targets.size();
 }
 
+namespace {
+
+/// All tracks of one animation. Throws InputError if something is wrong with one of them.
+std::vector<AnimationTrack> read_tracks(Import& import, std::size_t index) {
+  const tinygltf::Animation& source = import.model.animations[index];
+  std::vector<AnimationTrack> tracks;
+  for (std::size_t c = 0; c < source.channels.size(); ++c) {
+    const std::string place = place_of("animations", index, source.name) + ".channels[" + std::to_string(c) + "]";
+    Path path{};
+    if (!wanted(import, source.channels[c], place, path)) continue;
+    const int target = import.node_from_source[std::size_t(source.channels[c].target_node)];
+    tracks.push_back(read_track(import, source, source.channels[c].sampler, path, target, place));
+  }
+  for (const PointerChannel& channel : import.gated->pointers) {
+    PointedAt at;
+    if (channel.animation != index || !resolve_pointer(import, channel.pointer, at)) continue;
+    const std::string place = place_of("animations", index, source.name) + ": pointer " + one_line(channel.pointer, 100);
+    tracks.push_back(read_track(import, source, channel.sampler, at.path, at.target, place));
+  }
+  return tracks;
+}
+
+}  // namespace
+
 void import_animations(Import& import, const std::string& only) {
   if (!only.empty()) check_name(import, only);
   std::set<std::pair<int, Path>> animated;
-  const auto add = [&](Animation& animation, AnimationTrack track) {
-    if (!animated.insert({track.target, track.path}).second) {
-      import.ignore("further animation of a property that an earlier animation moves already "
-                    "(--animation NAME chooses one)");
-      return;
-    }
-    import.scene.duration_s = std::max(import.scene.duration_s, track.times_s.back());
-    animation.tracks.push_back(std::move(track));
-  };
   for (std::size_t a = 0; a < import.model.animations.size(); ++a) {
     const tinygltf::Animation& source = import.model.animations[a];
     if (!only.empty() && name_of(source, a) != only) continue;
+    std::vector<AnimationTrack> tracks;
+    try {
+      tracks = read_tracks(import, a);
+    } catch (const InputError& error) {
+      if (!only.empty()) throw;
+      import.scene.warnings.push_back(error.what() + std::string("; this animation is not played"));
+      continue;
+    }
     Animation animation;
     animation.name = source.name;
-    for (std::size_t c = 0; c < source.channels.size(); ++c) {
-      const std::string place =
-          place_of("animations", a, source.name) + ".channels[" + std::to_string(c) + "]";
-      Path path{};
-      if (!wanted(import, source.channels[c], place, path)) continue;
-      const int target = import.node_from_source[std::size_t(source.channels[c].target_node)];
-      add(animation, read_track(import, source, source.channels[c].sampler, path, target, place));
-    }
-    for (const PointerChannel& channel : import.gated->pointers) {
-      PointedAt at;
-      if (channel.animation != a || !resolve_pointer(import, channel.pointer, at)) continue;
-      const std::string place = place_of("animations", a, source.name) + ": pointer " + one_line(channel.pointer, 100);
-      add(animation, read_track(import, source, channel.sampler, at.path, at.target, place));
+    for (AnimationTrack& track : tracks) {
+      if (!animated.insert({track.target, track.path}).second) {
+        import.ignore("further animation of a property that an earlier animation moves already "
+                      "(--animation NAME chooses one)");
+        continue;
+      }
+      import.scene.duration_s = std::max(import.scene.duration_s, track.times_s.back());
+      animation.tracks.push_back(std::move(track));
     }
     if (!animation.tracks.empty()) import.scene.animations.push_back(std::move(animation));
   }

@@ -70,7 +70,8 @@ void import_lights(Import& import);      ///< gltf_material.cpp: KHR_lights_punc
 void import_cameras(Import& import);     ///< gltf_material.cpp
 void import_meshes(Import& import);      ///< gltf_geometry.cpp: those that nodes use
 void import_deformation(Import& import); ///< gltf_deform.cpp: skins, morph weights, instances of nodes
-/// gltf_animation.cpp. `only`: the animation of this name (an unnamed one is "animation INDEX"); empty: all.
+/// gltf_animation.cpp. `only`: the animation of this name (an unnamed one is "animation INDEX"); empty: all, but for those
+/// with which something is wrong: a warning names what, and the scene is still without them.
 void import_animations(Import& import, const std::string& only);
 
 }  // namespace tempolux::gltf

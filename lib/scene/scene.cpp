@@ -35,6 +35,10 @@ void take_vertices(Primitive& primitive, const std::vector<std::uint32_t>& sourc
   }
 }
 
+bool Scene::has_camera() const {
+  return std::ranges::any_of(nodes, [](const Node& node) { return node.camera >= 0; });
+}
+
 int Scene::camera_node(const std::string& name) const {
   int first = -1;
   std::string names;
@@ -49,7 +53,8 @@ int Scene::camera_node(const std::string& name) const {
   }
   if (first < 0)
     throw InputError(path +
-                     ": cameras: the scene has no camera; in Blender's glTF exporter tick Include > Cameras");
+                     ": cameras: the scene has no camera; in Blender's glTF exporter tick Include > Cameras, or let "
+                     "--camera auto frame what is there");
   if (name != "auto")
     throw InputError(path + ": cameras: no camera is named \"" + name + "\"; there is " + names);
   return first;

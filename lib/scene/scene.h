@@ -207,6 +207,8 @@ struct Scene {
   double duration_s = 0;                    ///< last key of all animations
   std::vector<std::string> warnings;        ///< what was ignored, one line each
 
+  /// True if a node of the scene has a camera.
+  bool has_camera() const;
   /// Index into nodes of the camera to use, by camera or node name (an unnamed one is "camera INDEX"); "auto" is the
   /// first in the file.
   /// Throws InputError that lists the names, or says how to export cameras.

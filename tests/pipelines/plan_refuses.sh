@@ -19,7 +19,7 @@ refuses() {
 
 python3 tests/pipelines/edit_gltf.py "$source" "$work/no-camera.glb" drop cameras
 python3 tests/pipelines/edit_gltf.py "$source" "$work/no-light.glb" emission 0
-refuses 2 'Include > Cameras' "$work/no-camera.glb" -o "$work/plan"
+refuses 2 'Include > Cameras' "$work/no-camera.glb" --camera Kamera -o "$work/plan"
 refuses 2 'Include > Punctual Lights' "$work/no-light.glb" -o "$work/plan"
 refuses 2 'no camera.*Kamera' "$source" --camera Kamera -o "$work/plan"
 refuses 2 'choose another with -o' "$source" -o "$work/my plan"

@@ -142,7 +142,7 @@ void Tool::common_options(unsigned flags) {
                   [&common](const std::string& text) { common.frames = parse_frames(text); })
         ->type_name("FRAMES");
   if (flags & uses_camera)
-    app.add_option("--camera", common.camera, "name of the camera; auto: the first of the scene")
+    app.add_option("--camera", common.camera, "name of the camera; auto: the first of the scene, or one that frames what it holds")
         ->type_name("NAME")
         ->capture_default_str();
   if (flags & uses_seed) {

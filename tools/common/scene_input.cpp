@@ -1,6 +1,7 @@
 #include "tools/common/scene_input.h"
 
 #include "formats/error.h"
+#include "lib/scene/content_camera.h"
 #include "lib/scene/gltf_load.h"
 
 namespace tempolux::tools {
@@ -15,6 +16,8 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   scene_ = load_gltf(path, options);
   add_environment();
   if (needs & light) require_lights(scene_);
+  if (needs & a_camera && common.camera == "auto" && !scene_.has_camera())
+    scene_.warnings.push_back(path + ": " + add_content_camera(scene_));
   if (needs & a_camera) scene_.camera_node(common.camera);
   for (const std::string& warning : scene_.warnings) tool.warn(warning);
   for (const std::string& file : scene_.files) tool.depends_on(file, InputRole::of_scene);

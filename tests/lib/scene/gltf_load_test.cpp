@@ -335,7 +335,7 @@ TEST(GltfLoad, IndicesBeyondTheVerticesAreRefused) {
   EXPECT_CONTAINS(error_of(maker), "index 3 is beyond the 3 vertices");
 }
 
-TEST(GltfLoad, BadAnimationsAreRefused) {
+TEST(GltfLoad, ABadAnimationIsNotPlayedWithAWarning_AskedForByNameItIsRefused) {
   const auto animated = [](const char* path, std::vector<float> times, std::vector<float> values,
                            const char* how) {
     GltfMaker maker;
@@ -343,15 +343,40 @@ TEST(GltfLoad, BadAnimationsAreRefused) {
     maker.animate(0, path, times, values, how);
     return maker;
   };
-  EXPECT_CONTAINS(error_of(animated("translation", {0, 0}, {0, 0, 0, 1, 0, 0}, "LINEAR")),
+  // The scene stands still, and one line says why; asked for by its name it is refused by the same words.
+  const auto trouble_of = [](const GltfMaker& maker) {
+    const Scene scene = maker.load();
+    EXPECT_TRUE(scene.animations.empty());
+    EXPECT_EQ(scene.duration_s, 0);
+    if (scene.warnings.size() != 1) return std::string("not one warning");
+    const std::string refused = load_error(write_file("scene.gltf", maker.text()), {.animation = "animation 0"});
+    EXPECT_EQ(scene.warnings[0], refused + "; this animation is not played");
+    return refused;
+  };
+  EXPECT_CONTAINS(trouble_of(animated("translation", {0, 0}, {0, 0, 0, 1, 0, 0}, "LINEAR")),
                   "times must increase");
-  EXPECT_CONTAINS(error_of(animated("translation", {0, 1}, {0, 0, 0}, "LINEAR")), "1 values for 2 keys");
-  EXPECT_CONTAINS(error_of(animated("translation", {0, 1}, {0, 0, 0, 1, 0, 0}, "CUBICSPLINE")), "three each");
-  EXPECT_CONTAINS(error_of(animated("rotation", {0}, {0, 0, 0, 0}, "LINEAR")), "quaternion of zero length");
-  EXPECT_CONTAINS(error_of(animated("translation", {0}, {0, 0, 0}, "WOBBLY")), "WOBBLY");
+  EXPECT_CONTAINS(trouble_of(animated("translation", {0, 1}, {0, 0, 0}, "LINEAR")), "1 values for 2 keys");
+  EXPECT_CONTAINS(trouble_of(animated("translation", {0, 1}, {0, 0, 0, 1, 0, 0}, "CUBICSPLINE")), "three each");
+  EXPECT_CONTAINS(trouble_of(animated("rotation", {0}, {0, 0, 0, 0}, "LINEAR")), "quaternion of zero length");
+  EXPECT_CONTAINS(trouble_of(animated("translation", {0}, {0, 0, 0}, "WOBBLY")), "WOBBLY");
   GltfMaker maker = animated("translation", {0}, {0, 0, 0}, "LINEAR");
   maker.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  EXPECT_CONTAINS(error_of(maker), "given by a matrix");
+  EXPECT_CONTAINS(trouble_of(maker), "given by a matrix");
+}
+
+TEST(GltfLoad, ABadAnimationLeavesTheOthersAlone) {
+  GltfMaker maker;
+  const int moved = maker.add_node({{"mesh", maker.add_triangle()}});
+  maker.animate(moved, "translation", {0, 0}, {0, 0, 0, 1, 0, 0});  // a key that repeats its time
+  maker.json["animations"].push_back({{"name", "Turn"}, {"channels", Json::array()}, {"samplers", Json::array()}});
+  std::swap(maker.json["animations"][0], maker.json["animations"][1]);
+  maker.animate(moved, "scale", {0, 2}, {1, 1, 1, 2, 2, 2});
+  const Scene scene = maker.load();
+  ASSERT_EQ(scene.animations.size(), 1u);
+  EXPECT_EQ(scene.animations[0].name, "Turn");
+  EXPECT_EQ(scene.duration_s, 2);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_CONTAINS(scene.warnings[0], "key 1 does not; this animation is not played");
 }
 
 TEST(GltfLoad, BadNodesAndLightsAreRefused) {

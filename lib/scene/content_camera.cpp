@@ -1,0 +1,194 @@
+#include "lib/scene/content_camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "lib/scene/animate.h"
+#include "lib/scene/at_frame.h"
+#include "lib/scene/deform.h"
+#include "lib/scene/place_surfaces.h"
+
+namespace tempolux {
+namespace {
+
+// docs/methods/content-camera.md has the reason of each.
+constexpr int kTimes = 8;                     ///< of an animation, evenly spread, that are looked at
+constexpr std::size_t kMostTriangles = 400'000;
+constexpr double kGap = 2;                    ///< a ground's triangle is longer than so many diagonals of the rest
+constexpr double kDetail = 0.75;              ///< the rest is at least this share of all triangles
+constexpr double kStrays = 0.005;             ///< share of the lengths that may be left out at each end of an axis ...
+constexpr double kShrink = 0.5;               ///< ... if the axis shrinks below this share
+constexpr double kYfov_rad = 0.7, kAspect = 4.0 / 3.0, kMargin = 1.06;
+const Vec3d kTowardsEye = normalize(Vec3d{0.5, 0.4, 1});  ///< glTF's front is +z: from the front, a little right and above
+
+struct Piece {
+  std::array<Vec3, 3> corners;                ///< of a triangle, scene space
+  float length = 0;                           ///< diagonal of its box
+  float count = 1;                            ///< triangles that this one stands for
+  Vec3 centre() const { return (corners[0] + corners[1] + corners[2]) * (1 / 3.0f); }
+};
+
+void add_surfaces(const std::vector<Surface>& surfaces, std::vector<Piece>& pieces) {
+  const std::size_t most = std::max<std::size_t>(16, kMostTriangles / (surfaces.size() + 1));
+  for (const Surface& surface : surfaces) {
+    const auto& triangles = surface.primitive->triangles;
+    const std::size_t step = (triangles.size() + most - 1) / most;
+    for (std::size_t t = 0; t < triangles.size(); t += step) {
+      Piece piece;
+      Box3 box;
+      for (std::size_t c = 0; c < 3; ++c) box.add(piece.corners[c] = surface.position(triangles[t][c]));
+      piece.length = float(box.diagonal());
+      piece.count = float(step);
+      if (piece.length > 0) pieces.push_back(piece);
+    }
+  }
+}
+
+/// All triangles at the first time, and those that move at the others.
+std::vector<Piece> pieces_of(const Scene& scene, Segment& segment) {
+  const Animator animator(scene);
+  const Sharing sharing(scene);
+  const std::vector<Affine> first = animator.world_from_node(0);
+  std::vector<Piece> pieces;
+  segment.node_moves.assign(scene.nodes.size(), 0);
+  add_surfaces(place_surfaces(scene, animator, sharing, segment, 0, first, false), pieces);
+  for (int i = 1; i < kTimes && animator.anything_animated(); ++i) {
+    const double time = scene.duration_s * i / (kTimes - 1);
+    const std::vector<Affine> world = animator.world_from_node(time);
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n)
+      segment.node_moves[n] = deforms(scene, scene.nodes[n]) || !(world[n] == first[n]);
+    add_surfaces(place_surfaces(scene, animator, sharing, segment, time, world, true), pieces);
+  }
+  return pieces;
+}
+
+/// Leaves out triangles that are far larger than all the smaller ones together: a ground, a backdrop, a sky. What is left
+/// must be most of the triangles: it is the detail.
+void leave_out_grounds(std::vector<Piece>& pieces) {
+  std::ranges::stable_sort(pieces, {}, &Piece::length);
+  double count = 0, whole = 0;
+  for (const Piece& piece : pieces) whole += piece.count;
+  Box3d box;
+  std::size_t kept = pieces.size();
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (count >= kDetail * whole && double(pieces[i].length) > kGap * box.diagonal()) kept = i;
+    for (const Vec3 p : pieces[i].corners) box.add(Vec3d(p));
+    count += pieces[i].count;
+  }
+  pieces.resize(kept);
+}
+
+double coordinate(Vec3d p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
+
+/// Where the coordinate `axis` of centres leaves out a share of all weight at its lower and its upper end.
+std::array<double, 2> inner_range(const std::vector<Piece>& pieces, int axis) {
+  std::vector<std::pair<double, double>> centres;
+  double whole = 0;
+  for (const Piece& piece : pieces) {
+    const double weight = double(piece.length) * double(piece.count);
+    centres.emplace_back(coordinate(Vec3d(piece.centre()), axis), weight);
+    whole += weight;
+  }
+  std::ranges::sort(centres);
+  const auto at_share = [&](double share) {
+    double sum = 0;
+    for (const auto& [centre, weight] : centres)
+      if ((sum += weight) >= share * whole) return centre;
+    return centres.back().first;
+  };
+  return {at_share(kStrays), at_share(1 - kStrays)};
+}
+
+/// Leaves out the little that makes an axis more than twice as long as the rest needs.
+void leave_out_strays(std::vector<Piece>& pieces) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Box3d all, inner;
+    const auto [low, high] = inner_range(pieces, axis);
+    const auto inside = [&](const Piece& piece) {
+      const double at = coordinate(Vec3d(piece.centre()), axis);
+      return at >= low && at <= high;
+    };
+    for (const Piece& piece : pieces)
+      for (const Vec3 p : piece.corners) {
+        all.add(Vec3d(p));
+        if (inside(piece)) inner.add(Vec3d(p));
+      }
+    if (coordinate(inner.upper - inner.lower, axis) < kShrink * coordinate(all.upper - all.lower, axis))
+      std::erase_if(pieces, [&](const Piece& piece) { return !inside(piece); });
+  }
+}
+
+/// Right, up and backward of a camera that looks against `backward`.
+std::array<Vec3d, 3> axes_of(Vec3d backward) {
+  const Vec3d right = normalize(cross(Vec3d{0, 1, 0}, backward));
+  return {right, cross(backward, right), backward};
+}
+
+/// Nearest point from which a picture of kAspect holds all corners. Each corner asks for |y - ey| <= t (ez - z) in the
+/// camera's axes, t the tangent of half the view's angle; so ey + t ez and t ez - ey have lower limits, and so for x.
+Vec3d eye_for(const std::vector<Piece>& pieces, const std::array<Vec3d, 3>& axes) {
+  const double ty = std::tan(kYfov_rad / 2) / kMargin, tx = ty * kAspect;
+  constexpr double kNone = -1e300;
+  double right = kNone, left = kNone, up = kNone, down = kNone;
+  for (const Piece& piece : pieces)
+    for (const Vec3 corner : piece.corners) {
+      const Vec3d p(corner);
+      const double x = dot(p, axes[0]), y = dot(p, axes[1]), z = dot(p, axes[2]);
+      right = std::max(right, x + tx * z), left = std::max(left, -x + tx * z);
+      up = std::max(up, y + ty * z), down = std::max(down, -y + ty * z);
+    }
+  const double distance = std::max((right + left) / (2 * tx), (up + down) / (2 * ty));
+  return axes[0] * ((right - left) / 2) + axes[1] * ((up - down) / 2) + axes[2] * distance;
+}
+
+/// The rotation that takes x, y, z to these axes, as a quaternion x y z w. The largest of its four parts is found first, so
+/// that nothing is divided by a small number.
+std::array<double, 4> quaternion_of(const std::array<Vec3d, 3>& a) {
+  const double m00 = a[0].x, m11 = a[1].y, m22 = a[2].z;
+  const std::array<double, 4> squares{1 + m00 - m11 - m22, 1 - m00 + m11 - m22, 1 - m00 - m11 + m22, 1 + m00 + m11 + m22};
+  const auto largest = std::size_t(std::ranges::max_element(squares) - squares.begin());
+  const double s = 0.5 / std::sqrt(squares[largest]);
+  const double xy = (a[1].x + a[0].y) * s, xz = (a[2].x + a[0].z) * s, yz = (a[2].y + a[1].z) * s;
+  const double wx = (a[1].z - a[2].y) * s, wy = (a[2].x - a[0].z) * s, wz = (a[0].y - a[1].x) * s;
+  const double self = squares[largest] * s;
+  if (largest == 0) return {self, xy, xz, wx};
+  if (largest == 1) return {xy, self, yz, wy};
+  if (largest == 2) return {xz, yz, self, wz};
+  return {wx, wy, wz, self};
+}
+
+std::string text(Vec3d p) {
+  char buffer[96];
+  std::snprintf(buffer, sizeof buffer, "(%.4g, %.4g, %.4g)", p.x, p.y, p.z);
+  return buffer;
+}
+
+}  // namespace
+
+std::string add_content_camera(Scene& scene) {
+  Segment segment = segment_of(scene, 0, {});
+  std::vector<Piece> pieces = pieces_of(scene, segment);
+  leave_out_grounds(pieces);
+  leave_out_strays(pieces);
+  Box3d box;
+  for (const Piece& piece : pieces)
+    for (const Vec3 p : piece.corners) box.add(Vec3d(p));
+  const std::array<Vec3d, 3> axes = axes_of(kTowardsEye);
+  Camera camera;
+  camera.name = "auto";
+  camera.yfov_rad = kYfov_rad;
+  Node node;
+  node.name = "auto";
+  node.source_index = std::uint32_t(scene.nodes.size());
+  node.camera = int(scene.cameras.size());
+  node.rotation = quaternion_of(axes);
+  node.translation = segment.origin + (pieces.empty() ? Vec3d{0, 0, 1} : eye_for(pieces, axes));
+  scene.cameras.push_back(camera);
+  scene.nodes.push_back(node);
+  return "no camera: --camera auto looks at what the scene holds from " + text(node.translation) + " towards " +
+         text(segment.origin + (pieces.empty() ? Vec3d{} : box.centre()));
+}
+
+}  // namespace tempolux
