@@ -25,6 +25,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     fuzz::expect_read_or_refused(path, decode);
   } else if (begins({0xff, 0xd8})) {
     fuzz::expect_read_or_refused(path, decode);
+  } else if (begins({'R', 'I', 'F', 'F'})) {
+    fuzz::expect_read_or_refused(path, decode);
   } else if (begins({'#', '?'})) {
     fuzz::expect_read_or_refused(path, [&] { load_hdr(path, kMaxPixels); });
   } else {

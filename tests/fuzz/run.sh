@@ -12,7 +12,8 @@ if [ "$1" = --one ]; then   # one target, built already
   folders="tests/fuzz/corpus/$target"
   case $target in
     photons | irradpoints | irradcache) folders="$folders tests/formats/$target" ;;
-    gltf) folders="$folders tests/data/packed" ;;
+    gltf) folders="$folders tests/data/packed/scenes" ;;
+    pictures) folders="$folders tests/data/packed/webp" ;;
   esac
   set --
   for folder in $folders; do [ -d "$folder" ] && set -- "$@" "$folder"; done

@@ -29,10 +29,10 @@ trace
   bad "without its module: $(cat "$scratch/log")"
 # So is what unpacks geometry and WebP, and a scene without needs none of it.
 unpack() { "$scratch/usr/bin/photon-trace" "$1" --environment-color 1,1,1 --photons 100 -q -o "$scratch/p.photons" 2> "$scratch/log"; }
-unpack tests/data/packed/draco-lossless.glb || bad "packed: $(cat "$scratch/log")"
+unpack tests/data/packed/scenes/draco-lossless.glb || bad "packed: $(cat "$scratch/log")"
 find "$scratch/usr" -name tempolux-decode -exec rm {} +
 unpack pipelines/scenes/S1_cornell.glb || bad "plain, without the helper: $(cat "$scratch/log")"
-unpack tests/data/packed/draco-lossless.glb
+unpack tests/data/packed/scenes/draco-lossless.glb
 [ $? = 2 ] && [ "$(wc -l < "$scratch/log")" = 1 ] &&
   grep -q 'unpacking needs tempolux-decode, which was not .*; install all of tempolux together' "$scratch/log" ||
   bad "packed, without the helper: $(cat "$scratch/log")"

@@ -1,5 +1,5 @@
-// make-packed FOLDER -- writes tests/data/packed: a square packed by Draco, by meshopt and with a WebP as its colour. The fuzz
-// replay changes them byte by byte.
+// make-packed FOLDER -- writes tests/data/packed: scenes/ with a square packed by Draco, by meshopt and with a WebP as its
+// colour, webp/ with that image. The fuzz replay changes them byte by byte.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -11,10 +11,12 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const std::filesystem::path folder = argv[1];
   const auto save = [&](const char* name, const GltfMaker& maker, bool binary) {
-    std::ofstream(folder / name, std::ios::binary) << (binary ? maker.glb() : maker.text());
+    std::ofstream(folder / "scenes" / name, std::ios::binary) << (binary ? maker.glb() : maker.text());
   };
   save("draco-lossless.glb", test::draco_square(), true);
   save("draco-11-bits.glb", test::draco_square(11), true);
   save("meshopt.gltf", test::meshopt_square(), false);
-  save("webp.glb", test::webp_square(test::webp_bytes(2, 2, 4, {255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 0, 9, 9, 9, 9})), true);
+  const std::string webp = test::webp_bytes(2, 2, 4, {255, 0, 0, 255, 0, 255, 0, 128, 0, 0, 255, 0, 9, 9, 9, 9});
+  save("webp.glb", test::webp_square(webp), true);
+  std::ofstream(folder / "webp/colours.webp", std::ios::binary) << webp;
 }
