@@ -173,13 +173,13 @@ void add_light_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--max-radius", options.light.photon_light.max_radius,
-                 "farthest photon used for it, m; 0: a twentieth of the scene's diagonal")
+                 "farthest photon used for it, m; 0: from the photons' spacing")
       ->capture_default_str()->check(tools::number_between(0));
   app.add_option("--caustic-neighbours", options.light.photon_light.caustic_neighbours,
                  "photons per density estimate of caustic light: fewer are sharper, more are smoother")
       ->capture_default_str()->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--caustic-radius", options.light.photon_light.caustic_radius,
-                 "farthest caustic photon used, m; 0: a thirtieth of the scene's diagonal")
+                 "farthest caustic photon used, m; 0: from the photons' spacing")
       ->capture_default_str()->check(tools::number_between(0));
   app.add_option("--rays", options.light.gather.rays, "gather rays for a missing record")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));

@@ -146,7 +146,7 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
       for (std::size_t i = 0; i < looks.size() && !wanted.empty(); ++i)
         if (!wanted[std::size_t(looks[i].y) * std::size_t(options.width) + std::size_t(looks[i].x)]) seen[i].reset();
     };
-    const std::size_t added = place_records(gather, views, options.width, options.height, first.bounds, placement,
+    const std::size_t added = place_records(gather, views, options.width, options.height, placement,
                                             store, counts, [&](double done) { tool.progress(done); });
     tool.stats().set("records_added." + std::to_string(number), double(added));
   }

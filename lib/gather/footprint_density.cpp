@@ -8,6 +8,7 @@
 #include "lib/core/frame.h"
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
+#include "lib/density/photon_reach.h"
 
 namespace tempolux {
 namespace {
@@ -28,6 +29,8 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, std::span<const formats
                                    const FootprintOptions& options, std::uint8_t kinds, Vec3d shift)
     : options_(options), area_(tracer), index_(photons, kinds, shift) {
   if (empty()) return;
+  if (!(options_.max_radius > 0)) options_.max_radius = photon_reach(index_, options.neighbours, kMinCos, kFlattening);
+  const float margin = options_.margin * options_.max_radius;
   const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
   leaves_ = std::make_unique<Leaf[]>(leaves);
   extents_ = std::make_unique<std::atomic<Extent>[]>(index_.size());
@@ -48,7 +51,7 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, std::span<const formats
       leaf.inverse_r2[lane] = 1 / (radius * radius);
       const float flattening = radius / std::max(radius / kFlattening, kThin / kFlattening * area_.offset());
       leaf.flat[lane] = flattening * flattening - 1;
-      leaf.narrow2[lane] = radius < kAlmost * options_.max_radius ? (radius + options_.margin) * (radius + options_.margin) : -1;
+      leaf.narrow2[lane] = radius < kAlmost * options_.max_radius ? (radius + margin) * (radius + margin) : -1;
     }
   });
   leaf_whole_ = std::make_unique<std::atomic<std::uint8_t>[]>(leaves);

@@ -16,8 +16,8 @@ namespace tempolux {
 
 struct FootprintOptions {
   int neighbours = 25;    ///< k, below kMaxNeighbours
-  float max_radius = 1;   ///< m
-  float margin = 0;       ///< m: light counts as smooth only if no footprint narrower than max_radius is as near as this
+  float max_radius = 0;   ///< m; 0: the photons' own (photon_reach): one in twenty is so far from others
+  float margin = 0;       ///< of max_radius: light counts as smooth only if no footprint narrower than that is as near as this
 };
 
 /// Density of light that has edges and spots: caustics.

@@ -166,8 +166,7 @@ PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) 
 
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,
                      Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points) {
-  DensityOptions density{options.neighbours, options.max_radius, options.area_probes};
-  if (!(density.max_radius > 0)) density.max_radius = 0.05f * tracer.frame().bounds.diagonal();
+  const DensityOptions density{options.neighbours, options.max_radius, options.area_probes};
   const FootprintDensity caustic(tracer, photons, {density.neighbours, density.max_radius, 0}, kind_bit(formats::PathKind::caustic), photon_shift);
   const PointDensity indirect(tracer, photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
   const float offset = Reach(tracer).offset();

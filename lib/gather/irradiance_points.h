@@ -19,7 +19,7 @@ struct PointOptions {
   std::uint64_t seed = 0;
   std::uint32_t count = 20000;  ///< per side of all surfaces together; every surface gets at least one
   int neighbours = 50;          ///< k of the density estimates
-  float max_radius = 0;         ///< m; 0: a twentieth of the scene's diagonal
+  float max_radius = 0;         ///< m; 0: from the photons' spacing
   int light_samples = 4;        ///< shadow rays per point for direct light
   int area_probes = 32;         ///< that must arrive in a disc cut by walls or edges
 };

@@ -62,12 +62,11 @@ std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int w
 /// Adds records at points that none covers yet.
 class Placement {
  public:
-  Placement(const FinalGather& gather, const PixelViews& views, const Box3& bounds, const PlacementOptions& options,
+  Placement(const FinalGather& gather, const PixelViews& views, const PlacementOptions& options,
             RecordStore& store, GatherCounts& counts)
       : gather_(gather),
         views_(views),
         options_(options),
-        max_radius_(options.max_radius > 0 ? options.max_radius : 0.1f * bounds.diagonal()),
         store_(store),
         first_(store.records().size()),
         counts_(counts) {}
@@ -137,7 +136,7 @@ class Placement {
         float share = store_.lit_share(seen.surface.position, seen.normal);
         if (share < 0) share = gather_.lit_share(seen.surface, seen.normal, local);
         records[i] = gather_.gather(seen.surface, seen.normal, local, share);
-        limit_radius(*records[i], seen.footprint, max_radius_, options_);
+        limit_radius(*records[i], seen.footprint, options_);
         gather_.look_around(seen.surface, *records[i]);
       }
       const std::lock_guard lock(mutex);
@@ -153,7 +152,6 @@ class Placement {
   const FinalGather& gather_;
   const PixelViews& views_;
   const PlacementOptions& options_;
-  float max_radius_;
   RecordStore& store_;
   std::size_t first_;        ///< records before were there already, or are fixed
   GatherCounts& counts_;
@@ -161,7 +159,7 @@ class Placement {
 
 }  // namespace
 
-void limit_radius(IrradianceRecord& record, float footprint, float max_radius, const PlacementOptions& options) {
+void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options) {
   // double: squares of gradients, whatever the strength of the light, stay finite, and its power of two changes no radius.
   const double e = channel_sum(Rgbd(record.irradiance));
   if (options.by_curvature)
@@ -175,7 +173,7 @@ void limit_radius(IrradianceRecord& record, float footprint, float max_radius, c
   double reach = double(record.radius_unclamped), slope = 0;
   for (Vec3 g : record.translational) slope += length(Vec3d(g));
   if (!options.by_curvature && slope * reach > e && slope > 0) reach = e / slope;
-  const float r = std::min({options.error_bound * float(reach), record.radius, max_radius});
+  const float r = std::min(std::isfinite(reach) ? options.error_bound * float(reach) : options.unseen_radius_px * footprint, record.radius);
   record.radius_unclamped *= options.error_bound;
   record.radius = std::max(r, options.min_radius_px * footprint);
   // Near a wall the gradient is large, noisy, and holds over a part of this radius only [Jakob, Mitsuba 0.6].
@@ -188,11 +186,11 @@ void limit_radius(IrradianceRecord& record, float footprint, float max_radius, c
     for (Vec3& g : record.translational) g *= float(e / over);
 }
 
-std::size_t place_records(const FinalGather& gather, const PixelViews& views, int width, int height, const Box3& bounds,
+std::size_t place_records(const FinalGather& gather, const PixelViews& views, int width, int height,
                           const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
                           const std::function<void(double)>& progress) {
   const std::size_t before = store.records().size();
-  Placement placement(gather, views, bounds, options, store, counts);
+  Placement placement(gather, views, options, store, counts);
   std::vector<Glimpse> glimpses(std::size_t(width) * std::size_t(height));
   std::size_t done = 0;
   const auto advance = [&](std::size_t pixels) {
@@ -225,14 +223,14 @@ std::size_t place_records(const FinalGather& gather, const PixelViews& views, in
   return store.records().size() - before;
 }
 
-std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height, const Box3& bounds,
+std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,
                           const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
                           const std::function<void(double)>& progress) {
   const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
     for (std::size_t i = 0; i < looks.size(); ++i)
       seen[i] = view(looks[i].x, looks[i].y, looks[i].random ? &*looks[i].random : nullptr);
   };
-  return place_records(gather, views, width, height, bounds, options, store, counts, progress);
+  return place_records(gather, views, width, height, options, store, counts, progress);
 }
 
 }  // namespace tempolux

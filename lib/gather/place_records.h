@@ -14,7 +14,9 @@ namespace tempolux {
 struct PlacementOptions {
   float error_bound = 0.2f;           ///< validity radius / harmonic mean distance to what is seen
   float min_radius_px = 4;            ///< a record is valid this many pixels around it at least
-  float max_radius = 0;               ///< m; 0: a tenth of the scene's diagonal
+  /// And as many at most where its rays met nothing, so that nothing tells how far it holds; Mitsuba and PBRT limit all radii to
+  /// 7 and 6 times the least.
+  float unseen_radius_px = 32;
   bool clamp_neighbours = true;       ///< RecordStore::clamp_with_neighbours
   bool by_curvature = false;          ///< R of limit_radius from second derivatives instead of distances
   float min_weight = 0.9f;           ///< sum of weights that counts as covered; a record has 1 at its own place
@@ -46,11 +48,9 @@ using PixelViews = std::function<void(std::span<const Look>, std::span<std::opti
 /// (clamp_with_neighbours), but not those that were in the store; at the last all pixels are looked at again. Then four more points in each pixel at an edge or behind
 /// glass, so that a frame's samples find records there too. The same records for any number of threads.
 /// Returns how many were added.
-std::size_t place_records(const FinalGather& gather, const PixelViews& views, int width, int height,
-                          const Box3& bounds, const PlacementOptions& options, RecordStore& store,
+std::size_t place_records(const FinalGather& gather, const PixelViews& views, int width, int height, const PlacementOptions& options, RecordStore& store,
                           GatherCounts& counts, const std::function<void(double)>& progress = {});
-std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,
-                          const Box3& bounds, const PlacementOptions& options, RecordStore& store,
+std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height, const PlacementOptions& options, RecordStore& store,
                           GatherCounts& counts, const std::function<void(double)>& progress = {});
 
 /// Sets a gathered record's radius from its harmonic mean distance:
@@ -58,7 +58,7 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
 /// The gradients of a record that fewer than 32 of its rays make out (lit_cells) are reduced, to nothing at 8: they are
 /// noise, and a radius that follows from them would depend on the light that happened to be found.
 ///
-///     r = min(error_bound x min(R sqrt(min(1, s / 0.6)), |E| / |dE/dx|), nearest surface along the tangent plane, max_radius),
+///     r = min(error_bound x min(R sqrt(min(1, s / 0.6)), |E| / |dE/dx|), nearest surface along the tangent plane; unseen_radius_px footprints if R is infinite),
 ///
 /// s: expected_share, if it is known. An edge in front of light that fills a share s of the hemisphere throws a shadow whose border
 /// is as wide as the edge is far times sqrt(s), or so; and of a bright thing narrower than the cells of a record its
@@ -66,6 +66,6 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
 /// borders came out blurred, up to 10 % bright. s comes from others' rays, so that radii do not follow E's noise. And at least min_radius_px footprints. radius_unclamped keeps error_bound x R sqrt(..). By curvature R = sqrt(2 |E| /
 /// curvature) takes the place of both: the distance at which the second order, which gradients leave out, is as large
 /// as the irradiance itself [after Schwarzhaupt, Jensen & Jarosz 2012, one radius for all directions].
-void limit_radius(IrradianceRecord& record, float footprint, float max_radius, const PlacementOptions& options);
+void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
 }  // namespace tempolux

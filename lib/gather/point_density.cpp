@@ -5,6 +5,7 @@
 
 #include "lib/core/sampling.h"
 #include "lib/density/irradiance_estimate.h"
+#include "lib/density/photon_reach.h"
 
 namespace tempolux {
 
@@ -13,7 +14,13 @@ PointDensity::PointDensity(const Tracer& tracer, std::span<const formats::Photon
     : options_(options),
       area_(tracer),
       index_(photons, kinds, shift),
-      facing_(index_, options.max_radius) {}
+      facing_(index_, limited().max_radius) {}
+
+/// The options, their radius set.
+const DensityOptions& PointDensity::limited() {
+  if (!(options_.max_radius > 0)) options_.max_radius = kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening);
+  return options_;
+}
 
 /// The k nearest, or all within max_radius.
 PointDensity::Disc PointDensity::find(Vec3 position, Vec3 normal, NeighbourList& found) const {

@@ -15,7 +15,7 @@ namespace tempolux {
 
 struct DensityOptions {
   int neighbours = 50;   ///< k
-  float max_radius = 1;  ///< m
+  float max_radius = 0;  ///< m; 0: kSparser times the photons' own (photon_reach)
   int area_probes = 32;  ///< that must arrive where the disc is not whole
 };
 
@@ -32,6 +32,9 @@ struct DensityOptions {
 /// corners (prototype.md 7).
 class PointDensity {
  public:
+  /// Where light is up to 16 times as sparse as where photons lie, k of them are still found.
+  static constexpr float kSparser = 4;
+
   /// Of the photons of these kinds (kind_bit), moved by `shift` [m] into the scene's space.
   PointDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const DensityOptions& options,
                std::uint8_t kinds = kAllKinds, Vec3d shift = {});
@@ -44,6 +47,7 @@ class PointDensity {
     double radius = 0;          ///< m; 0: no photon is near
     std::size_t farthest = 0;   ///< of the photons found: not summed
   };
+  const DensityOptions& limited();
   Disc find(Vec3 position, Vec3 normal, NeighbourList& found) const;
   Rgb plain(Vec3 position, Vec3 normal, float& radius, NeighbourList& found) const;
 

@@ -1,14 +1,18 @@
 #include "lib/render/photon_light.h"
 
+#include "lib/density/photon_reach.h"
+#include "lib/gather/point_density.h"
+
 namespace tempolux {
 
 PhotonLight::PhotonLight(const Tracer& tracer, std::span<const formats::Photon> photons, Vec3d photon_shift,
                          const PhotonLightOptions& options) {
   options_.neighbours = options.neighbours;
-  options_.max_radius = options.max_radius > 0 ? options.max_radius : 0.05f * tracer.frame().bounds.diagonal();
+  options_.max_radius = options.max_radius;
   if (!options.caustic_only) indirect_ = PhotonIndex(photons, kind_bit(formats::PathKind::indirect), photon_shift);
-  const float caustic_radius = options.caustic_radius > 0 ? options.caustic_radius : tracer.frame().bounds.diagonal() / 30;
-  const FootprintOptions density{options.caustic_neighbours, caustic_radius, kSparseReach * caustic_radius};
+  if (!(options_.max_radius > 0) && indirect_.size() > 0)
+    options_.max_radius = PointDensity::kSparser * photon_reach(indirect_, options.neighbours, options_.min_cos, options_.flattening);
+  const FootprintOptions density{options.caustic_neighbours, options.caustic_radius, kSparseReach};
   caustic_ = std::make_unique<FootprintDensity>(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);
   if (caustic_->empty()) caustic_.reset();
 }

@@ -11,9 +11,9 @@ namespace tempolux {
 
 struct PhotonLightOptions {
   int neighbours = 50;            ///< k of the density estimate of indirect light
-  float max_radius = 0;           ///< m; 0: a twentieth of the scene's diagonal
+  float max_radius = 0;           ///< m; 0: from the photons' spacing
   int caustic_neighbours = 25;    ///< fewer: caustics have edges, and a pixel averages several estimates
-  float caustic_radius = 0;       ///< m; 0: a thirtieth of the scene's diagonal
+  float caustic_radius = 0;       ///< m; 0: likewise
   bool caustic_only = false;      ///< indirect light comes from elsewhere: index the caustic photons alone
 };
 

@@ -59,7 +59,7 @@ struct Room {
 
   std::size_t place(int width, int height, RecordStore& store, GatherCounts& counts, const PlacementOptions& options = {}) const {
     const PixelView view = [&, width, height](float x, float y, const PathRandom*) { return see(x, y, width, height); };
-    return place_records(*gather, view, width, height, frame->bounds, options, store, counts);
+    return place_records(*gather, view, width, height, options, store, counts);
   }
 };
 
@@ -71,7 +71,7 @@ TEST(LimitRadius, GradientsOfAFewRaysAreNoise) {
     record.translational[0] = record.rotational[1] = {0.01f, 0, 0};
     record.radius = record.radius_unclamped = 1;
     record.lit_cells = cells;
-    limit_radius(record, 0, 10, PlacementOptions{});
+    limit_radius(record, 1e-3f, PlacementOptions{});
     EXPECT_FLOAT_EQ(record.translational[0].x, 0.01f * kept);
     EXPECT_FLOAT_EQ(record.rotational[1].x, 0.01f * kept);
   }
@@ -127,7 +127,7 @@ TEST(PlaceRecords, SmallBrightThingsAreNotOutweighedByRecordsThatMissThem) {
     const FinalGather gather(tracer, lights, lookup, options);
     RecordStore store;
     GatherCounts counts;
-    place_records(gather, floor, kSize, kSize, {{-2, 0, -2}, {2, 1, 2}}, {}, store, counts);
+    place_records(gather, floor, kSize, kSize, {}, store, counts);
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
         const Vec3 at = floor(float(x) + 0.5f, float(y) + 0.5f, nullptr)->surface.position;
@@ -166,7 +166,7 @@ TEST(PlaceRecords, PicturesOfOnePixelAndOfNothing) {
   EXPECT_GE(room.place(1, 1, store, counts), 1u);
   RecordStore none;
   const PixelView nothing = [](float, float, const PathRandom*) { return std::optional<SeenPoint>(); };
-  EXPECT_EQ(place_records(*room.gather, nothing, 32, 32, room.frame->bounds, {}, none, counts), 0u);
+  EXPECT_EQ(place_records(*room.gather, nothing, 32, 32, {}, none, counts), 0u);
 }
 
 /// What is seen through a choice (glass) is looked at within pixels too, with random numbers to draw it.
@@ -182,7 +182,7 @@ TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
     return seen;
   };
   const ThreadLimit limit(1);
-  place_records(*room.gather, view, 8, 8, room.frame->bounds, {}, store, counts);
+  place_records(*room.gather, view, 8, 8, {}, store, counts);
   EXPECT_EQ(drawn, 4 * 64);
 }
 
@@ -199,7 +199,7 @@ TEST(PlaceRecords, RecordsOfOneBatchServeTheNext) {
     seen.footprint = 1;
     return std::optional(seen);
   };
-  EXPECT_EQ(place_records(*room.gather, patch, 400, 400, room.frame->bounds, {}, store, counts), 256u);
+  EXPECT_EQ(place_records(*room.gather, patch, 400, 400, {}, store, counts), 256u);
 }
 
 /// A step between two parallel planes of one object is an edge, whose pixels are looked at within; a plane seen aslant,
@@ -220,7 +220,7 @@ TEST(PlaceRecords, StepsBetweenParallelPlanesAreEdges) {
       return std::optional(seen);
     };
     const ThreadLimit limit(1);
-    place_records(*room.gather, view, kSize, kSize, room.frame->bounds, {}, store, counts);
+    place_records(*room.gather, view, kSize, kSize, {}, store, counts);
     return within;
   };
   EXPECT_EQ(looked_within(0.05f, {1, 0, 0}), 4 * 2 * kSize);   // the columns beside the step
@@ -239,16 +239,16 @@ IrradianceRecord gathered(float irradiance, Vec3 slope, float harmonic, float ne
 }
 
 TEST(LimitRadius, EachLimitDecidesWhereItIsTheSmallest) {
-  PlacementOptions options;
+  PlacementOptions options{.unseen_radius_px = 500};
   options.error_bound = 0.2f;
   options.min_radius_px = 4;
   const auto limited = [&](IrradianceRecord r, float footprint) {
-    limit_radius(r, footprint, 0.5f, options);
+    limit_radius(r, footprint, options);
     return r;
   };
   EXPECT_FLOAT_EQ(limited(gathered(1, {}, 1, INFINITY), 1e-3f).radius, 0.2f);             // bound x harmonic mean
   EXPECT_FLOAT_EQ(limited(gathered(1, {}, 1, 0.1f), 1e-3f).radius, 0.1f);                 // nearest surface
-  EXPECT_FLOAT_EQ(limited(gathered(1, {}, 10, INFINITY), 1e-3f).radius, 0.5f);            // largest
+  EXPECT_FLOAT_EQ(limited(gathered(1, {}, INFINITY, INFINITY), 1e-3f).radius, 0.5f);      // nothing seen
   EXPECT_FLOAT_EQ(limited(gathered(1, {}, 1, 1e-5f), 1e-3f).radius, 4e-3f);               // smallest: 4 pixels
   EXPECT_FLOAT_EQ(limited(gathered(1, {4, 0, 0}, 1, INFINITY), 1e-3f).radius, 0.05f);     // E / |grad| = 0.25
   // Widened fourfold over what it holds: the gradient shrinks as much.
@@ -259,12 +259,12 @@ TEST(LimitRadius, EachLimitDecidesWhereItIsTheSmallest) {
 /// From light that fills .15 of the hemisphere, sqrt(.15 / .6) = 1/2 of what distances tell, of neighbours' reach too;
 /// from .6 on, or where nothing is known, all of it.
 TEST(LimitRadius, NarrowLightHasNarrowShadows) {
-  PlacementOptions options;
+  PlacementOptions options{.unseen_radius_px = 500};
   options.error_bound = 0.2f;
   for (const auto& [share, kept] : {std::pair{0.15f, 0.5f}, {0.6f, 1.0f}, {1.0f, 1.0f}, {0.0f, 1.0f}}) {
     IrradianceRecord r = gathered(1, {}, 1, INFINITY);
     r.expected_share = share;
-    limit_radius(r, 1e-3f, 0.5f, options);
+    limit_radius(r, 1e-3f, options);
     EXPECT_FLOAT_EQ(r.radius, 0.2f * kept) << share;
     EXPECT_FLOAT_EQ(r.radius_unclamped, 0.2f * kept) << share;
   }
@@ -272,14 +272,14 @@ TEST(LimitRadius, NarrowLightHasNarrowShadows) {
 
 /// --radii hessian: R = sqrt(2 E / |E''|), whatever lies how far and whatever the gradient.
 TEST(LimitRadius, CurvatureDecidesWhereItIsAskedFor) {
-  PlacementOptions options;
+  PlacementOptions options{.unseen_radius_px = 500};
   options.error_bound = 0.2f;
   options.by_curvature = true;
   IrradianceRecord bent = gathered(1, {4, 0, 0}, 1, INFINITY), flat = gathered(1, {}, 1, INFINITY);
   bent.curvature = 8 * (bent.irradiance.r + bent.irradiance.g + bent.irradiance.b);   // R = sqrt(2 / 8)
   flat.curvature = 0;
-  limit_radius(bent, 1e-3f, 0.5f, options);
-  limit_radius(flat, 1e-3f, 0.5f, options);
+  limit_radius(bent, 1e-3f, options);
+  limit_radius(flat, 1e-3f, options);
   EXPECT_FLOAT_EQ(bent.radius, 0.2f * 0.5f);
   EXPECT_FLOAT_EQ(bent.radius_unclamped, 0.2f * 0.5f);
   EXPECT_FLOAT_EQ(flat.radius, 0.5f);   // the largest
@@ -287,14 +287,14 @@ TEST(LimitRadius, CurvatureDecidesWhereItIsAskedFor) {
 
 /// Light times a power of two: the same radii, gradients times the power, though their squares are beyond floats.
 TEST(LimitRadius, DoesNotDependOnTheStrengthOfTheLight) {
-  const PlacementOptions options;
+  const PlacementOptions options{.unseen_radius_px = 500};
   for (float slope : {1.0f, 4.0f, 100.0f})
     for (float nearest : {1e-3f, 0.05f, INFINITY}) {
       IrradianceRecord one = gathered(1, {slope, 0, -slope}, 1, nearest);
-      limit_radius(one, 1e-3f, 0.5f, options);
+      limit_radius(one, 1e-3f, options);
       for (float power : {0x1p-66f, 0x1p66f, 0x1p99f}) {
         IrradianceRecord scaled = gathered(power, {slope * power, 0, -slope * power}, 1, nearest);
-        limit_radius(scaled, 1e-3f, 0.5f, options);
+        limit_radius(scaled, 1e-3f, options);
         EXPECT_EQ(scaled.radius, one.radius) << power;
         EXPECT_EQ(scaled.translational[0].x, one.translational[0].x * power) << power;
       }
@@ -303,16 +303,16 @@ TEST(LimitRadius, DoesNotDependOnTheStrengthOfTheLight) {
 
 /// algorithms of the literature divide 0 by 0 in these; ours say the largest or smallest radius.
 TEST(LimitRadius, DegenerateGathers) {
-  const PlacementOptions options;
+  const PlacementOptions options{.unseen_radius_px = 500};
   IrradianceRecord misses = gathered(0, {}, INFINITY, INFINITY);
-  limit_radius(misses, 1e-3f, 0.5f, options);
+  limit_radius(misses, 1e-3f, options);
   EXPECT_EQ(misses.radius, 0.5f);
   IrradianceRecord touching = gathered(1, {1e20f, 0, 0}, 0, 0);
-  limit_radius(touching, 1e-3f, 0.5f, options);
+  limit_radius(touching, 1e-3f, options);
   EXPECT_FLOAT_EQ(touching.radius, options.min_radius_px * 1e-3f);
   EXPECT_EQ(touching.translational[0].x, 0);
   IrradianceRecord dark = gathered(0, {}, 1, 1);
-  limit_radius(dark, 1e-3f, 0.5f, options);
+  limit_radius(dark, 1e-3f, options);
   EXPECT_FLOAT_EQ(dark.radius, options.error_bound);
   for (const IrradianceRecord& r : {misses, touching, dark}) {
     EXPECT_TRUE(std::isfinite(r.radius));

@@ -64,7 +64,7 @@ struct Chain {
       if (!seen) return std::nullopt;
       return SeenPoint{seen->first, seen->second, footprint, false};
     };
-    place_records(gather, view, width, height, frame.bounds, {}, store, counts);
+    place_records(gather, view, width, height, {}, store, counts);
     EXPECT_LT(counts.unanswered, counts.rays / 20);   // next to walls and where surfaces bend
   }
   /// The surface under `position`, met from h above it.

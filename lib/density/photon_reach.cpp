@@ -1,0 +1,35 @@
+#include "lib/density/photon_reach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tempolux {
+namespace {
+
+constexpr std::size_t kAsked = 1000;
+constexpr std::size_t kStray = 20;   ///< one photon in so many is farther from others than the reach
+
+}  // namespace
+
+float photon_reach(const PhotonIndex& index, int neighbours, float min_cos, float flattening) {
+  if (index.size() == 0) return 0;
+  const std::size_t step = std::max<std::size_t>(1, index.size() / kAsked);
+  NeighbourList found;
+  std::vector<float> distance2;
+  for (std::size_t i = 0; i < index.size(); i += step) {
+    PhotonQuery query;
+    query.point = index.position(i);
+    query.normal = index.normal(i);
+    query.min_cos = min_cos;
+    query.flattening = flattening;
+    index.find_nearest(query, std::min(neighbours + 1, kMaxNeighbours), found);   // it finds itself
+    if (found.count() > 0) distance2.push_back(found.distance2()[found.farthest()]);
+  }
+  if (distance2.empty()) return index.resolution();
+  const auto at = distance2.end() - 1 - std::ptrdiff_t(distance2.size() / kStray);
+  std::nth_element(distance2.begin(), at, distance2.end());
+  return std::max(std::sqrt(*at), index.resolution());
+}
+
+}  // namespace tempolux
