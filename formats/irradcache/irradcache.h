@@ -41,11 +41,11 @@ struct IrradianceCacheRecord {
   float influence = 0;            ///< W/m^2, >= 0: change by what moves; 0 without column_influence
   std::array<float, 3> update{};  ///< W/m^2: E_t of this frame; may be < 0; 0 without column_update
   float clearance_reach = 0;      ///< m, > 0 or +inf: how far was looked around the record; 0 without column_clearance
-  std::array<std::uint32_t, 2> clearance{};   ///< spokes 0 to 7, 8 to 15: 4 bits each, the lowest first; 0 without
+  std::array<std::uint8_t, 16> clearance{};   ///< by spoke, in 1/255 of clearance_reach; 0 without
 
   bool operator==(const IrradianceCacheRecord&) const = default;
 };
-static_assert(sizeof(IrradianceCacheRecord) == 148);
+static_assert(sizeof(IrradianceCacheRecord) == 156);
 
 /// IrradcacheHeader::least_cosine of files that do not say.
 inline constexpr double kLeastCosine = 0.94;
@@ -102,7 +102,7 @@ struct IrradcacheFile {
 
 /// Reads and checks a file; "-" is standard input. Every truncation, flipped bit and value out of range is an
 /// InputError "FILE: byte OFFSET: REASON; REMEDY". An unknown identity is no error: header.identity.known()
-/// is false, and the tool warns. Memory: 148 bytes per record and one block.
+/// is false, and the tool warns. Memory: 156 bytes per record and one block.
 IrradcacheFile load_irradcache(const std::string& path);
 
 /// Hash of the data without header and history (irradcache.md, section 7): equal records in equal order have

@@ -16,7 +16,7 @@ namespace tempolux::formats::irradcache {
 
 inline constexpr Format kFormat{{"\x89TIRRC\r\n", 8}, ".irradcache", "irradcache-build", 1, 2};
 inline constexpr std::string_view kBlockMark = "IRRC";
-inline constexpr std::size_t kRecordSize = 120, kInfluenceSize = 4, kUpdateSize = 12, kClearanceSize = 12, kEndBodySize = 32;
+inline constexpr std::size_t kRecordSize = 120, kInfluenceSize = 4, kUpdateSize = 12, kClearanceSize = 20, kEndBodySize = 32;
 
 /// Bytes of one record in a block with these columns.
 constexpr std::size_t record_size(std::uint32_t columns) {

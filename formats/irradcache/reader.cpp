@@ -21,7 +21,7 @@ void append_records(const std::vector<char>& body, std::uint32_t columns, const 
     if (columns & column_update) record.update = get<std::array<float, 3>>(updates + i * kUpdateSize);
     if (columns & column_clearance) {
       record.clearance_reach = get<float>(clearances + i * kClearanceSize);
-      record.clearance = get<std::array<std::uint32_t, 2>>(clearances + i * kClearanceSize + 4);
+      record.clearance = get<std::array<std::uint8_t, 16>>(clearances + i * kClearanceSize + 4);
     }
     if (const std::string_view fault = fault_of(record, columns); !fault.empty())
       in.bytes().fail(in.body_offset() + i * kRecordSize,

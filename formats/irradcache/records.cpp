@@ -36,7 +36,7 @@ std::string_view fault_of(const IrradianceCacheRecord& record, std::uint32_t col
     return "influence is not finite or is negative";
   if (!is_finite(record.update)) return "update is not finite";
   if (columns & column_clearance && !(record.clearance_reach > 0)) return "clearance does not reach anywhere";
-  if ((!(columns & column_clearance) && (!is_zero(record.clearance_reach) || record.clearance != std::array<std::uint32_t, 2>{})) ||
+  if ((!(columns & column_clearance) && (!is_zero(record.clearance_reach) || record.clearance != std::array<std::uint8_t, 16>{})) ||
       (!(columns & column_influence) && !is_zero(record.influence)) ||
       (!(columns & column_update) && !is_zero(record.update)))
     return "a value of a column that the header does not name";

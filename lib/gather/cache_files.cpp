@@ -1,5 +1,6 @@
 #include "lib/gather/cache_files.h"
 
+#include <bit>
 #include <algorithm>
 #include <cmath>
 
@@ -85,7 +86,7 @@ std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRe
     r.radius = record.radius;
     r.radius_unclamped = record.radius_unclamped;
     r.clearance_reach = record.clearance.reach;
-    r.clearance = {std::uint32_t(record.clearance.shares), std::uint32_t(record.clearance.shares >> 32)};
+    r.clearance = std::bit_cast<std::array<std::uint8_t, 16>>(record.clearance.shares);
     return r;
   });
 }
@@ -104,7 +105,7 @@ std::vector<IrradianceRecord> from_file(std::span<const formats::IrradianceCache
     record.radius = r.radius;
     record.radius_unclamped = r.radius_unclamped;
     if (r.clearance_reach > 0)
-      record.clearance = {r.clearance_reach, r.clearance[0] | std::uint64_t(r.clearance[1]) << 32};
+      record.clearance = {r.clearance_reach, std::bit_cast<Clearance::Shares>(r.clearance)};
     return record;
   });
 }

@@ -1,6 +1,7 @@
 #include "lib/gather/reachable_area.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lib/core/frame.h"
@@ -39,31 +40,39 @@ bool Reach::operator()(Vec3 from, Vec3 normal, Vec3 to, Vec3 to_normal) const {
   return free(start, corner) && free(corner, end);
 }
 
-/// m: how far one comes.
-float Reach::spoke(Vec3 position, Vec3 normal, Vec3 outwards, float reach) const {
-  float gone = 0;
-  Vec3 up = normal;
-  for (int bends = 0; bends <= kMostBends && gone < reach; ++bends) {
-    const Vec3 along = normalize(outwards - up * dot(outwards, up)) + up * Clearance::kRise;
-    Hit hit;
-    if (!tracer_.intersect({position + up * (2 * offset_), along, 0, reach - gone, true}, hit)) return reach;
+Ray Reach::across(Vec3 position, Vec3 up, Vec3 outwards, float reach) const {
+  return {position + up * (2 * offset_), normalize(outwards - up * dot(outwards, up)) + up * Clearance::kRise, 0, reach, true};
+}
+
+/// m: how far one comes along a ray that has met something.
+float Reach::over_bends(Ray ray, Hit hit, Vec3 normal, Vec3 outwards, float reach) const {
+  float gone = hit.t;
+  for (int bends = 0; bends < kMostBends && gone < reach; ++bends) {
     const SurfacePoint there = tracer_.surface_point(hit);
-    gone += hit.t;
-    position = there.position;
-    up = dot(there.normal_geometric, along) > 0 ? -there.normal_geometric : there.normal_geometric;
+    const Vec3 up = dot(there.normal_geometric, ray.direction) > 0 ? -there.normal_geometric : there.normal_geometric;
     if (!(dot(up, normal) > Clearance::kBend)) break;
+    ray = across(there.position, up, outwards, reach - gone);
+    if (!tracer_.intersect(ray, hit)) return reach;
+    gone += hit.t;
   }
   return gone;
 }
 
 Clearance Reach::clearance(Vec3 position, Vec3 normal, Vec3 axis, float reach) const {
   const Frame frame(axis);
-  Clearance seen;
-  seen.reach = reach;
+  std::array<Vec3, Clearance::kSpokes> outwards;
+  std::array<Ray, Clearance::kSpokes> rays;
+  std::array<Hit, Clearance::kSpokes> hits;
   for (std::uint32_t k = 0; k < Clearance::kSpokes; ++k) {
     const Vec2 u = Clearance::spoke(k);
-    seen.set(k, spoke(position, normal, frame.tangent * u.x + frame.bitangent * u.y, reach));
+    outwards[k] = frame.tangent * u.x + frame.bitangent * u.y;
+    rays[k] = across(position, normal, outwards[k], reach);
   }
+  tracer_.intersect(rays, hits);
+  Clearance seen;
+  seen.reach = reach;
+  for (std::uint32_t k = 0; k < Clearance::kSpokes; ++k)
+    if (hits[k].surface != kNone) seen.set(k, over_bends(rays[k], hits[k], normal, outwards[k], reach));
   return seen;
 }
 

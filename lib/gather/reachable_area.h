@@ -33,7 +33,9 @@ class Reach {
   float offset() const { return offset_; }
 
  private:
-  float spoke(Vec3 position, Vec3 normal, Vec3 outwards, float reach) const;
+  /// A ray over the surface whose lit side `up` points away from, rising by Clearance::kRise.
+  Ray across(Vec3 position, Vec3 up, Vec3 outwards, float reach) const;
+  float over_bends(Ray ray, Hit hit, Vec3 normal, Vec3 outwards, float reach) const;
 
   const Tracer& tracer_;
   float offset_;

@@ -16,15 +16,16 @@ namespace tempolux {
 /// inside the polygon of the spokes' ends, and nowhere else. Between two spokes a straight wall is found exactly.
 struct Clearance {
   static constexpr std::uint32_t kSpokes = 16;
-  static constexpr std::uint32_t kFull = 15;            ///< a spoke that nothing ended
-  static constexpr std::uint64_t kOpen = ~std::uint64_t{0};   ///< no spoke was ended
+  static constexpr std::uint64_t kFull = 255;                   ///< a spoke that nothing ended
+  using Shares = std::array<std::uint64_t, 2>;
+  static constexpr Shares kOpen{~std::uint64_t{0}, ~std::uint64_t{0}};   ///< no spoke was ended
   /// cosine between the normals of two places of one surface, at least: more is a bend, not a wall.
   static constexpr float kBend = 0.7f;
   /// tangent of the angle by which spokes rise: lower things do not part light.
   static constexpr float kRise = 0.05f;
 
   float reach = INFINITY;         ///< m: how far was looked
-  std::uint64_t shares = kOpen;   ///< spoke k: bits 4k to 4k + 3, its length in fifteenths of reach, rounded down
+  Shares shares = kOpen;          ///< spoke k: byte k mod 8 of word k / 8, the lowest first: its length in 1/255 of reach, rounded down
 
   /// Direction of spoke k in the tangent plane, unit: (1 - f, f) / |(1 - f, f)|, f = (k mod 4) / 4, turned by k / 4 quadrants.
   static Vec2 spoke(std::uint32_t k) {
@@ -38,7 +39,8 @@ struct Clearance {
   }
   void set(std::uint32_t k, float length) {
     const auto share = std::uint64_t(std::clamp(length / reach * float(kFull), 0.0f, float(kFull)));
-    shares = (shares & ~(std::uint64_t{15} << 4 * k)) | share << 4 * k;
+    std::uint64_t& word = shares[k / 8];
+    word = (word & ~(kFull << 8 * (k % 8))) | share << 8 * (k % 8);
   }
   /// To look this many radii far: then the polygon holds the disc of that radius.
   static constexpr float kPerRadius = 1.0277402f;   // 1 / cos of half of 26.6 degrees, the widest angle between spokes
@@ -63,7 +65,7 @@ struct Clearance {
   static constexpr std::array<float, 4> kLength{1, 0.79056942f, 0.70710678f, 0.79056942f};
   /// reach / length of spoke k in multiples of v_k
   float inverse(std::uint32_t k, std::uint32_t of_quadrant) const {
-    return kLength[of_quadrant] * float(kFull) / std::max(float(shares >> 4 * k & 15), 1e-6f);
+    return kLength[of_quadrant] * float(kFull) / std::max(float(shares[k / 8] >> 8 * (k % 8) & kFull), 1e-6f);
   }
 };
 

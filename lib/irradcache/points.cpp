@@ -97,10 +97,10 @@ bool PointLookup::stands_for(const Light& light, const Question& q) const {
   if (!(length2(d) < reach * reach) || !(dot(light.normal, q.normal) > Clearance::kBend) ||
       std::abs(dot(d, light.normal + q.normal)) > 2 * (Clearance::kRise * length(d) + kRounding * max_component(abs(q.position))))
     return false;   // higher or lower than spokes look: there may be a sheet between
-  std::uint64_t shares = light.clearance.load(std::memory_order_relaxed);
-  if (shares == kNotLooked) {
-    shares = std::max<std::uint64_t>(1, look_(light.position, light.normal, reach).shares);
-    light.clearance.store(shares, std::memory_order_relaxed);
+  Clearance::Shares shares{light.clearance[0].load(std::memory_order_relaxed), light.clearance[1].load(std::memory_order_relaxed)};
+  if (shares[0] == kNotLooked || shares[1] == kNotLooked) {
+    shares = look_(light.position, light.normal, reach).shares;
+    for (std::size_t i = 0; i < 2; ++i) light.clearance[i].store(shares[i] = std::max<std::uint64_t>(1, shares[i]), std::memory_order_relaxed);
   }
   return Clearance{reach, shares}.contains(d, light.normal);
 }

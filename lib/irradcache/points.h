@@ -1,6 +1,7 @@
 // lib/irradcache/points.h -- irradiance points: what a gather ray reads at its hit.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -46,7 +47,7 @@ class PointLookup {
     Rgb all{0.0f};            ///< W/m^2, of all kinds
     float radius = 0;         ///< as IrradiancePoint's
     std::uint32_t point = 0;  ///< index of the IrradiancePoint
-    mutable std::atomic<std::uint64_t> clearance{kNotLooked};
+    mutable std::array<std::atomic<std::uint64_t>, 2> clearance{};   ///< Clearance::shares; kNotLooked: either
     mutable std::atomic<std::uint8_t> even{kNotAsked};
   };
 
@@ -91,7 +92,7 @@ class PointLookup {
 
  private:
   static constexpr std::uint8_t kNotAsked = 0, kEven = 1, kUneven = 2;
-  static constexpr std::uint64_t kNotLooked = 0;   ///< a point walled in on all sides is kept as walled in on all but one
+  static constexpr std::uint64_t kNotLooked = 0;   ///< eight spokes of no length are kept as one of 1/255
   struct Entry {
     std::atomic<std::uint64_t> cell{0};
     std::atomic<std::uint32_t> answer{0};   ///< Answer::value + 1; 0: not there yet

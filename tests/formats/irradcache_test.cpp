@@ -44,7 +44,7 @@ IrradianceCacheRecord record(std::uint32_t i, std::uint32_t columns = 0) {
   r.radius_unclamped = i % 3 ? x : std::numeric_limits<float>::infinity();
   if (columns & column_influence) r.influence = x + 0.5f;
   if (columns & column_update) r.update = {-x, x, 1};
-  if (columns & column_clearance) r.clearance_reach = x + 1, r.clearance = {i * 77, ~i};
+  if (columns & column_clearance) r.clearance_reach = x + 1, r.clearance = {std::uint8_t(i), 0, 255};
   return r;
 }
 std::vector<IrradianceCacheRecord> records(std::uint32_t count, std::uint32_t columns = 0,
@@ -138,7 +138,7 @@ TEST(Irradcache, WhatIsNotKnownOfTheGatheringComesBackAsNotKnown) {
   EXPECT_TRUE(file.records.empty());
 }
 
-// Columns: 4, 12 and 12 bytes per record; "none", "influence", "influence,update,clearance" are 4, 9 and 26 letters.
+// Columns: 4, 12 and 20 bytes per record; "none", "influence", "influence,update,clearance" are 4, 9 and 26 letters.
 TEST(Irradcache, ColumnsThatAreNotNamedTakeNoRoom) {
   IrradcacheHeader header;
   const auto size_of = [&](std::uint32_t columns) {
@@ -146,7 +146,7 @@ TEST(Irradcache, ColumnsThatAreNotNamedTakeNoRoom) {
     return bytes_of(header, {records(100, columns)}).size();
   };
   EXPECT_EQ(size_of(column_influence) - size_of(0), 400u + 9 - 4);
-  EXPECT_EQ(size_of(kAllColumns) - size_of(column_influence), 2400u + 26 - 9);
+  EXPECT_EQ(size_of(kAllColumns) - size_of(column_influence), 3200u + 26 - 9);
 }
 
 TEST(Irradcache, ManyRecordsAreCutIntoBlocksAndComeBackInOrder) {

@@ -195,7 +195,7 @@ def make_cache():
     for columns in ("influence", "update", "influence,update", "clearance", "influence,update,clearance"):
         c = m.with_header(columns=columns)
         c.records[0].influence, c.records[0].update = 0.75, (0.5, -0.25, 1)
-        c.records[0].clearance = (0.515625, 0xffff4321, 0xffffffff)
+        c.records[0].clearance = (0.515625, *range(0, 240, 16), 255)
         m.save("accept/columns-" + columns.replace(",", "-"), c)
     empty = copy.deepcopy(good)
     empty.records = []
@@ -243,7 +243,7 @@ def make_cache():
     m.save("refuse/influence-negative", m.with_block(12 + 120, struct.pack("<f", -1), data))
     cleared = m.with_header(columns="clearance")
     for name, reach in (("zero", 0), ("negative", -1), ("nan", NAN)):
-        cleared.records = [dataclass_with(record, clearance=(reach, 0, 0))]
+        cleared.records = [dataclass_with(record, clearance=(reach, *[0] * 16))]
         m.save("refuse/clearance-reach-" + name, cache.encode_irradcache(cleared))
     m.save("refuse/clearance-before-1.2", m.with_text(text.replace(b"columns: none", b"columns: clearance"), minor=1))
     m.save("refuse/update-nan", m.with_block(12 + 124, struct.pack("<f", NAN), data))

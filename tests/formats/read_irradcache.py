@@ -21,7 +21,7 @@ from containers import cut, encode_container, exact_sums, integers, read_contain
 MAGIC, MARK = b"\x89TIRRC\r\n", b"IRRC"
 # Section 3: position, normal, object, set, reserved, irradiance, rotational, translational, radius, radius_unclamped
 RECORD = struct.Struct("<3f3fHBB3f9f9fff")
-INFLUENCE, UPDATE, CLEARANCE = struct.Struct("<f"), struct.Struct("<3f"), struct.Struct("<f2I")      # section 4
+INFLUENCE, UPDATE, CLEARANCE = struct.Struct("<f"), struct.Struct("<3f"), struct.Struct("<f16B")      # section 4
 END = "<Q3d"                                                       # section 5, without mark and chain
 NAMES = ["influence", "update", "clearance"]
 COLUMNS = {",".join(some) or "none": some for some in ([n for i, n in enumerate(NAMES) if bits >> i & 1] for bits in range(8))}
@@ -66,7 +66,7 @@ class Record:
     radius_unclamped: float
     influence: float = 0
     update: tuple = (0, 0, 0)
-    clearance: tuple = (0, 0, 0)   # reach, shares of spokes 0 to 7, of 8 to 15
+    clearance: tuple = (0,) * 17      # reach, then a share for each spoke
 
 
 @dataclasses.dataclass

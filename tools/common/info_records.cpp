@@ -225,7 +225,7 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
       for (const float e : record.update) table.add(double(e));
     if (clearance)
       for (std::size_t k = 0; k < 16; ++k)
-        table.add(double(record.clearance_reach) * double(record.clearance[k / 8] >> 4 * (k % 8) & 15) / 15);
+        table.add(double(record.clearance_reach) * double(record.clearance[k]) / 255);
     add_colour(table, record.irradiance, white);
     table.end_row(record.object, std::uint8_t(record.set));
   }
