@@ -36,7 +36,7 @@ struct Options {
   bool half_float = false;
   int width = 640, height = 360;
 
-  bool traces_paths() const { return light.photons.empty() && light.irradcache.empty(); }
+  bool traces_paths() const { return light.photons.empty() && light.irradcache.empty() && light.points.empty(); }
 };
 
 /// The neighbours in time that motion needs; empty unless it is asked for.
@@ -51,15 +51,15 @@ struct MotionFrame {
   NeighbourFrame get() const { return {frame ? &*frame : nullptr, view ? &*view : nullptr}; }
 };
 
-void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& tracer,
-                const tools::IndirectLight& light) {
+void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& tracer) {
   tools::Stats& stats = tool.stats();
   stats.count("camera_rays", double(rendered.rays.camera));
   stats.count("bounce_rays", double(rendered.rays.bounce));
   stats.count("shadow_rays", double(rendered.rays.shadow));
   stats.count("lookups", double(rendered.rays.lookups));
   stats.count("refused_rays", double(tracer.refused_ray_count()));
-  stats.count("gathered_on_the_spot", double(light.gathered_on_the_spot()));
+  stats.count("gathered_in_pixels", double(rendered.rays.gathered));
+  stats.count("points_read", double(rendered.rays.points_read));
   stats.set("samples_per_pixel", rendered.samples_per_pixel);
   stats.set("mean_radiance", rendered.mean_radiance);
   if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
@@ -85,11 +85,11 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
   const RenderScene scene{tracer, lights};
-  const tools::IndirectLight light(tool, options.light, tracer, lights, number);
+  const tools::IndirectLight light(tool, options.light, tracer, number);
 
   tool.stats().phase("render", true);
   frame_options.seed = tool.common().seed_for_frame(number);
-  frame_options.diffuse_light = light.get();
+  frame_options.known = light.get();
   frame_options.sample_halves = wants_sample_halves(options.channels);
   frame_options.progress = [&](double fraction) { tool.progress(fraction); };
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
@@ -105,7 +105,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
                                             frame.frame, input.time().fps, view.world_to_camera(), view.world_to_ndc()};
   outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
-  count_work(tool, rendered, tracer, light);
+  count_work(tool, rendered, tracer);
 }
 
 /// A scene without light may be meant (unlit materials, depth alone), but a black frame is explained.
@@ -126,16 +126,14 @@ void check(Options& options, const std::vector<int>& frames) {
     if (options.output.ends_with(other))
       throw InputError("--output " + options.output +
                        ": a frame is OpenEXR; name it f.exr, then tempolux-info --png f.png f.exr");
-  if (options.integrator == "photons" && !options.light.irradcache.empty())
-    throw InputError("--integrator photons reads no cache; leave out --irradcache, or the integrator");
+  if (options.integrator == "photons" && !(options.light.irradcache.empty() && options.light.points.empty()))
+    throw InputError("--integrator photons reads no cache and no points; leave them out, or the integrator");
   if (options.integrator == "photons" && options.light.photons.empty())
     throw InputError("--integrator photons: name the photon map with --photons FILE");
   if (options.integrator == "cache" && options.light.irradcache.empty())
     throw InputError("--integrator cache: name the cache with --irradcache FILE");
   if (options.integrator == "path" && !options.traces_paths())
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
-  if (options.light.irradcache.empty() && !options.light.points.empty())
-    throw InputError("--points: only a cache needs them, --irradcache FILE");
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
@@ -166,7 +164,8 @@ void add_light_options(tools::Tool& tool, Options& options) {
       ->type_name("FILE");
   app.add_option(
          "--points", options.light.points,
-         ".irradpoints file, or a pattern: what missing records are gathered from (else points made from --photons)")
+         ".irradpoints file, or a pattern: paths end where a point stands for what they meet; with --irradcache those "
+         "that find no record")
       ->type_name("FILE");
   app.add_option("--neighbours", options.light.photon_light.neighbours,
                  "photons per density estimate of indirect light")
@@ -181,8 +180,6 @@ void add_light_options(tools::Tool& tool, Options& options) {
   app.add_option("--caustic-radius", options.light.photon_light.caustic_radius,
                  "farthest caustic photon used, m; 0: from the photons' spacing")
       ->capture_default_str()->check(tools::number_between(0));
-  app.add_option("--rays", options.light.gather.rays, "gather rays for a missing record")
-      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
 }
 
 void add_options(tools::Tool& tool, Options& options) {

@@ -14,7 +14,7 @@
 #include "formats/error.h"
 #include "lib/gather/cache_files.h"
 #include "lib/image/images_by_module.h"
-#include "lib/render/cache_light.h"
+#include "lib/render/known_light.h"
 #include "tools/common/gather_input.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"

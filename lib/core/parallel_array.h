@@ -26,6 +26,8 @@ class ParallelArray {
   }
 
   std::size_t size() const { return count_; }
+  T* begin() { return data_.get(); }
+  T* end() { return data_.get() + count_; }
   T& operator[](std::size_t i) { return data_.get()[i]; }
   const T& operator[](std::size_t i) const { return data_.get()[i]; }
   operator std::span<T>() { return {data_.get(), count_}; }

@@ -22,8 +22,6 @@ double share_of_distant(double distant, double others) {
   return others > 0 ? std::clamp(distant / (distant + others), 0.2, 0.8) : 1;
 }
 
-constexpr double kFew = 0.4;   // of the irradiance: lights that give less get a sample by chance
-
 }  // namespace
 
 /// The weights of the environment and the directional lights.
@@ -122,110 +120,26 @@ inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double pro
   return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.radiance);
 }
 
-/// Of the lights of a tree, slot_of its lights, and of those infinitely far.
-inline bool Lights::Impl::sample(const LightTree& from, const std::vector<std::uint32_t>& slot_of, const LightTree::Start& start,
-                          double distant, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const {
+bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const {
   sample = {};
-  const double share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
+  const LightTree::Start start = tree.start(point, normal);
+  const double distant = distant_irradiance(normal), share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
   if (u_choice < share) {
     // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
     return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) && is_finite(sample.radiance);
   }
-  if (from.empty()) return false;
+  if (tree.empty()) return false;
   LightTree::Choice choice;
-  if (!from.choose(start, point, normal, to_float(stretch(u_choice, share, 1 - share)), choice)) return false;
-  return sample_slot(slot_of[choice.light], point, choice.probability * (1 - share), choice.left, u, joint, sample);
+  if (!tree.choose(start, point, normal, to_float(stretch(u_choice, share, 1 - share)), choice)) return false;
+  return sample_slot(tree_slot[choice.light], point, choice.probability * (1 - share), choice.left, u, joint, sample);
 }
 
 bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
-  const Impl& m = *impl_;
-  return m.sample(m.tree, m.tree_slot, m.tree.start(point, normal), m.distant_irradiance(normal), point, normal, u_choice, u, false, sample);
+  return impl_->sample(point, normal, u_choice, u, false, sample);
 }
 
 bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const {
-  const Impl& m = *impl_;
-  return m.sample(m.tree, m.tree_slot, m.tree.start(point, normal), m.distant_irradiance(normal), point, normal, u.x, u, true, sample);
-}
-
-bool Lights::has_large() const {
-  std::call_once(impl_->apart_made, [&] { impl_->choose_large(impl_->apart); });
-  return !impl_->apart.large.empty();
-}
-
-/// Each part is written where it stays: a copy of what was just written waits for it.
-void Lights::apart(Vec3 point, Vec3 normal, Apart& at) const {
-  const Impl& m = *impl_;
-  at.point = point;
-  at.normal = normal;
-  m.apart.rest.start(point, normal, at.rest);
-  at.distant = m.distant_irradiance(normal);
-  at.irradiance = Rgb(0.0f);
-  at.sum_large = 0;
-  for (std::size_t i = 0; i < m.apart.large.size(); ++i) {
-    const Rgb radiance = m.apart.large[i].triangle.radiance;
-    const float projected = float(projected_solid_angle(m.apart.large[i], point, normal));
-    at.irradiance += radiance * projected;
-    at.sum_large += at.large[i] = max_component(radiance) * projected;
-  }
-  const double all = at.distant + at.rest.sum;
-  at.chance = all > 0 ? std::min(1.0, all / (kFew * (all + double(max_component(at.irradiance))))) : 0;
-}
-
-unsigned Lights::sample_large(std::span<const Apart* const> at, std::span<const Vec2> u, LightSample* samples) const {
-  TEMPOLUX_CHECK(at.size() <= kTogether && at.size() == u.size());
-  const std::vector<LargeLight>& large = impl_->apart.large;
-  float left[kTogether];
-  std::size_t chosen[kTogether];
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    chosen[i] = large.size();
-    if (!(at[i]->sum_large > 0)) continue;
-    left[i] = u[i].x * at[i]->sum_large;
-    for (std::size_t l = 0; l < large.size(); ++l) {
-      if (!(at[i]->large[l] > 0)) continue;
-      chosen[i] = l;
-      if (left[i] < at[i]->large[l]) break;
-      left[i] -= at[i]->large[l];
-    }
-  }
-  unsigned sampled = 0;
-  for (std::size_t l = 0; l < large.size(); ++l) {
-    std::size_t count = 0, whose[kTogether];
-    Vec3 from[kTogether];
-    Vec2 on_light[kTogether];
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      if (chosen[i] != l) continue;
-      from[count] = at[i]->point;
-      on_light[count] = {std::min(left[i] / at[i]->large[l], kOneMinusEpsilon), u[i].y};
-      whose[count++] = i;
-    }
-    if (count == 0) continue;
-    thread_local LargeLightPoint points[kTogether];
-    const unsigned found = sample_large_light(large[l], {from, count}, {on_light, count}, points);
-    for (std::size_t k = 0; k < count; ++k) {
-      if (!(found >> k & 1)) continue;
-      const std::size_t i = whose[k];
-      const double pdf = double(at[i]->large[l] / at[i]->sum_large) * points[k].pdf_solid_angle;
-      const Rgb radiance(Rgbd(large[l].triangle.radiance) / pdf);
-      samples[i].wi = points[k].wi;
-      samples[i].position = points[k].position;
-      samples[i].position_offset = large[l].triangle.offset;
-      samples[i].radiance = radiance;
-      samples[i].pdf_solid_angle = float(pdf);
-      samples[i].delta = false;
-      sampled |= unsigned(is_finite(radiance)) << i;
-    }
-  }
-  return sampled;
-}
-
-bool Lights::sample_rest(const Apart& at, Vec2 u, LightSample& sample) const {
-  const Impl& m = *impl_;
-  if (!(double(u.x) < at.chance)) return false;
-  u.x = to_float(double(u.x) / at.chance);
-  if (!m.sample(m.apart.rest, m.apart.rest_slot, at.rest, at.distant, at.point, at.normal, u.x, u, true, sample)) return false;
-  sample.radiance *= float(1 / at.chance);
-  sample.pdf_solid_angle *= float(at.chance);
-  return is_finite(sample.radiance);
+  return impl_->sample(point, normal, u.x, u, true, sample);
 }
 
 float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle,

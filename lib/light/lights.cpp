@@ -132,34 +132,6 @@ std::vector<LightBounds> Lights::Impl::tree_bounds() const {
   return bounds;
 }
 
-void Lights::Impl::choose_large(Apart& made) const {
-  const auto weight = [&](std::uint32_t slot) {
-    return slot < triangles.size() ? bounds_of(triangles[slot], {}).weight : bounds_of(frame->lights[slots[slot].light]).weight;
-  };
-  std::vector<double> weights;
-  double whole = 0;
-  for (const std::uint32_t slot : tree_slot) whole += weights.emplace_back(weight(slot));
-  std::vector<std::uint32_t> order;
-  for (std::uint32_t i = 0; i < weights.size(); ++i)
-    if (tree_slot[i] < triangles.size() && !triangles[tree_slot[i]].varies && weights[i] >= kLarge * whole) order.push_back(i);
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return weights[a] > weights[b]; });
-  order.resize(std::min(order.size(), kMostLarge));
-  if (order.empty()) return;
-  const std::vector<LightBounds> bounds = tree_bounds();
-  std::vector<LightBounds> others;
-  std::vector<TriangleLight> chosen;
-  for (std::uint32_t i = 0; i < bounds.size(); ++i) {
-    if (std::find(order.begin(), order.end(), i) != order.end()) {
-      chosen.push_back(triangles[tree_slot[i]]);
-    } else {
-      made.rest_slot.push_back(tree_slot[i]);
-      others.push_back(bounds[i]);
-    }
-  }
-  made.large = join_rectangles(chosen);
-  made.rest = LightTree(others);
-}
-
 Lights::Lights(const SceneFrame& frame, const EmissionTable& table)
     : impl_(std::make_unique<Impl>(frame, table)), environment_(impl_->environment.get()) {}
 Lights::~Lights() = default;

@@ -96,38 +96,6 @@ class Lights {
   /// The same from one stratified pair: u.x chooses the light and, stretched, is its first coordinate on it, so
   /// that samples stratified over the square are stratified over every light.
   bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const;
-  /// Are there large lights: up to four triangles of even radiance that each hold a twentieth of what the lights that are
-  /// somewhere emit?
-  bool has_large() const;
-  static constexpr std::size_t kMostLarge = 4;
-  /// A point at which samples of the large lights and of the others are wanted: what all of them have in common. Only after
-  /// has_large() has said that there are any; the first call of that chooses them.
-  struct Apart {
-    Vec3 point{}, normal{};                           ///< unit
-    Rgb irradiance{0.0f};                             ///< exactly, of the large lights where nothing is in the way
-    std::array<float, kMostLarge> large{};            ///< of each, greatest channel
-    float sum_large = 0;
-    LightTree::Start rest{};
-    double distant = 0;                               ///< weight of the lights infinitely far
-    double chance = 0;                                ///< of a sample of the others
-  };
-  void apart(Vec3 point, Vec3 normal, Apart& at) const;
-  Apart apart(Vec3 point, Vec3 normal) const {
-    Apart at;
-    apart(point, normal, at);
-    return at;
-  }
-  static constexpr std::size_t kTogether = 8;
-  /// sample() for the large lights alone, chosen by their irradiance; the mean of radiance cos over u is that. Several, at
-  /// most kTogether, cost little more than one: samples[i] at *at[i] by u[i], bit i of the result where there is one.
-  unsigned sample_large(std::span<const Apart* const> at, std::span<const Vec2> u, LightSample* samples) const;
-  bool sample_large(const Apart& at, Vec2 u, LightSample& sample) const {
-    const Apart* const place = &at;
-    return sample_large({&place, 1}, {&u, 1}, &sample) != 0;
-  }
-  /// And for all others. Where they can give little against the large ones a sample comes by chance only, and is as much
-  /// brighter.
-  bool sample_rest(const Apart& at, Vec2 u, LightSample& sample) const;
   /// Density per solid angle with which sample() at (point, normal) would have chosen the position
   /// `on_light` of this emissive triangle, seen from its front or (two-sided) back; 0 if it is no light. The
   /// triangle's own plane decides, as in sample(); light_normal is not looked at.

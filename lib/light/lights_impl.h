@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <numbers>
 #include <vector>
 
 #include "lib/core/sampling.h"
-#include "lib/light/large_light.h"
 #include "lib/light/light_tree.h"
 #include "lib/light/lights.h"
 #include "lib/light/triangle_light.h"
@@ -18,8 +16,8 @@
 namespace tempolux {
 
 struct Lights::Impl {
-  bool sample(const LightTree& from, const std::vector<std::uint32_t>& slot_of, const LightTree::Start& start, double distant,
-              Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const;
+  /// As Lights::sample; joint: u_choice is u.x.
+  bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const;
   const SceneFrame* frame;
   Vec3 sphere_centre;
   double sphere_radius;
@@ -35,16 +33,6 @@ struct Lights::Impl {
   double environment_weight = 0;  // irradiance by the environment, the mean over all normals; 0: none or black
   bool any_distant = false;       // an environment that is not black, or a sun
   LightTree tree{{}};
-  struct Apart {
-    std::vector<LargeLight> large;          // see Lights::has_large
-    LightTree rest{{}};                     // without them; only if there are any
-    std::vector<std::uint32_t> rest_slot;   // by light of `rest`
-  };
-  mutable Apart apart;                    // made when has_large() first asks: most tools never do
-  mutable std::once_flag apart_made;
-
-  static constexpr double kLarge = 0.05;  // of the weight of all lights in the tree
-
   Impl(const SceneFrame& frame_, const EmissionTable& table);
   void add_slots(const EmissionTable& table);
   void build_tree();
@@ -52,7 +40,6 @@ struct Lights::Impl {
 
   Rgbd slot_flux(std::size_t slot) const;   ///< W
   std::vector<LightBounds> tree_bounds() const;
-  void choose_large(Apart& made) const;
   double sum_distant(Vec3 normal) const;
   double distant_irradiance(Vec3 normal) const { return any_distant ? sum_distant(normal) : 0; }
   double distant_share(Vec3 point, Vec3 normal, double& total) const;

@@ -18,16 +18,11 @@ struct FrameOptions {
   bool halves = false;                  ///< keep two independent halves apart
   double target_error = 0;              ///< > 0: double the samples until the estimated relative RMSE is below
   int max_samples = 1 << 20;            ///< never more than this for target_error
-  /// > 0: after `samples` everywhere, more where pixels are uncertain: n = 12 (sigma / (12 pixel_error (L + 0.1 mean)))^(3/4),
-  /// sigma the standard deviation of a sample as far as stratification leaves it, L the radiance, both around the pixel, L at
-  /// most the picture's mean. So spread they give the least error for their number. sigma and L are those
-  /// of the neighbouring pixels, whose samples are independent: no bias. Of edges it is that of the 8 around it and
-  /// between them, half of their variance, of all else of 24. A pixel that still stands out by its own samples gets as many as
-  /// those call for, and its neighbours what that takes from it: no bias of the mean around it. See adaptive_frame.h.
+  /// > 0: after `samples` everywhere, more where pixels are uncertain (lib/render/adaptive_frame.h).
   double pixel_error = 0;
   int adaptive_limit = 1024;
   bool sample_halves = false;           ///< keep LayerImage::sample_halves
-  const DiffuseLight* diffuse_light = nullptr;
+  const KnownLight* known = nullptr;    ///< where paths may end
   std::vector<std::uint8_t> mask;       ///< by pixel, 0: leave it out; empty: all pixels
   std::function<void(double)> progress; ///< called with [0, 1]; may be empty
 };

@@ -1,11 +1,9 @@
 #include "lib/render/path_tracer.h"
 
-#include <array>
-
-#include "lib/core/check.h"
 #include "lib/core/sampling.h"
 #include "lib/material/inside.h"
-#include "lib/render/matte_ends.h"
+#include "lib/render/known_light.h"
+#include "lib/render/shading.h"
 
 namespace tempolux {
 namespace {
@@ -21,12 +19,18 @@ struct LastScatter {
   float light_share = 1;                       ///< of light samples that were aimed at that side
 };
 
+/// Which of a surface's lobes light is sampled for.
+struct SampledLobes {
+  bool diffuse, specular;
+};
+
 /// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)]
-void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, const Rgb& throughput, const EyePath& path,
-                       const Inside& inside, const PixelRandom& random, std::uint32_t bounce, bool weigh_diffuse,
+void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, SampledLobes lobes, const Rgb& throughput,
+                       const EyePath& path, const Inside& inside, const PixelRandom& random, std::uint32_t bounce,
                        Layers& result, RayCounts& counts) {
-  const bool specular = x.bsdf.has_specular() && !x.bsdf.specular_is_delta();
-  if (!x.bsdf.has_diffuse() && !specular) return;
+  const bool specular = lobes.specular && x.bsdf.has_specular() && !x.bsdf.specular_is_delta();
+  lobes.diffuse = lobes.diffuse && x.bsdf.has_diffuse();
+  if (!lobes.diffuse && !specular) return;
   // Rough glass passes on light from behind: the side is drawn, the other's light is left to other samples.
   const float share_beyond = x.bsdf.light_share_beyond();
   bool beyond = false;
@@ -39,11 +43,11 @@ void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, const Rg
   if (!scene.lights.sample(x.surface.position, beyond ? -x.normal : x.normal, random.get2(bounce, Purpose::light_point), light)) return;
   if (beyond ? !x.sees_beyond(light.wi) : !x.sees(light.wi)) return;
   const Vec3 wi = x.frame.to_local(light.wi);
-  Rgb diffuse = x.bsdf.has_diffuse() ? x.bsdf.eval_diffuse(wi, x.wo_local) : Rgb(0.0f);
+  Rgb diffuse = lobes.diffuse ? x.bsdf.eval_diffuse(wi, x.wo_local) : Rgb(0.0f);
   Rgb glossy = specular ? x.bsdf.eval_specular(wi, x.wo_local) : Rgb(0.0f);
   if (!light.delta) {
     const float pdf = light.pdf_solid_angle * share;
-    if (weigh_diffuse) diffuse *= mis_power(pdf, x.bsdf.pdf_diffuse(wi, x.wo_local));
+    if (lobes.diffuse) diffuse *= mis_power(pdf, x.bsdf.pdf_diffuse(wi, x.wo_local));
     if (specular) glossy *= mis_power(pdf, x.bsdf.pdf_specular(wi, x.wo_local));
   }
   if (is_black(diffuse) && is_black(glossy)) return;
@@ -80,24 +84,65 @@ void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter
   result[layer] += throughput * scene.lights.environment(direction) * weight;
 }
 
-/// Follows a path; adds to `result`. With `end` it may end at a matte surface of which all but the light sampled there is
-/// known: then that is set and the answer is true.
-bool follow(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random, const DiffuseLight* diffuse_light,
-            RayCounts& counts, MatteEnd* end, Layers& result) {
-  bool ends_matte = false;
+/// What a path knows of the light beyond its last Lambert lobe.
+struct Beyond {
+  bool matte = false;            ///< there was a Lambert lobe
+  bool caustic_known = false;    ///< what arrives there by events S
+  bool indirect_known = false;   ///< what arrives there by events D
+  bool specular = false;         ///< events S since then
+  float distance = 0;            ///< m along the path since then
+
+  /// Does the light count that the path meets now?
+  bool light_counts() const { return !(matte && specular && caustic_known); }
+};
+
+/// Light at x that is known; its Lambert lobe then needs no more of it. Radiance to the eye goes to `result`.
+struct KnownHere {
+  bool indirect = false, direct = false, caustic = false;
+};
+
+KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, const Beyond& beyond, const Rgb& throughput,
+                          const EyePath& path, float u, Layers& result, RayCounts& counts) {
+  // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
+  const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi;
+  const Layer layer = path.after(true).after(true).layer();   // indirect; or that of what the path saw before
+  if (beyond.matte) {
+    if (const std::optional<Rgb> all = known.all(x.surface, x.normal_geometric, beyond.distance, u)) {
+      ++counts.points_read;
+      result[layer] += reflected * *all;
+      return {true, true, true};
+    }
+  }
+  KnownHere here;
+  if (known.has_caustic()) {
+    here.caustic = true;
+    result[path.after(true).after(false).layer()] += reflected * known.caustic(x.surface, x.normal_geometric);
+  }
+  if (beyond.matte) return here;
+  if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal, path.layer() == Layer::emission)) {
+    ++counts.lookups;
+    here.indirect = true;
+    result[layer] += reflected * *indirect;
+  } else {
+    ++counts.gathered;
+  }
+  return here;
+}
+
+void follow(const RenderScene& scene, Ray ray, Hit hit, const PixelRandom& random, const KnownLight* known, RayCounts& counts,
+            RayCone cone, Layers& result) {
   Rgb throughput{1.0f};
   EyePath path;
   Inside inside;
   LastScatter last;
+  Beyond beyond;
   const SceneFrame& frame = scene.frame();
-  RayCone cone = eye.cone;
-  Ray ray = eye.ray;
-  Hit hit = eye.hit;
   ++counts.camera;
 
   for (std::uint32_t bounce = 0;; ++bounce) {
     if (hit.surface == kNone) {
-      if (scene.lights.has_environment()) add_environment(scene, ray.direction, last, throughput, path.layer(), result);
+      if (scene.lights.has_environment() && beyond.light_counts())
+        add_environment(scene, ray.direction, last, throughput, path.layer(), result);
       break;
     }
     result.coverage = 1;
@@ -107,7 +152,11 @@ bool follow(const RenderScene& scene, const EyeRay& eye, const PixelRandom& rand
     if (inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
       throughput *= inside.transmittance_to(frame.materials, point.material, front, hit.t);
     cone.advance(hit.t);
-    add_emission(scene, point, wo, last, throughput, path.layer(), cone.width, result);
+    beyond.distance += hit.t;
+    if (beyond.light_counts()) add_emission(scene, point, wo, last, throughput, path.layer(), cone.width, result);
+    // Only light by events S is missing then, if any.
+    const bool only_specular = beyond.indirect_known;
+    if (only_specular && beyond.caustic_known) break;
 
     const SurfaceMaterial material(frame, point, cone.width);
     if (material.values().unlit) [[unlikely]] {
@@ -115,41 +164,22 @@ bool follow(const RenderScene& scene, const EyeRay& eye, const PixelRandom& rand
       break;
     }
     const ShadingPoint x(point, wo, material);
-    const bool ends_here = diffuse_light && x.bsdf.has_diffuse();
-    const bool controlled = ends_here && end && x.bsdf.is_matte();
-    if (controlled && !inside.any()) {
-      ends_matte = true;
-      end->surface = point;
-      end->normal = x.normal;
-      end->normal_geometric = x.normal_geometric;
-      end->reflected = throughput * x.bsdf.diffuse_albedo() * kInvPi;
-      end->layer = path.after(true).layer();
-      end->first = eye.first_light;
-      end->count = eye.lights;
-      end->bounce = bounce;
-    } else {
-      add_sampled_light(scene, x, throughput, path, inside, random, bounce, !ends_here, result, counts);
-    }
-    if (ends_here) {
-      const bool seen_directly = path.layer() == Layer::emission;
-      if (controlled && seen_directly) ++end->control.seen_matte;
-      const DiffuseLight::Irradiance e = diffuse_light->at(point, x.normal_geometric, x.normal, seen_directly, nullptr);
-      ++counts.lookups;
-      // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
-      const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi;
-      result[seen_directly ? Layer::caustic : Layer::specular] += reflected * e.caustic;
-      result[seen_directly ? Layer::indirect : Layer::specular] += reflected * e.indirect;
-    }
-
-    if (ends_here && !x.bsdf.has_specular()) break;
+    KnownHere here{only_specular, only_specular, only_specular};
+    if (known && !only_specular && x.bsdf.has_diffuse())
+      here = add_known_light(*known, x, beyond, throughput, path, random.get1(bounce, Purpose::gather), result, counts);
+    const SampledLobes lobes{!here.direct, !(beyond.matte && beyond.caustic_known)};
+    add_sampled_light(scene, x, lobes, throughput, path, inside, random, bounce, result, counts);
+    if (here.direct && !x.bsdf.has_specular()) break;
 
     // Next direction: event D or S.
     const Bsdf::Sample next = x.bsdf.sample(x.wo_local, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
-    if (is_black(next.weight) || (ends_here && next.diffuse)) break;
+    if (is_black(next.weight) || (here.direct && next.diffuse)) break;
     const Vec3 wi = x.frame.to_world(next.wi);
     if (next.transmitted ? !x.sees_beyond(wi) : !x.sees(wi)) break;
     throughput *= next.weight;
     path.scatter(next.diffuse);
+    if (next.diffuse) beyond = {true, here.caustic, here.indirect, false, 0};
+    else beyond.specular = true;
     if (!next.diffuse && is_solid_glass(material)) inside.scatter(point.material, front, next.transmitted);
 
     if (bounce + 1 >= kRouletteFrom) {
@@ -168,40 +198,22 @@ bool follow(const RenderScene& scene, const EyeRay& eye, const PixelRandom& rand
     hit = {};
     scene.tracer.intersect(ray, hit);
   }
-  return ends_matte;
 }
 
 }  // namespace
 
-Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
-                      const DiffuseLight* diffuse_light, RayCounts& counts, RayCone cone) {
-  EyeRay eye{camera_ray, {}, cone};
-  scene.tracer.intersect(camera_ray, eye.hit);
+Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
+                      const KnownLight* known, RayCounts& counts, RayCone cone) {
   Layers layers;
-  follow(scene, eye, random, diffuse_light, counts, nullptr, layers);
+  follow(scene, camera_ray, first, random, known, counts, cone, layers);
   return layers;
 }
 
-void trace_eye_paths(const RenderScene& scene, std::span<const EyeRay> eyes, const PixelRandom& random, std::uint32_t first,
-                     const DiffuseLight* diffuse_light, RayCounts& counts, std::span<LightControl* const> controls, Layers* layers) {
-  TEMPOLUX_CHECK(eyes.size() <= kPathsTogether && (controls.empty() || controls.size() == eyes.size()));
-  thread_local std::array<MatteEnd, kPathsTogether> ends;   // not made anew for each pixel
-  std::size_t count = 0, whose[kPathsTogether];
-  for (std::size_t i = 0; i < eyes.size(); ++i) {
-    MatteEnd& end = ends[count];
-    end.control = {};
-    layers[i] = {};
-    const bool matte = follow(scene, eyes[i], random.of_sample(first + std::uint32_t(i)), diffuse_light, counts,
-                              controls.empty() ? nullptr : &end, layers[i]);
-    if (matte) whose[count++] = i;
-    else if (!controls.empty()) *controls[i] += end.control;
-  }
-  if (count == 0) return;
-  sample_controlled_lights(scene, std::span(ends).first(count), random, counts);
-  for (std::size_t k = 0; k < count; ++k) {
-    layers[whose[k]][ends[k].layer] += ends[k].light;
-    *controls[whose[k]] += ends[k].control;
-  }
+Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random, const KnownLight* known,
+                      RayCounts& counts, RayCone cone) {
+  Hit first;
+  scene.tracer.intersect(camera_ray, first);
+  return trace_eye_path(scene, camera_ray, first, random, known, counts, cone);
 }
 
 }  // namespace tempolux

@@ -3,8 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "lib/core/random.h"
 #include "lib/core/sobol.h"
@@ -84,38 +82,18 @@ class PixelRandom {
 
 /// Counters of one thread's work, for stats.
 struct RayCounts {
-  std::uint64_t camera = 0, bounce = 0, shadow = 0, lookups = 0;
+  std::uint64_t camera = 0, bounce = 0, shadow = 0;
+  std::uint64_t lookups = 0;       ///< of indirect light where the eye looks: answered by records or photons
+  std::uint64_t gathered = 0;      ///< and answered by none: a ray of the hemisphere was to find it
+  std::uint64_t points_read = 0;   ///< ends of such rays, and of those that went on, that a point stood for
   RayCounts& operator+=(const RayCounts& o) {
-    camera += o.camera; bounce += o.bounce; shadow += o.shadow; lookups += o.lookups;
+    camera += o.camera; bounce += o.bounce; shadow += o.shadow;
+    lookups += o.lookups; gathered += o.gathered; points_read += o.points_read;
     return *this;
   }
 };
 
-/// What replaces the path beyond its first Lambert scattering, if anything: irradiance [W/m^2] by kind.
-class DiffuseLight {
- public:
-  static constexpr float kSparseReach = 1 / 16.0f;
-  struct Irradiance {
-    Rgb caustic{0.0f}, indirect{0.0f};
-    float sparse_radius = 0;  ///< m: over which caustic light is averaged, where photons are few within kSparseReach of it; else 0
-  };
-  virtual ~DiffuseLight() = default;
-  /// Light arriving at the point; both normals are unit and on the side seen. `direct_view`: the camera ray itself met it,
-  /// no mirror, glass or gloss sent the path there. `caustic`: if not null, known already. Thread-safe.
-  virtual Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view, const Rgb* caustic) const = 0;
-};
-
-/// Samples of the large lights (Lights::has_large) at the ends of eye paths, shadows left out, less what they are in the mean,
-/// which is known: the noise of sampling but for its shadows. Sums over samples of a pixel.
-struct LightControl {
-  Rgb direct{0.0f}, specular{0.0f};   ///< by layer: sampled less exact [W/m^2/sr]; 0 in the mean
-  float sampled = 0, seen = 0;        ///< samples without and with shadows, mean of the channels
-  int seen_matte = 0;                 ///< paths that ended at the camera ray's own hit
-  LightControl& operator+=(const LightControl& o) {
-    direct += o.direct; specular += o.specular; sampled += o.sampled; seen += o.seen; seen_matte += o.seen_matte;
-    return *this;
-  }
-};
+class KnownLight;
 
 /// The scene as a renderer sees it; all must outlive it.
 struct RenderScene {
@@ -124,31 +102,23 @@ struct RenderScene {
   const SceneFrame& frame() const { return tracer.frame(); }
 };
 
-/// Radiance along a camera ray, by layer: unbiased path tracing with light sampling and scattering joined by
-/// the power heuristic [Veach 1997, 9.2], roulette after three bounces, nothing clamped, no depth limit.
+/// Radiance along a camera ray, by layer: path tracing with light sampling and scattering joined by the power heuristic
+/// [Veach 1997, 9.2], roulette after three bounces, nothing clamped, no depth limit. Unbiased without `known`.
 ///
-/// With `diffuse_light` the path ends at its first Lambert lobe x: direct light there by light sampling alone,
-/// caustic and indirect light = rho/pi times the irradiance given (biased as that irradiance is).
+/// With `known` paths end where their light is known (biased as that is), and nothing is counted twice:
+/// - at the first Lambert lobe x caustic light is that of photons, if there are any; then no light counts that the path meets
+///   by way of events S beyond x;
+/// - indirect light at x is that of records. The path still goes on to what its next ray meets, for that ray joins light sampling,
+///   and by events S, if caustic light is not known;
+/// - where no record is near, that ray goes on: it ends where a point tells the light of all kinds, or goes on as a path.
 ///
 /// An unlit material shows its base colour as radiance to the eye, directly and through events S alone (layers emission
 /// and specular); it lights nothing and scatters nothing, here and in photon-trace alike.
-/// `control`, with `diffuse_light` and where Lights::has_large(): at matte ends the large lights and the others get a sample
-/// each, and `control` is told what shadows have no part in.
 /// `cone` is the pixel's, for the level of textures (CameraView::cone); the default reads their finest level.
-Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random,
-                      const DiffuseLight* diffuse_light, RayCounts& counts, RayCone cone = {});
-
-/// A camera ray and what it meets first; surface kNone: nothing.
-struct EyeRay {
-  Ray ray;
-  Hit hit;
-  RayCone cone;
-  std::uint32_t first_light = 0, lights = 1;   ///< with a control: which samples' light a matte end takes the mean of
-};
-/// Several samples of a pixel, at most kPathsTogether: layers[i] of eyes[i], by the numbers of sample first + i. `controls`:
-/// empty, or one for each (several may be the same); then their matte ends sample the lights together.
-inline constexpr std::size_t kPathsTogether = 8;
-void trace_eye_paths(const RenderScene& scene, std::span<const EyeRay> eyes, const PixelRandom& random, std::uint32_t first,
-                     const DiffuseLight* diffuse_light, RayCounts& counts, std::span<LightControl* const> controls, Layers* layers);
+Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random, const KnownLight* known,
+                      RayCounts& counts, RayCone cone = {});
+/// The same of a ray whose first hit is known; surface kNone: nothing.
+Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
+                      const KnownLight* known, RayCounts& counts, RayCone cone);
 
 }  // namespace tempolux

@@ -5,7 +5,7 @@
 
 #include "lib/density/irradiance_estimate.h"
 #include "lib/gather/footprint_density.h"
-#include "lib/render/path_tracer.h"
+#include "lib/trace/trace.h"
 
 namespace tempolux {
 
@@ -21,21 +21,22 @@ struct PhotonLightOptions {
 /// blurred over the radius of the estimate, and indirect light is lost at edges and corners within it; the bias falls
 /// with the photons' number. Caustic light is divided by the area that can be reached (FootprintDensity):
 /// right on slender things too, where it is uniform over them. Without caustic photons nothing is built for them.
-class PhotonLight : public DiffuseLight {
+class PhotonLight {
  public:
   /// `photon_shift` is added to photon positions to bring them into scene space (the file's origin minus the
   /// frame's).
   PhotonLight(const Tracer& tracer, std::span<const formats::Photon> photons, Vec3d photon_shift,
               const PhotonLightOptions& options);
 
-  Irradiance at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view, const Rgb* caustic) const override;
-  /// sparse_radius: m, over which light is averaged where photons are few (FootprintDensity); else 0.
-  Rgb caustic(Vec3 position, Vec3 normal, float& sparse_radius) const;
+  /// Irradiance [W/m^2] by light of kind caustic, on the side of the normal (unit).
+  Rgb caustic(Vec3 position, Vec3 normal) const;
+  /// The same of kind indirect; only if has_indirect().
+  Rgb indirect(Vec3 position, Vec3 normal) const;
+  bool has_indirect() const { return has_indirect_; }
   std::size_t photon_count() const { return (caustic_ ? caustic_->photon_count() : 0) + indirect_.size(); }
 
  private:
-  Rgb indirect(Vec3 position, Vec3 normal) const;
-
+  bool has_indirect_ = false;
   std::unique_ptr<FootprintDensity> caustic_;   ///< null: no photon is of that kind
   PhotonIndex indirect_;
   IrradianceOptions options_;

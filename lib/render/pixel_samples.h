@@ -22,11 +22,6 @@ struct PixelSum {
     sharp += v;
     sharp_square += v * v;
   }
-  /// Each for so many.
-  void stand_for(int times) {
-    for (Rgbd& radiance : layers.value) radiance *= times;
-    layers.coverage *= times;
-  }
   /// Mean channel of all layers.
   double value() const {
     double sum = 0;
@@ -74,48 +69,38 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
                 [&](RayCounts& counts) { return [&](std::size_t pixel, int x, int y) { body(pixel, x, y, counts); }; });
 }
 
-/// Samples [first, first + count) of a pixel, one after the other: add(sample, surface met, radiance); control(sample): where that one's
-/// LightControl goes, or nullptr. Each takes the mean of the light of `lights` samples, which [first, first + count x lights) are.
-template <class Control, class Add>
-void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const DiffuseLight* light,
-                     std::size_t pixel, int x, int y, int first, int count, int lights, RayCounts& counts, const Control& control, const Add& add) {
-  const int start = first;
-  constexpr int kTogether = int(kPathsTogether), kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
-  for (const int end = first + count; first < end; first += kTogether) {
-    const int n = std::min(kTogether, end - first);
+/// Samples [first, first + count) of a pixel, one after the other: add(sample, radiance). halves: SampleHalves of the pixel, or nullptr.
+template <class Add>
+void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const KnownLight* known,
+                     std::size_t pixel, int x, int y, int first, int count, SampleHalves* halves, RayCounts& counts, const Add& add) {
+  constexpr int kTogether = 8, kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
+  for (int done = 0; done < count; done += kTogether) {
+    const int n = std::min(kTogether, count - done);
     Ray rays[kTogether];
     Hit hits[kTogether];
-    const PixelRandom random(seed, pixel, std::uint32_t(first));
+    const PixelRandom random(seed, pixel, 0);
+    const auto of = [&](int i) { return random.of_sample(std::uint32_t(first + done + i)); };
     for (int i = 0; i < n; ++i) {
-      const Vec2 jitter = random.of_sample(std::uint32_t(first + i)).get2(0, Purpose::pixel);
+      const Vec2 jitter = of(i).get2(0, Purpose::pixel);
       rays[i] = view.ray(float(x) + jitter.x, float(y) + jitter.y);
     }
     if (n < kFewest)
       for (int i = 0; i < n; ++i) scene.tracer.intersect(rays[i], hits[i]);
     else
       scene.tracer.intersect({rays, std::size_t(n)}, {hits, std::size_t(n)});
-    EyeRay eyes[kTogether];
-    LightControl* controls[kTogether];
-    Layers layers[kTogether];
     for (int i = 0; i < n; ++i) {
-      eyes[i] = {rays[i], hits[i], view.cone(), std::uint32_t(start + (first + i - start) * lights), std::uint32_t(lights)};
-      controls[i] = control(first + i);
+      const Layers layers = trace_eye_path(scene, rays[i], hits[i], of(i), known, counts, view.cone());
+      if (halves) halves->add(done + i, count, layers);
+      add(first + done + i, layers);
     }
-    trace_eye_paths(scene, {eyes, std::size_t(n)}, random, std::uint32_t(first), light, counts,
-                    {controls, std::size_t(controls[0] ? n : 0)}, layers);
-    for (int i = 0; i < n; ++i) add(first + i, hits[i].surface, layers[i]);
   }
 }
 
-inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const DiffuseLight* light,
-                             std::size_t pixel, int x, int y, int first, int count, int lights, RayCounts& counts,
-                             LightControl* control = nullptr, SampleHalves* halves = nullptr) {
+inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const KnownLight* known,
+                             std::size_t pixel, int x, int y, int first, int count, SampleHalves* halves, RayCounts& counts) {
   PixelSum sum;
-  for_each_sample(scene, view, seed, light, pixel, x, y, first, count, lights, counts, [&](int) { return control; },
-                  [&](int s, std::uint32_t, const Layers& sample) {
-                    sum.add(sample);
-                    if (halves) halves->add(s - first, count, sample, lights);
-                  });
+  for_each_sample(scene, view, seed, known, pixel, x, y, first, count, halves, counts,
+                  [&](int, const Layers& sample) { sum.add(sample); });
   return sum;
 }
 

@@ -26,14 +26,13 @@ void add_variance(const std::vector<SampleHalves>& halves, Rgb SampleHalves::Sum
 
 }  // namespace
 
-void SampleHalves::add(int rank, int count, const Layers& sample, int stands_for) {
+void SampleHalves::add(int rank, int count, const Layers& sample) {
   const bool second = count == 1 ? half[1].count < half[0].count : 2 * rank >= count;
   Sum& sum = half[second ? 1 : 0];
   const Rgb diffuse = sample[Layer::direct] + sample[Layer::caustic] + sample[Layer::indirect];
-  const auto weight = float(stands_for);
-  sum.image += (sample[Layer::emission] + sample[Layer::specular] + diffuse) * weight;
-  sum.diffuse += diffuse * weight;
-  sum.count += weight;
+  sum.image += sample[Layer::emission] + sample[Layer::specular] + diffuse;
+  sum.diffuse += diffuse;
+  sum.count += 1;
 }
 
 SampleHalves& SampleHalves::operator+=(const SampleHalves& more) {

@@ -20,9 +20,8 @@ struct SampleHalves {
   };
   Sum half[2];
 
-  /// Sample `rank` of a pass of `count`. One that stands for several samples of the lights counts as so many. A pass of one goes to
-  /// the half that has fewer.
-  void add(int rank, int count, const Layers& sample, int stands_for = 1);
+  /// Sample `rank` of a pass of `count`. A pass of one goes to the half that has fewer.
+  void add(int rank, int count, const Layers& sample);
   SampleHalves& operator+=(const SampleHalves& more);
   float samples() const { return half[0].count + half[1].count; }
   /// Variance of the mean over both halves [(W/m^2/sr)^2], unbiased for independent samples: with a, b the halves' means and
@@ -34,7 +33,7 @@ struct SampleHalves {
 bool wants_sample_halves(const std::vector<std::string>& channels);
 
 /// Adds what is asked for of "variance" (variance.R .G .B: of R G B), "diffuse.variance" (diffuse.variance.R .G .B: of the sum of
-/// direct, caustic and indirect) and "samples". Noise that is taken out of a pixel later (LightControl) still counts.
+/// direct, caustic and indirect) and "samples".
 /// `halves` holds one element for each pixel of `image`.
 void add_variance_channels(const std::vector<SampleHalves>& halves, const std::vector<std::string>& channels, Image& image);
 

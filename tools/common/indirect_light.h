@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "lib/render/cache_light.h"
+#include "lib/render/known_light.h"
 #include "tools/common/gather_input.h"
 
 namespace tempolux::tools {
@@ -12,35 +12,24 @@ namespace tempolux::tools {
 struct IndirectLightOptions {
   std::string photons, irradcache, points;   ///< files, or patterns; "": none
   PhotonLightOptions photon_light;
-  PointOptions points_made;                  ///< if records are missing and --points does not say what to read
-  GatherOptions gather{.rays = 64};          ///< of a missing record: a pixel takes the mean of several
 };
 
 /// Opens what the options name, checked against the frame's identity, and owns it while the frame is rendered.
 class IndirectLight {
  public:
-  IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights,
-                int number);
+  IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
 
   /// nullptr: none was named, trace paths.
-  const DiffuseLight* get() const { return cache_ ? static_cast<const DiffuseLight*>(cache_.get()) : photons_.get(); }
+  const KnownLight* get() const { return known_.records || known_.points || known_.photons ? &known_ : nullptr; }
   const std::string& history() const { return history_; }
-  std::uint64_t gathered_on_the_spot() const { return cache_ ? cache_->gathered_on_the_spot() : 0; }
 
  private:
-  const FinalGather* make_gather(int number);
-
-  Tool& tool_;
-  const IndirectLightOptions& options_;
-  const Tracer& tracer_;
-  const Lights& lights_;
   std::string history_;
   std::unique_ptr<PhotonLight> photons_;
   std::unique_ptr<RecordStore> records_;
   GatherPoints points_;
   std::unique_ptr<PointLookup> lookup_;
-  std::unique_ptr<FinalGather> gather_;
-  std::unique_ptr<CacheLight> cache_;
+  KnownLight known_;
 };
 
 }  // namespace tempolux::tools

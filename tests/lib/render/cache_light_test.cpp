@@ -1,5 +1,5 @@
 // Photons, points, gathered records and interpolation together, against answers known on paper and path tracing.
-#include "lib/render/cache_light.h"
+#include "lib/render/known_light.h"
 
 #include <gtest/gtest.h>
 

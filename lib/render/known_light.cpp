@@ -1,8 +1,7 @@
-#include "lib/render/cache_light.h"
+#include "lib/render/known_light.h"
 
 #include <array>
 
-#include "lib/core/parallel.h"
 #include "lib/render/shading.h"
 
 namespace tempolux {
@@ -12,22 +11,18 @@ constexpr std::uint32_t kMirrorsInARow = 16;
 
 }  // namespace
 
-DiffuseLight::Irradiance CacheLight::at(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view,
-                                        const Rgb* caustic) const {
-  Irradiance result;
-  if (caustic) result.caustic = *caustic;
-  else if (photons_) result.caustic = photons_->caustic(surface.position, geometric, result.sparse_radius);
-  RecordStore::Interpolated found = records_.interpolate(surface.position, shading);
-  if (!(found.weight > 0) && direct_view) found = records_.interpolate_relaxed(surface.position, shading);
-  if (found.weight > 0) {
-    result.indirect = found.irradiance;
-  } else {
-    missing_.fetch_add(1, std::memory_order_relaxed);
-    std::call_once(gather_made_, [&] { run_isolated([&] { gather_ = make_gather_(); }); });
-    GatherCounts counts;
-    if (gather_) result.indirect = gather_->gather(surface, shading, counts).irradiance;
-  }
-  return result;
+std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const {
+  if (!records) return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric)) : std::nullopt;
+  RecordStore::Interpolated found = records->interpolate(surface.position, shading);
+  if (!(found.weight > 0) && direct_view) found = records->interpolate_relaxed(surface.position, shading);
+  return found.weight > 0 ? std::optional(found.irradiance) : std::nullopt;
+}
+
+std::optional<Rgb> KnownLight::all(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {
+  if (!points) return std::nullopt;
+  const PointLookup::Light* light = points->find(hit.position, geometric);
+  if (!light || !points->is_even(*light) || distance < kNear * light->radius * (0.5f + u)) return std::nullopt;
+  return light->all;
 }
 
 namespace {

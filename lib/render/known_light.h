@@ -1,0 +1,41 @@
+// lib/render/known_light.h -- light that is known at surfaces, so that eye paths may end there.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "lib/gather/final_gather.h"
+#include "lib/gather/place_records.h"
+#include "lib/render/camera_view.h"
+#include "lib/render/photon_light.h"
+
+namespace tempolux {
+
+/// Irradiance [W/m^2] told by records, points and photons. Each part may be missing: the path then finds that light itself.
+/// All must outlive it. Thread-safe.
+class KnownLight {
+ public:
+  const RecordStore* records = nullptr;   ///< kind indirect where the eye looks
+  const PointLookup* points = nullptr;    ///< all kinds where a ray from a matte surface ends
+  const PhotonLight* photons = nullptr;   ///< kind caustic; indirect, too, if it has it and there are no records
+
+  /// Irradiance of kind indirect at the first Lambert lobe of an eye path; both normals are unit and on the side seen. None where no
+  /// record is near: a ray of the hemisphere is to find it. `direct_view`: the camera ray itself met the place; then records with
+  /// larger radii are tried before, as one of the pixel's own is a fraction of a pixel away.
+  std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const;
+  bool has_caustic() const { return photons != nullptr; }
+  /// Irradiance of kind caustic; only if has_caustic().
+  Rgb caustic(const SurfacePoint& surface, Vec3 geometric) const { return photons->caustic(surface.position, geometric); }
+  /// Irradiance of all kinds at a hit `distance` m along the way from the last Lambert lobe; none where no point stands for it,
+  /// or where it is so near that the blur of the points would be seen: nearer than about kNear radii of the estimate behind it.
+  /// u in [0, 1) moves that limit between half and one and a half of it, so that it shows no seam.
+  std::optional<Rgb> all(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
+  static constexpr float kNear = 2;       ///< GatherOptions::near_factor's default
+};
+
+/// What up to kLooksTogether raster positions see: the first surface with a Lambert lobe, through mirrors and glass by the
+/// likelier of reflection and transmission, or by one drawn from Look::random.
+void seen_through(const Tracer& tracer, const CameraView& view, std::span<const Look> looks,
+                  std::span<std::optional<SeenPoint>> seen);
+
+}  // namespace tempolux
