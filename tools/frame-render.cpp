@@ -16,6 +16,7 @@
 #include "lib/image/exr_io.h"
 #include "lib/render/coverage_channel.h"
 #include "lib/render/frame_renderer.h"
+#include "lib/render/learn_lights.h"
 #include "tools/common/base_frame.h"
 #include "tools/common/frame_output.h"
 #include "tools/common/indirect_light.h"
@@ -33,7 +34,7 @@ struct Options {
   FrameOptions frame;
   tools::IndirectLightOptions light;
   double pixel_error = -1;
-  bool half_float = false;
+  bool half_float = false, learn_lights = false;
   int width = 640, height = 360;
 
   bool traces_paths() const { return light.photons.empty() && light.irradcache.empty() && light.points.empty(); }
@@ -83,13 +84,20 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   }
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
-  const Lights lights(frame, input.emission(frame.frame));
+  Lights lights(frame, input.emission(frame.frame));
   const RenderScene scene{tracer, lights};
   const tools::IndirectLight light(tool, options.light, tracer, number);
 
+  std::unique_ptr<LightGrid> grid;
+  if (options.learn_lights) {
+    tool.stats().phase("learn lights", true);
+    grid = learn_lights(scene, view, {.seed = tool.common().seed_for_frame(number)});
+    if (grid) tool.stats().count("light_cells", double(grid->size()));
+    lights.use(grid.get());
+  }
   tool.stats().phase("render", true);
   frame_options.seed = tool.common().seed_for_frame(number);
-  frame_options.known = light.get();
+  if (options.integrator != "path") frame_options.known = &light.get();
   frame_options.sample_halves = wants_sample_halves(options.channels);
   frame_options.progress = [&](double fraction) { tool.progress(fraction); };
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
@@ -198,6 +206,8 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
   add_light_options(tool, options);
+  app.add_flag("--learn-lights", options.learn_lights,
+               "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that");
   app.add_flag("--halves", options.frame.halves,
                "also write NAME_a.exr and NAME_b.exr: independent halves of spp/2 samples each");
   app.add_option("--target-error", options.frame.target_error,

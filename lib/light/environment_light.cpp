@@ -22,6 +22,9 @@ double sample_linear(double a, double b, double u) {
   return std::clamp(x, 0.0, 1.0);
 }
 
+/// The u for which sample_linear gives x.
+double linear_number(double a, double b, double x) { return a + b > 0 ? x * (2 * a + (b - a) * x) / (a + b) : x; }
+
 }  // namespace
 
 Rgb EnvironmentLight::Corners::radiance(double x, double y) const {
@@ -31,12 +34,13 @@ Rgb EnvironmentLight::Corners::radiance(double x, double y) const {
 
 double EnvironmentLight::Corners::luminance(double x, double y) const {
   const auto l = [](const Rgb& pixel) { return tempolux::luminance(Rgbd(pixel)); };
-  return lerp(lerp(l(upper_left), l(upper_right), x), lerp(l(lower_left), l(lower_right), x), y);
+  return even + lerp(lerp(l(upper_left), l(upper_right), x), lerp(l(lower_left), l(lower_right), x), y);
 }
 
-EnvironmentLight::EnvironmentLight(const Environment& environment)
+EnvironmentLight::EnvironmentLight(const Environment& environment, double even)
     : environment_(environment), width_(std::uint32_t(environment.width)), height_(std::uint32_t(environment.height)) {
   integrate();
+  even_ = even * luminance(integral_) / (4 * kPiD);
   build_distribution();
 }
 
@@ -49,7 +53,7 @@ EnvironmentLight::Corners EnvironmentLight::corners(std::uint32_t row, std::uint
   const std::size_t lower = std::size_t(std::min(row, height_ - 1)) * width_;
   const std::size_t right = column + 1 == width_ ? 0 : column + 1;
   const std::vector<Rgb>& pixels = environment_.radiance;
-  return {pixels[upper + column], pixels[upper + right], pixels[lower + column], pixels[lower + right]};
+  return {pixels[upper + column], pixels[upper + right], pixels[lower + column], pixels[lower + right], even_};
 }
 
 /// The mean over a row is that of its pixels whatever the latitude; over latitude the hat functions are integrated
@@ -175,6 +179,28 @@ bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
 double EnvironmentLight::pdf_solid_angle(Vec3 direction) const {
   const Vec3d d(direction);
   return pdf(place_of(direction), std::sqrt(d.x * d.x + d.z * d.z));
+}
+
+Vec2 EnvironmentLight::numbers_of(Vec3 direction) const {
+  const Place place = place_of(direction);
+  const Corners at = corners(place.row, place.column);
+  const double a = polar(place.row), b = polar(place.row + 1);
+  double across;
+  if (polar_cap(place.row)) {
+    const Vec3d d(direction);
+    const double angle = std::atan2(std::sqrt(d.x * d.x + d.z * d.z), place.row == 0 ? d.y : -d.y);
+    const double share = std::sin(0.5 * angle) / std::sin(0.5 * (b - a));
+    across = place.row == 0 ? share * share : 1 - share * share;
+  } else {
+    across = linear_number(at.luminance(place.x, 0), at.luminance(place.x, 1), place.y);
+  }
+  const double along = linear_number(at.luminance(0, 0.5), at.luminance(1, 0.5), place.x);
+  const double row_first = place.row > 0 ? row_end_[place.row - 1] : 0;
+  const std::uint32_t* ends = &cell_end_[std::size_t(place.row) * width_];
+  const double first = place.column > 0 ? ends[place.column - 1] : 0;
+  const double u1 = lerp(row_first, row_end_[place.row], across);
+  const double u2 = lerp(first, ends[place.column], along) / std::max<double>(1, ends[width_ - 1]);
+  return {float(std::clamp(u1, 0.0, 1.0)), float(std::clamp(u2, 0.0, 1.0))};
 }
 
 }  // namespace tempolux

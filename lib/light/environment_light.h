@@ -16,8 +16,9 @@ namespace tempolux {
 /// the polar angle, which the cell's mean stands for.
 class EnvironmentLight {
  public:
-  /// The environment must outlive it. Memory: 4 bytes per pixel.
-  explicit EnvironmentLight(const Environment& environment);
+  /// The environment must outlive it. Memory: 4 bytes per pixel. `even`: directions are drawn as if so many times the mean
+  /// luminance were added everywhere: with 1, half of them fall evenly over the sphere.
+  explicit EnvironmentLight(const Environment& environment, double even = 0);
 
   /// Arriving from `direction` (unit), W/m^2/sr.
   Rgb radiance(Vec3 direction) const;
@@ -34,6 +35,8 @@ class EnvironmentLight {
   bool sample(double u1, double u2, Sample& sample) const;
   /// Density per solid angle of sample() at `direction`, to the rounding of its own arithmetic.
   double pdf_solid_angle(Vec3 direction) const;
+  /// The numbers (u1, u2) for which sample() gives this direction, but for rounding.
+  Vec2 numbers_of(Vec3 direction) const;
 
  private:
   /// A place in the map: cell (row, column) and where in it, in [0, 1].
@@ -43,6 +46,7 @@ class EnvironmentLight {
   };
   struct Corners {
     const Rgb &upper_left, &upper_right, &lower_left, &lower_right;
+    double even;   ///< added to the luminance
     Rgb radiance(double x, double y) const;
     double luminance(double x, double y) const;
   };
@@ -57,6 +61,7 @@ class EnvironmentLight {
 
   const Environment& environment_;
   std::uint32_t width_, height_;
+  double even_ = 0;                       ///< W/m^2/sr, of the luminance that directions are drawn by
   Rgbd integral_{0.0};
   std::vector<double> row_end_;           ///< cumulative probability of the height + 1 rows of cells
   std::vector<std::uint32_t> cell_end_;   ///< cumulative within each row; what emits has 1 at least

@@ -41,10 +41,17 @@ double Lights::Impl::distant_share(Vec3 point, Vec3 normal, double& total) const
 /// u in [0, 1) chooses among them: the environment first.
 bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
                                   LightSample& s) const {
-  double weight = 0, left = u * total;
+  const double left = u * total;
   if (left < environment_weight)
     return sample_environment(point, u_float, left / environment_weight, share * environment_weight / total, s);
-  left -= environment_weight;
+  return sample_sun(point, normal, (left - environment_weight) / (total - environment_weight), share * (1 - environment_weight / total), s);
+}
+
+/// u in [0, 1) chooses among the directional lights, which have this probability together.
+bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const {
+  double total = 0, weight = 0;
+  for (const std::uint32_t i : suns) total += sun_weight(frame->lights[i], normal);
+  double left = u * total;
   const PlacedLight* chosen = nullptr;
   for (const std::uint32_t i : suns) {
     const double w = sun_weight(frame->lights[i], normal);
@@ -57,8 +64,8 @@ bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double 
   if (!chosen) return false;
   s.wi = -chosen->direction;
   s.position = point + s.wi * distance_beyond();
-  s.radiance = Rgb(Rgbd(chosen->light.intensity) / (share * weight / total));
-  s.delta = true;
+  s.radiance = Rgb(Rgbd(chosen->light.intensity) / (probability * weight / total));
+  s.delta = s.distant = true;
   return true;
 }
 
@@ -74,6 +81,7 @@ bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double
   s.position = point + s.wi * distance_beyond();
   s.radiance = Rgb(Rgbd(found.radiance) / pdf);
   s.pdf_solid_angle = float(pdf);
+  s.distant = true;
   return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
 }
 
@@ -122,16 +130,45 @@ inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, double pro
 
 bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const {
   sample = {};
+  if (const LightGrid::Cell* cell = known(point, normal))
+    return sample_learned(*cell, point, normal, u_choice, u, joint, sample) && is_finite(sample.radiance);
   const LightTree::Start start = tree.start(point, normal);
   const double distant = distant_irradiance(normal), share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
   if (u_choice < share) {
     // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
     return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) && is_finite(sample.radiance);
   }
+  return sample_tree(start, 1 - share, point, normal, to_float(stretch(u_choice, share, 1 - share)), u, joint, sample);
+}
+
+/// A light that is somewhere; probability: of choosing one of them.
+bool Lights::Impl::sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u,
+                               bool joint, LightSample& sample) const {
   if (tree.empty()) return false;
   LightTree::Choice choice;
-  if (!tree.choose(start, point, normal, to_float(stretch(u_choice, share, 1 - share)), choice)) return false;
-  return sample_slot(tree_slot[choice.light], point, choice.probability * (1 - share), choice.left, u, joint, sample);
+  if (!tree.choose(start, point, normal, u_choice, choice)) return false;
+  return sample_slot(tree_slot[choice.light], point, choice.probability * probability, choice.left, u, joint, sample);
+}
+
+bool Lights::Impl::sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint,
+                                  LightSample& s) const {
+  if (u_choice < cell.sky) {
+    EnvironmentLight::Sample found;
+    double density;
+    if (!grid->sample_sky(cell, u_choice / cell.sky, joint ? u.y : u.x, found, density)) return false;
+    const double pdf = density * double(cell.sky);
+    s.wi = found.direction;
+    s.position = point + s.wi * distance_beyond();
+    s.radiance = Rgb(Rgbd(found.radiance) / pdf);
+    s.pdf_solid_angle = float(pdf);
+    s.distant = true;
+    return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
+  }
+  u_choice -= cell.sky;
+  if (u_choice < cell.suns) return sample_sun(point, normal, u_choice / cell.suns, double(cell.suns), s);
+  const float lamps = 1 - cell.sky - cell.suns;
+  if (!(lamps > 0)) return false;
+  return sample_tree(tree.start(point, normal), double(lamps), point, normal, to_float(double((u_choice - cell.suns) / lamps)), u, joint, s);
 }
 
 bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
@@ -151,13 +188,18 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   const double on_triangle = pdf_triangle(m.triangles[slot], point, on_light);
   if (!(on_triangle > 0)) return 0;
   double total = 0;
-  const double share = m.distant_share(point, normal, total);
+  const LightGrid::Cell* cell = m.known(point, normal);
+  const double share = cell ? double(cell->sky + cell->suns) : m.distant_share(point, normal, total);
   const float pdf = float(on_triangle * (1 - share) * m.tree.probability(point, normal, light));
   return pdf < INFINITY ? pdf : 0;
 }
 
 float Lights::pdf_environment(Vec3 point, Vec3 normal, Vec3 direction) const {
   if (!(impl_->environment_weight > 0)) return 0;
+  if (const LightGrid::Cell* cell = impl_->known(point, normal)) {
+    const float learned = float(double(cell->sky) * impl_->grid->sky_density(*cell, direction));
+    return learned < INFINITY ? learned : 0;
+  }
   double total = 0;
   const double share = impl_->distant_share(point, normal, total);
   const float pdf =

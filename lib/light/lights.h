@@ -11,6 +11,7 @@
 
 #include "lib/core/vec.h"
 #include "lib/light/environment_light.h"
+#include "lib/light/light_grid.h"
 #include "lib/light/light_tree.h"
 #include "lib/light/triangle_light.h"
 #include "lib/scene/at_frame.h"
@@ -66,6 +67,7 @@ struct LightSample {
   Rgb radiance{0.0f};         ///< L / pdf of an area light or the environment, I / d^2 or E of a delta light: multiply by f cos
   float pdf_solid_angle = 0;  ///< [1/sr], choice included; 0 if delta
   bool delta = false;
+  bool distant = false;       ///< of the environment or a directional light
 };
 
 struct PhotonEmission {
@@ -82,6 +84,20 @@ class Lights {
   Lights(const SceneFrame& frame, const EmissionTable& table);
   ~Lights();
   Lights(Lights&&) noexcept;
+
+  /// From now on samples are drawn by what the grid has learned of what reaches a place, where it knows the place; nullptr: no
+  /// more. The grid must outlive this. Probabilities alone change: no bias.
+  void use(const LightGrid* grid);
+  /// Directional lights that shine, and the environment: is there light from far away?
+  bool has_distant() const;
+  /// Is there light from somewhere: a lamp that shines?
+  bool has_placed() const;
+  /// Irradiance of each directional light that shines, at right angles, and the direction it comes from.
+  struct Sun {
+    Vec3 wi;
+    Rgb irradiance;
+  };
+  std::vector<Sun> suns() const;
 
   bool empty() const;
   std::size_t count() const;

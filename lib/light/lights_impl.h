@@ -32,6 +32,7 @@ struct Lights::Impl {
   std::shared_ptr<const EnvironmentLight> environment;
   double environment_weight = 0;  // irradiance by the environment, the mean over all normals; 0: none or black
   bool any_distant = false;       // an environment that is not black, or a sun
+  const LightGrid* grid = nullptr;  // what is known of what reaches a place
   LightTree tree{{}};
   Impl(const SceneFrame& frame_, const EmissionTable& table);
   void add_slots(const EmissionTable& table);
@@ -40,6 +41,11 @@ struct Lights::Impl {
 
   Rgbd slot_flux(std::size_t slot) const;   ///< W
   std::vector<LightBounds> tree_bounds() const;
+  bool sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const;
+  bool sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint,
+                   LightSample& sample) const;
+  bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
+  const LightGrid::Cell* known(Vec3 point, Vec3 normal) const { return grid ? grid->find(point, normal) : nullptr; }
   double sum_distant(Vec3 normal) const;
   double distant_irradiance(Vec3 normal) const { return any_distant ? sum_distant(normal) : 0; }
   double distant_share(Vec3 point, Vec3 normal, double& total) const;

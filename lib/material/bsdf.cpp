@@ -155,6 +155,8 @@ Rgb Bsdf::eval_specular(Vec3 wi, Vec3 wo) const {
   return rough_ ? eval_opaque(wi, wo) + eval_rough(wi, wo) : eval_opaque(wi, wo);
 }
 
+float Bsdf::diffuse_probability(Vec3 wo) const { return wo.z > 0 ? diffuse_probability(reflection(wo.z)) : 1; }
+
 float Bsdf::pdf_diffuse(Vec3 wi, Vec3 wo) const {
   if (!diffuse_ || !(wi.z > 0) || !(wo.z > 0)) return 0;
   return (specular_ ? diffuse_probability(reflection(wo.z)) : 1) * pdf_hemisphere_cos(wi.z) *

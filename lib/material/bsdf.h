@@ -98,6 +98,10 @@ class Bsdf {
   /// Density of sample() choosing wi by event D, by event S [1/sr], choice probability included.
   float pdf_diffuse(Vec3 wi, Vec3 wo) const;
   float pdf_specular(Vec3 wi, Vec3 wo) const;
+  /// Can events D and S be drawn apart: a Lambert lobe under a reflection, no glass?
+  bool forks() const { return diffuse_ && specular_ && !(transmission_ > 0); }
+  /// P(D), if it forks: sample() draws event D for u_lobe below it, else event S. wo above the surface.
+  float diffuse_probability(Vec3 wo) const;
 
  private:
   struct Reflection {  ///< of uniform light towards a direction: by one and by several microfacet reflections

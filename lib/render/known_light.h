@@ -18,6 +18,9 @@ class KnownLight {
   const RecordStore* records = nullptr;   ///< kind indirect where the eye looks
   const PointLookup* points = nullptr;    ///< all kinds where a ray from a matte surface ends
   const PhotonLight* photons = nullptr;   ///< kind caustic; indirect, too, if it has it and there are no records
+  /// Do eye paths fork at the first Lambert lobe under a gloss, to follow both? A gloss reflects 4 % as a rule: one ray in 25 that
+  /// meets something bright makes a dot.
+  bool forks = true;
 
   /// Irradiance of kind indirect at the first Lambert lobe of an eye path; both normals are unit and on the side seen. None where no
   /// record is near: a ray of the hemisphere is to find it. `direct_view`: the camera ray itself met the place; then records with

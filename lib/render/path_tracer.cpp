@@ -19,9 +19,11 @@ struct LastScatter {
   float light_share = 1;                       ///< of light samples that were aimed at that side
 };
 
-/// Which of a surface's lobes light is sampled for.
+/// Which of a surface's lobes light is sampled for, and the factors by which their densities are higher than the Bsdf's where
+/// both are followed.
 struct SampledLobes {
   bool diffuse, specular;
+  float times_diffuse = 1, times_specular = 1;
 };
 
 /// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)]
@@ -47,8 +49,8 @@ void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, SampledL
   Rgb glossy = specular ? x.bsdf.eval_specular(wi, x.wo_local) : Rgb(0.0f);
   if (!light.delta) {
     const float pdf = light.pdf_solid_angle * share;
-    if (lobes.diffuse) diffuse *= mis_power(pdf, x.bsdf.pdf_diffuse(wi, x.wo_local));
-    if (specular) glossy *= mis_power(pdf, x.bsdf.pdf_specular(wi, x.wo_local));
+    if (lobes.diffuse) diffuse *= mis_power(pdf, lobes.times_diffuse * x.bsdf.pdf_diffuse(wi, x.wo_local));
+    if (specular) glossy *= mis_power(pdf, lobes.times_specular * x.bsdf.pdf_specular(wi, x.wo_local));
   }
   if (is_black(diffuse) && is_black(glossy)) return;
   ++counts.shadow;
@@ -129,74 +131,127 @@ KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, const 
   return here;
 }
 
-void follow(const RenderScene& scene, Ray ray, Hit hit, const PixelRandom& random, const KnownLight* known, RayCounts& counts,
-            RayCone cone, Layers& result) {
+/// A path on its way.
+struct Walk {
+  Ray ray;
+  Hit hit;
+  RayCone cone;
   Rgb throughput{1.0f};
   EyePath path;
   Inside inside;
   LastScatter last;
   Beyond beyond;
-  const SceneFrame& frame = scene.frame();
-  ++counts.camera;
+  std::uint32_t bounce = 0;
+  bool forked = false;
+};
 
-  for (std::uint32_t bounce = 0;; ++bounce) {
+class EyeTracer {
+ public:
+  EyeTracer(const RenderScene& scene, const PixelRandom& random, const KnownLight* known, RayCounts& counts, Layers& result)
+      : scene_(scene), random_(random), known_(known), counts_(counts), result_(result) {}
+  void follow(Walk walk) const;
+
+ private:
+  bool scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, Walk& walk) const;
+
+  const RenderScene& scene_;
+  const PixelRandom& random_;
+  const KnownLight* known_;
+  RayCounts& counts_;
+  Layers& result_;
+};
+
+/// The next ray, by event D or S as u_lobe says; times: by how much likelier than the Bsdf has it. False if the path ends.
+bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times,
+                        Walk& walk) const {
+  const Bsdf::Sample next = x.bsdf.sample(x.wo_local, u_lobe, random_.get2(walk.bounce, Purpose::scatter));
+  if (is_black(next.weight) || (here.direct && next.diffuse)) return false;
+  const Vec3 wi = x.frame.to_world(next.wi);
+  if (next.transmitted ? !x.sees_beyond(wi) : !x.sees(wi)) return false;
+  walk.throughput *= next.weight * (1 / times);
+  walk.path.scatter(next.diffuse);
+  if (next.diffuse) walk.beyond = {true, here.caustic, here.indirect, false, 0};
+  else walk.beyond.specular = true;
+  const bool front = dot(x.surface.normal_geometric, walk.ray.direction) < 0;
+  if (!next.diffuse && is_solid_glass(material)) walk.inside.scatter(x.surface.material, front, next.transmitted);
+
+  if (walk.bounce + 1 >= kRouletteFrom) {
+    const float survival = std::min(kLargestSurvival, max_component(walk.throughput));
+    if (!(random_.get1(walk.bounce, Purpose::roulette) < survival)) return false;
+    walk.throughput *= 1 / survival;
+  }
+  LastScatter& last = walk.last;
+  last.weighed = !next.delta;
+  if (next.diffuse) walk.cone = {};
+  last.position = x.surface.position;
+  last.normal = next.transmitted ? -x.normal : x.normal;
+  last.light_share = next.transmitted ? x.bsdf.light_share_beyond() : 1 - x.bsdf.light_share_beyond();
+  last.pdf_solid_angle =
+      times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.wo_local) : x.bsdf.pdf_specular(next.wi, x.wo_local));
+  walk.ray = spawn_ray(x.surface, wi);
+  ++counts_.bounce;
+  walk.hit = {};
+  scene_.tracer.intersect(walk.ray, walk.hit);
+  ++walk.bounce;
+  return true;
+}
+
+void EyeTracer::follow(Walk walk) const {
+  const SceneFrame& frame = scene_.frame();
+  for (;;) {
+    const Ray& ray = walk.ray;
+    const Hit& hit = walk.hit;
+    const EyePath& path = walk.path;
+    const LastScatter& last = walk.last;
+    const std::uint32_t bounce = walk.bounce;
+    const bool forked = walk.forked;
     if (hit.surface == kNone) {
-      if (scene.lights.has_environment() && beyond.light_counts())
-        add_environment(scene, ray.direction, last, throughput, path.layer(), result);
-      break;
+      if (scene_.lights.has_environment() && walk.beyond.light_counts())
+        add_environment(scene_, ray.direction, last, walk.throughput, path.layer(), result_);
+      return;
     }
-    result.coverage = 1;
-    SurfacePoint point = scene.tracer.surface_point(hit);
+    result_.coverage = 1;
+    SurfacePoint point = scene_.tracer.surface_point(hit);
     const Vec3 wo = -ray.direction;
     const bool front = dot(point.normal_geometric, wo) > 0;
-    if (inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
-      throughput *= inside.transmittance_to(frame.materials, point.material, front, hit.t);
-    cone.advance(hit.t);
-    beyond.distance += hit.t;
-    if (beyond.light_counts()) add_emission(scene, point, wo, last, throughput, path.layer(), cone.width, result);
+    if (walk.inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
+      walk.throughput *= walk.inside.transmittance_to(frame.materials, point.material, front, hit.t);
+    walk.cone.advance(hit.t);
+    walk.beyond.distance += hit.t;
+    if (walk.beyond.light_counts()) add_emission(scene_, point, wo, last, walk.throughput, path.layer(), walk.cone.width, result_);
     // Only light by events S is missing then, if any.
-    const bool only_specular = beyond.indirect_known;
-    if (only_specular && beyond.caustic_known) break;
+    const bool only_specular = walk.beyond.indirect_known;
+    if (only_specular && walk.beyond.caustic_known) return;
 
-    const SurfaceMaterial material(frame, point, cone.width);
+    const SurfaceMaterial material(frame, point, walk.cone.width);
     if (material.values().unlit) [[unlikely]] {
-      if (path.sharp()) result[path.layer()] += throughput * material.values().base_color;
-      break;
+      if (path.sharp()) result_[path.layer()] += walk.throughput * material.values().base_color;
+      return;
     }
     const ShadingPoint x(point, wo, material);
     KnownHere here{only_specular, only_specular, only_specular};
-    if (known && !only_specular && x.bsdf.has_diffuse())
-      here = add_known_light(*known, x, beyond, throughput, path, random.get1(bounce, Purpose::gather), result, counts);
-    const SampledLobes lobes{!here.direct, !(beyond.matte && beyond.caustic_known)};
-    add_sampled_light(scene, x, lobes, throughput, path, inside, random, bounce, result, counts);
-    if (here.direct && !x.bsdf.has_specular()) break;
-
-    // Next direction: event D or S.
-    const Bsdf::Sample next = x.bsdf.sample(x.wo_local, random.get1(bounce, Purpose::lobe), random.get2(bounce, Purpose::scatter));
-    if (is_black(next.weight) || (here.direct && next.diffuse)) break;
-    const Vec3 wi = x.frame.to_world(next.wi);
-    if (next.transmitted ? !x.sees_beyond(wi) : !x.sees(wi)) break;
-    throughput *= next.weight;
-    path.scatter(next.diffuse);
-    if (next.diffuse) beyond = {true, here.caustic, here.indirect, false, 0};
-    else beyond.specular = true;
-    if (!next.diffuse && is_solid_glass(material)) inside.scatter(point.material, front, next.transmitted);
-
-    if (bounce + 1 >= kRouletteFrom) {
-      const float survival = std::min(kLargestSurvival, max_component(throughput));
-      if (!(random.get1(bounce, Purpose::roulette) < survival)) break;
-      throughput *= 1 / survival;
+    if (known_ && !only_specular && x.bsdf.has_diffuse())
+      here = add_known_light(*known_, x, walk.beyond, walk.throughput, path, random_.get1(bounce, Purpose::gather), result_, counts_);
+    SampledLobes lobes{!here.direct, !(walk.beyond.matte && walk.beyond.caustic_known)};
+    float diffuse = 0;
+    const bool forks = known_ && known_->forks && !forked && path.sharp() && x.bsdf.forks();
+    if (forks) {
+      diffuse = std::clamp(x.bsdf.diffuse_probability(x.wo_local), 0x1p-20f, 1 - 0x1p-20f);
+      lobes.times_diffuse = 1 / diffuse;
+      lobes.times_specular = 1 / (1 - diffuse);
     }
-    last.weighed = !next.delta;
-    if (next.diffuse) cone = {};
-    last.position = point.position;
-    last.normal = next.transmitted ? -x.normal : x.normal;
-    last.light_share = next.transmitted ? x.bsdf.light_share_beyond() : 1 - x.bsdf.light_share_beyond();
-    last.pdf_solid_angle = next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.wo_local) : x.bsdf.pdf_specular(next.wi, x.wo_local);
-    ray = spawn_ray(point, wi);
-    ++counts.bounce;
-    hit = {};
-    scene.tracer.intersect(ray, hit);
+    add_sampled_light(scene_, x, lobes, walk.throughput, path, walk.inside, random_, bounce, result_, counts_);
+    if (here.direct && !x.bsdf.has_specular()) return;
+
+    float u_lobe = random_.get1(bounce, Purpose::lobe), times = 1;
+    if (forks) {
+      Walk beside = walk;
+      beside.forked = walk.forked = true;
+      if (scatter(x, material, here, std::min(kOneMinusEpsilon, diffuse + (1 - diffuse) * u_lobe), lobes.times_specular, beside)) follow(beside);
+      u_lobe *= diffuse;
+      times = lobes.times_diffuse;
+    }
+    if (!scatter(x, material, here, u_lobe, times, walk)) return;
   }
 }
 
@@ -205,7 +260,12 @@ void follow(const RenderScene& scene, Ray ray, Hit hit, const PixelRandom& rando
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
                       const KnownLight* known, RayCounts& counts, RayCone cone) {
   Layers layers;
-  follow(scene, camera_ray, first, random, known, counts, cone, layers);
+  ++counts.camera;
+  Walk walk;
+  walk.ray = camera_ray;
+  walk.hit = first;
+  walk.cone = cone;
+  EyeTracer(scene, random, known, counts, layers).follow(walk);
   return layers;
 }
 

@@ -19,8 +19,8 @@ class IndirectLight {
  public:
   IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
 
-  /// nullptr: none was named, trace paths.
-  const KnownLight* get() const { return known_.records || known_.points || known_.photons ? &known_ : nullptr; }
+  /// Empty if none was named: paths alone.
+  const KnownLight& get() const { return known_; }
   const std::string& history() const { return history_; }
 
  private:

@@ -1,0 +1,295 @@
+#include "lib/render/learn_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "lib/core/parallel.h"
+#include "lib/core/sampling.h"
+#include "lib/core/sobol.h"
+#include "lib/core/frame.h"
+#include "lib/gather/place_records.h"
+#include "lib/material/seen_side.h"
+#include "lib/render/known_light.h"
+
+namespace tempolux {
+namespace {
+
+constexpr std::size_t kMostCells = 4096;   ///< 9 MB
+constexpr std::size_t kMostPlaces = 16;    ///< of a cell
+constexpr float kAcrossSeen = 20;          ///< cells along what is seen: 15 are as good, 60 too many to learn (prototype.md 9)
+constexpr double kOpen = 0.5;              ///< share of rays from what is seen that leave the scene: above it nothing hides the sky
+constexpr double kLearned = 0.8;           ///< of the samples; the rest as if nothing were known
+constexpr double kFromFirst = 0.6;         ///< of the second pass' rays: by what the first one learned
+constexpr int kBlur = 2;                   ///< parts of the sky about one that have a say in it
+constexpr double kPrior = 0.5;             ///< rays' worth of what the whole sky sends there
+constexpr double kBeside = 0.5;            ///< weight of each of the six cells beside one, and of parts of the sky beside one
+
+/// A place where light is to be sampled.
+struct Place {
+  SurfacePoint surface;
+  Vec3 normal, geometric;   ///< on the side seen
+  std::uint64_t cell = 0;
+  bool open = false;        ///< its ray left the scene
+};
+
+/// Light of one kind or from one part of the sky, sums over rays [W/m^2, mean channel].
+struct Light {
+  double arrived = 0;   ///< what reached the place, times the cosine
+  double sent = 0;      ///< what would, were nothing in the way and every place turned to it
+
+  void add(const Light& more, double times) {
+    arrived += times * more.arrived;
+    sent += times * more.sent;
+  }
+  /// Of places in a cell some get the light and others do not. Samples err least over all of them if its share of the samples is in
+  /// proportion to the root of its mean square: sqrt(arrived / sent) of it, where it arrives or not. [1]
+  double reach() const { return sent > 0 ? std::sqrt(arrived / sent) : 0; }
+};
+
+/// What rays have found of a cell's light.
+struct Found {
+  std::array<Light, LightGrid::kParts> sky{};
+  Light suns, lamps;
+  double rays = 0;
+};
+
+Vec3 lit_side(const SurfacePoint& point, Vec3 normal) {
+  return dot(point.normal_geometric, normal) < 0 ? -point.normal_geometric : point.normal_geometric;
+}
+
+/// What the view sees, and what a ray from there meets.
+std::vector<Place> places_seen(const RenderScene& scene, const CameraView& view, const LearnOptions& options) {
+  std::vector<Place> places(2 * std::size_t(options.looks));
+  parallel_chunks(std::size_t(options.looks), 64, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const PathRandom random(options.seed ^ 0x6c6561726e000001ull, i);
+      const Vec2 u = sobol_owen_2d(std::uint32_t(i), options.seed ^ 0x6c6f6f6bull);
+      const Look look{u.x * float(view.width()), u.y * float(view.height()), random};
+      std::optional<SeenPoint> seen;
+      seen_through(scene.tracer, view, {&look, 1}, {&seen, 1});
+      if (!seen) continue;
+      places[i] = {seen->surface, seen->normal, lit_side(seen->surface, seen->normal), 0, false};
+      const Vec3 travel = Frame(seen->normal).to_world(sample_hemisphere_cos(random.get2(40, Purpose::scatter)));
+      Hit hit;
+      if (!(dot(travel, places[i].geometric) > 0)) continue;
+      places[i].open = !scene.tracer.intersect(spawn_ray(seen->surface, travel), hit);
+      if (places[i].open) continue;
+      const SurfacePoint met = scene.tracer.surface_point(hit);
+      const SeenSide side(met, -travel);
+      places[std::size_t(options.looks) + i] = {met, side.normal, side.normal_geometric, 0, false};
+    }
+  });
+  return places;
+}
+
+/// Longest extent of what the first `count` places hold, but for 2 % at either end.
+float extent_of(const std::vector<Place>& places, std::size_t count) {
+  float extent = 0;
+  for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    std::vector<float> along;
+    for (std::size_t i = 0; i < count; ++i)
+      if (places[i].normal != Vec3{}) along.push_back(places[i].surface.position.*axis);
+    if (along.empty()) return 0;
+    std::sort(along.begin(), along.end());
+    extent = std::max(extent, along[(along.size() - 1) * 49 / 50] - along[along.size() / 50]);
+  }
+  return extent;
+}
+
+/// The places by cell, at most kMostPlaces each, of the cells most looked at; by key.
+std::vector<std::vector<Place>> by_cell(std::vector<Place> places) {
+  std::erase_if(places, [](const Place& place) { return place.cell == 0; });
+  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cell < b.cell; });
+  std::vector<std::pair<std::size_t, std::size_t>> runs;   // first place, how many
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (i == 0 || places[i].cell != places[i - 1].cell) runs.push_back({i, 0});
+    ++runs.back().second;
+  }
+  std::stable_sort(runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  runs.resize(std::min(runs.size(), kMostCells));
+  std::sort(runs.begin(), runs.end());
+  std::vector<std::vector<Place>> cells;
+  for (const auto& [first, count] : runs)
+    cells.emplace_back(places.begin() + std::ptrdiff_t(first), places.begin() + std::ptrdiff_t(first + std::min(count, kMostPlaces)));
+  return cells;
+}
+
+class Learner {
+ public:
+  Learner(const RenderScene& scene, const LearnOptions& options, const LightGrid& grid)
+      : scene_(scene), options_(options), grid_(grid), suns_(scene.lights.suns()) {}
+
+  /// One pass over a cell; `before`: what is known already, or nullptr.
+  void look(const std::vector<Place>& places, const LightGrid::Cell* before, int pass, Found& found) const {
+    const int rays = options_.rays;
+    for (int i = 0; i < rays; ++i) {
+      const Place& place = places[std::size_t(i) % places.size()];
+      const PathRandom random(options_.seed + std::uint64_t(pass) * 0x9e3779b97f4a7c15ull, place.cell * 1024 + std::uint64_t(i));
+      if (grid_.sky()) add_sky(place, before, random, found);
+      add_other(place, random, found);
+    }
+    found.rays = rays;
+  }
+
+ private:
+  bool sees(const Place& place, Vec3 wi) const { return dot(wi, place.geometric) > 0 && dot(wi, place.normal) > 0; }
+
+  /// One ray to the sky: by what is known, by its light and area, or by the cosine; weighed by the density of all three.
+  void add_sky(const Place& place, const LightGrid::Cell* before, const PathRandom& random, Found& found) const {
+    const double known = before ? kFromFirst : 0, even = 0.5 * (1 - known);
+    const double choice = double(random.get1(0, Purpose::light_choice));
+    const Vec2 u = random.get2(0, Purpose::light_point);
+    EnvironmentLight::Sample sample;
+    Vec3 wi;
+    if (choice < known + even) {
+      double density;
+      if (choice < known ? !grid_.sample_sky(*before, u.x, u.y, sample, density) : !grid_.sky()->sample(double(u.x), double(u.y), sample)) return;
+      wi = sample.direction;
+    } else {
+      wi = Frame(place.normal).to_world(sample_hemisphere_cos(u));
+    }
+    const double cosine = double(dot(wi, place.normal));
+    const double density = (known > 0 ? known * grid_.sky_density(*before, wi) : 0) + even * grid_.sky()->pdf_solid_angle(wi) +
+                           (1 - known - even) * std::max(0.0, cosine) / double(kPi);
+    if (!(density > 0)) return;
+    note(place, wi, double(channel_mean(scene_.lights.environment(wi))) / density,
+         [&] { return scene_.tracer.occluded(spawn_ray(place.surface, wi)); }, found.sky[grid_.part_of(wi)]);
+  }
+
+  /// One of the other lights each way: a sample of those that are somewhere, and every sun.
+  void add_other(const Place& place, const PathRandom& random, Found& found) const {
+    for (const Lights::Sun& sun : suns_)
+      note(place, sun.wi, double(channel_mean(sun.irradiance)),
+           [&] { return scene_.tracer.occluded(spawn_ray(place.surface, sun.wi)); }, found.suns);
+    LightSample light;
+    if (!scene_.lights.sample(place.surface.position, place.normal, random.get1(1, Purpose::light_choice), random.get2(1, Purpose::light_point), light) ||
+        light.distant)
+      return;
+    note(place, light.wi, double(channel_mean(light.radiance)),
+         [&] { return scene_.tracer.occluded(spawn_shadow_ray(place.surface, light.position, light.position_offset)); }, found.lamps);
+  }
+
+  template <class Occluded>
+  void note(const Place& place, Vec3 wi, double sent, const Occluded& occluded, Light& light) const {
+    light.sent += sent;
+    if (sent > 0 && sees(place, wi) && !occluded()) light.arrived += sent * double(dot(wi, place.normal));
+  }
+
+  const RenderScene& scene_;
+  const LearnOptions& options_;
+  const LightGrid& grid_;
+  std::vector<Lights::Sun> suns_;
+};
+
+/// What a part and those at most kBlur away in the numbers of directions got: few rays must not decide on single parts. And a
+/// little of what all got, where no ray went.
+Light blurred(const std::array<Light, LightGrid::kParts>& sky, const Light& all, std::uint32_t part) {
+  constexpr int w = LightGrid::kAcross, h = LightGrid::kDown;
+  Light sum;
+  sum.add(all, kPrior / LightGrid::kParts);
+  const int row = int(part) / w, column = int(part) % w;
+  for (int r = std::max(0, row - kBlur); r <= std::min(h - 1, row + kBlur); ++r)
+    for (int c = column - kBlur; c <= column + kBlur; ++c)
+      sum.add(sky[std::size_t(r * w + (c + w) % w)], r == row && c == column ? 1 : kBeside / (1 + std::abs(r - row) + std::abs(c - column)));
+  return sum;
+}
+
+/// Light that each part of the sky sends [W/m^2, mean channel].
+std::vector<double> light_of_parts(const LightGrid& grid) {
+  constexpr std::uint32_t kSide = 4;   // squared: directions of a part
+  std::vector<double> light(LightGrid::kParts);
+  if (grid.sky())
+    for (std::uint32_t k = 0; k < LightGrid::kParts; ++k)
+      for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+        EnvironmentLight::Sample sample;
+        const double u1 = (k / LightGrid::kAcross + (i / kSide + 0.5) / kSide) / LightGrid::kDown,
+                     u2 = (k % LightGrid::kAcross + (i % kSide + 0.5) / kSide) / LightGrid::kAcross;
+        if (grid.sky()->sample(u1, u2, sample))
+          light[k] += double(channel_mean(sample.radiance)) / sample.pdf_solid_angle / (kSide * kSide * LightGrid::kParts);
+      }
+  return light;
+}
+
+/// Shares of samples: most by what reaches the cell, the rest even over the kinds of light there are and over the sky.
+LightGrid::Cell cell_of(const Found& found, const std::vector<double>& parts, const Lights& lights, bool suns, bool lamps) {
+  const bool sky = lights.has_environment();
+  std::array<double, LightGrid::kParts> weights;
+  double skylight = 0;
+  Light all_sky;
+  for (const Light& part : found.sky) all_sky.add(part, 1);
+  for (std::uint32_t k = 0; k < LightGrid::kParts; ++k) skylight += weights[k] = parts[k] * blurred(found.sky, all_sky, k).reach();
+  const double sunlight = found.suns.sent / found.rays * found.suns.reach(), lamplight = found.lamps.sent / found.rays * found.lamps.reach();
+  const double kinds = double(sky) + double(suns) + double(lamps), all = skylight + sunlight + lamplight;
+  const auto share = [&](bool exists, double of) {
+    return exists ? float((all > 0 ? kLearned * of / all : kLearned / kinds) + (1 - kLearned) / kinds) : 0;
+  };
+  LightGrid::Cell cell;
+  cell.sky = share(sky, skylight);
+  cell.suns = share(suns, sunlight);
+  if (!lamps) cell.suns = suns ? 1 - cell.sky : 0;   // rounding leaves nothing over
+  double sum = 0;
+  for (std::uint32_t k = 0; k < LightGrid::kParts; ++k) {
+    sum += (skylight > 0 ? kLearned * weights[k] / skylight : kLearned / LightGrid::kParts) + (1 - kLearned) / LightGrid::kParts;
+    cell.end[k] = float(sum);
+  }
+  cell.end.back() = 1;
+  return cell;
+}
+
+/// What was found in a cell and, by half, in those beside it that face alike.
+std::vector<Found> joined(const std::vector<std::uint64_t>& keys, const std::vector<Found>& found) {
+  std::vector<Found> result(found.size());
+  parallel_chunks(found.size(), 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const auto add = [&](std::size_t from, double times) {
+        for (std::uint32_t k = 0; k < LightGrid::kParts; ++k) result[i].sky[k].add(found[from].sky[k], times);
+        result[i].suns.add(found[from].suns, times);
+        result[i].lamps.add(found[from].lamps, times);
+        result[i].rays += times * found[from].rays;
+      };
+      add(i, 1);
+      for (int axis = 0; axis < 3; ++axis)
+        for (const int step : {-1, 1}) {
+          const auto at = std::lower_bound(keys.begin(), keys.end(), LightGrid::beside(keys[i], axis, step));
+          if (at != keys.end() && *at == LightGrid::beside(keys[i], axis, step)) add(std::size_t(at - keys.begin()), kBeside);
+        }
+    }
+  });
+  return result;
+}
+
+}  // namespace
+
+std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, const CameraView& view, const LearnOptions& options) {
+  if (!scene.lights.has_distant()) return nullptr;
+  std::vector<Place> places = places_seen(scene, view, options);
+  const float extent = extent_of(places, std::size_t(options.looks));
+  const auto first_places = std::span(places).first(std::size_t(options.looks));
+  const auto seen = std::ranges::count_if(first_places, [](const Place& place) { return place.normal != Vec3{}; });
+  if (!(extent > 0) || double(std::ranges::count_if(first_places, &Place::open)) > kOpen * double(seen)) return nullptr;
+  auto grid = std::make_unique<LightGrid>(extent / kAcrossSeen, scene.lights.has_environment() ? scene.frame().environment : nullptr);
+  for (Place& place : places)
+    if (place.normal != Vec3{}) place.cell = grid->key(place.surface.position, place.normal);
+  const std::vector<std::vector<Place>> cells = by_cell(std::move(places));
+  std::vector<std::uint64_t> keys;
+  for (const std::vector<Place>& cell : cells) keys.push_back(cell.front().cell);
+
+  const Learner learner(scene, options, *grid);
+  const bool suns = !scene.lights.suns().empty(), lamps = scene.lights.has_placed();
+  const std::vector<double> parts = light_of_parts(*grid);
+  std::vector<LightGrid::Cell> known(cells.size());
+  for (int pass = 0; pass < 2; ++pass) {
+    std::vector<Found> found(cells.size());
+    parallel_chunks(cells.size(), 4, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) learner.look(cells[i], pass > 0 ? &known[i] : nullptr, pass, found[i]);
+    });
+    found = joined(keys, found);
+    for (std::size_t i = 0; i < cells.size(); ++i) known[i] = cell_of(found[i], parts, scene.lights, suns, lamps);
+  }
+  grid->set(std::move(keys), std::move(known));
+  return grid;
+}
+
+}  // namespace tempolux
