@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lib/render/frame_renderer.h"
+#include "lib/render/known_light.h"
 #include "lib/scene/gltf_load.h"
 #include "tests/support/scenes.h"
 
@@ -35,9 +36,12 @@ inline CameraView from_above() {
   return CameraView(camera, {}, 64, 36);
 }
 
-/// Direct light alone.
-struct NoLight : DiffuseLight {
-  Irradiance at(const SurfacePoint&, Vec3, Vec3, bool, const Rgb*) const override { return {}; }
+/// Direct light alone: a photon map without photons says that no other light arrives.
+struct NoLight {
+  PhotonLight photons;
+  KnownLight known;
+  explicit NoLight(const Tracer& tracer) : photons(tracer, {}, {}, {}) { known.photons = &photons; }
+  NoLight(const NoLight&) = delete;
 };
 
 }  // namespace tempolux::test

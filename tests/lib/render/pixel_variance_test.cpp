@@ -55,9 +55,9 @@ TEST(PixelVariance, EmissionCountsInTheImageAndNotInDiffuseLight) {
 /// and odd number, each half of them in one half of the pixel, come out nine times too large.)
 TEST(PixelVariance, KnowsStratification) {
   const test::Cornell c;
-  const test::NoLight none;
+  const test::NoLight none(c.tracer);
   FrameOptions options;
-  options.diffuse_light = &none;
+  options.known = &none.known;
   options.samples = 8;
   options.sample_halves = true;
   constexpr int kSeeds = 24;
@@ -82,9 +82,9 @@ TEST(PixelVariance, KnowsStratification) {
 /// All passes that trace samples keep halves: 16 samples plainly, in two halves of a frame, and adaptively.
 TEST(PixelVariance, EverySampleIsCounted) {
   const test::Cornell c;
-  const test::NoLight none;
+  const test::NoLight none(c.tracer);
   FrameOptions options;
-  options.diffuse_light = &none;
+  options.known = &none.known;
   options.samples = 4;
   options.sample_halves = true;
   const auto mean_samples = [&](const LayerImage& image) {

@@ -6,92 +6,17 @@
 #include <cmath>
 
 #include "lib/core/sobol.h"
-#include "lib/gather/irradiance_points.h"
 #include "lib/render/path_tracer.h"
+#include "tests/support/chain.h"
 #include "tests/support/closed_box.h"
-#include "tests/support/photons.h"
 
 namespace tempolux {
 namespace {
 
+using test::Chain;
 using test::HandMadeScene;
 using test::matte;
 using test::Shape;
-
-struct Traced {
-  std::vector<formats::Photon> photons;
-  double stored_indirect = 0;   ///< W, green
-};
-
-Traced trace(const Tracer& tracer, const Lights& lights, std::uint64_t count) {
-  PhotonOptions options;
-  options.photon_count = count;
-  options.store_direct = false;
-  const PhotonTracer photons(tracer, lights, options);
-  Traced traced;
-  for (const formats::Photon& photon : test::photons_of(photons)) {
-    traced.photons.push_back(photon);
-    traced.stored_indirect += double(photon.flux[1]);
-  }
-  return traced;
-}
-
-/// A scene with its photons, points and a gather.
-struct Chain {
-  const SceneFrame& frame;
-  EmissionTable table;
-  Tracer tracer;
-  Lights lights;
-  Traced traced;
-  PointOptions point_options;
-  PlacedPoints placed;
-  PointLookup lookup;
-  FinalGather gather;
-  RecordStore store;
-
-  Chain(HandMadeScene& scene, std::uint64_t photons, std::uint32_t point_count, int rays, int light_samples = 4)
-      : frame(scene.frame()), table(build_emission_table({&frame, 1})), tracer(frame), lights(frame, table),
-        traced(trace(tracer, lights, photons)), point_options(counted(point_count, light_samples)), placed(estimated()),
-        lookup(placed.points, placed.spacing, point_clearance(tracer)),
-        gather(tracer, lights, lookup, with_rays(rays)), store() {}
-
-  /// Records for a picture whose pixel i sees `at(i)`, seen from the side of the normal given.
-  template <class At>
-  void place(int width, int height, float footprint, const At& at) {
-    GatherCounts counts;
-    const PixelView view = [&](float x, float y, const PathRandom*) -> std::optional<SeenPoint> {
-      const std::optional<std::pair<SurfacePoint, Vec3>> seen = at(std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x));
-      if (!seen) return std::nullopt;
-      return SeenPoint{seen->first, seen->second, footprint, false};
-    };
-    place_records(gather, view, width, height, {}, store, counts);
-    EXPECT_LT(counts.unanswered, counts.rays / 20);   // next to walls and where surfaces bend
-  }
-  /// The surface under `position`, met from h above it.
-  std::optional<std::pair<SurfacePoint, Vec3>> surface_at(Vec3 position, Vec3 normal, float h) const {
-    Hit hit;
-    if (!tracer.intersect({position + normal * h, -normal}, hit)) return std::nullopt;
-    return std::pair{tracer.surface_point(hit), normal};
-  }
-
- private:
-  static PointOptions counted(std::uint32_t count, int light_samples) {
-    PointOptions options;
-    options.count = count;
-    options.light_samples = light_samples;
-    return options;
-  }
-  static GatherOptions with_rays(int rays) {
-    GatherOptions options;
-    options.rays = rays;
-    return options;
-  }
-  PlacedPoints estimated() {
-    PlacedPoints made = place_points(frame, point_options);
-    estimate_points(tracer, lights, traced.photons, {}, point_options, made.points);
-    return made;
-  }
-};
 
 class ClosedBoxCache : public testing::TestWithParam<std::tuple<Shape, float>> {};
 
@@ -210,52 +135,47 @@ TEST(CacheLeaks, ThinPartitionOnAFloor) {
   }
 }
 
-/// Where no record is, one is gathered, once asked for; where the gather has nothing to read there is no light.
-TEST(CacheLight, MissingRecordsAreGatheredAndCounted) {
-  test::ClosedBox box(Shape::cube, 0.5f);
-  Chain chain(box.scene, 20000, 2000, 300);
-  int asked = 0;
-  const CacheLight light(chain.store, [&] { ++asked; return &chain.gather; }, nullptr);
-  const auto seen = chain.surface_at({0.3f, -1, 0.2f}, {0, 1, 0}, 0.01f);
-  ASSERT_TRUE(seen);
-  const auto first = light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true, nullptr), second = light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true, nullptr);
-  EXPECT_EQ(asked, 1);
-  EXPECT_EQ(light.gathered_on_the_spot(), 2u);
-  EXPECT_EQ(first.indirect, second.indirect);
-  EXPECT_GT(first.indirect.g, 0);
-  GatherCounts counts;
-  IrradianceRecord record = chain.gather.gather(seen->first, {0, 1, 0}, counts);
-  EXPECT_EQ(record.irradiance, first.indirect);
-  record.radius = 0.1f;
-  chain.store.add(record);
-  EXPECT_EQ(light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true, nullptr).indirect, record.irradiance);
-  EXPECT_EQ(light.gathered_on_the_spot(), 2u);
-
-  const RecordStore none;
-  const CacheLight dark(none, [] { return nullptr; }, nullptr);
-  EXPECT_EQ(dark.at(seen->first, {0, 1, 0}, {0, 1, 0}, true, nullptr).indirect, Rgb(0.0f));
-  EXPECT_EQ(dark.gathered_on_the_spot(), 1u);
-}
-
 /// A record whose radius ends short of a place speaks for it where it is seen directly: it is of the same pixel or the next.
 /// Through glass or gloss it may be anything, the ground under a ball of glass for what is inside, and is not asked.
-TEST(CacheLight, RecordsThatEndShortCountInDirectViewOnly) {
+TEST(KnownLight, RecordsThatEndShortCountInDirectViewOnly) {
   test::ClosedBox box(Shape::cube, 0.5f);
-  Chain chain(box.scene, 20000, 2000, 300);
-  const CacheLight light(chain.store, [&] { return &chain.gather; }, nullptr);
-  const auto seen = chain.surface_at({0.3f, -1, 0.2f}, {0, 1, 0}, 0.01f), beside = chain.surface_at({0.1f, -1, 0.2f}, {0, 1, 0}, 0.01f);
-  ASSERT_TRUE(seen && beside);
-  GatherCounts counts;
-  const Rgb own = chain.gather.gather(seen->first, {0, 1, 0}, counts).irradiance;
-  IrradianceRecord other = chain.gather.gather(beside->first, {0, 1, 0}, counts);
-  other.irradiance = Rgb(1000.0f);
-  other.translational = {};
-  other.radius = 0.1f;   // 0.2 away
-  chain.store.add(other);
-  EXPECT_NEAR(light.at(seen->first, {0, 1, 0}, {0, 1, 0}, true, nullptr).indirect.g, 1000, 1e-3f);
-  EXPECT_EQ(light.gathered_on_the_spot(), 0u);
-  EXPECT_EQ(light.at(seen->first, {0, 1, 0}, {0, 1, 0}, false, nullptr).indirect, own);
-  EXPECT_EQ(light.gathered_on_the_spot(), 1u);
+  const Tracer tracer(box.scene.frame());
+  IrradianceRecord record;
+  record.position = {0.1f, -1, 0.2f};
+  record.normal = {0, 1, 0};
+  record.irradiance = Rgb(1000.0f);
+  record.radius = record.radius_unclamped = 0.1f;   // 0.2 away
+  RecordStore store;
+  ASSERT_TRUE(store.add(record));
+  KnownLight known;
+  known.records = &store;
+  Hit hit;
+  ASSERT_TRUE(tracer.intersect({{0.3f, -0.9f, 0.2f}, {0, -1, 0}}, hit));
+  const SurfacePoint seen = tracer.surface_point(hit);
+  const std::optional<Rgb> direct = known.indirect(seen, {0, 1, 0}, {0, 1, 0}, true);
+  ASSERT_TRUE(direct);
+  EXPECT_NEAR(direct->g, 1000, 1e-3f);
+  EXPECT_FALSE(known.indirect(seen, {0, 1, 0}, {0, 1, 0}, false));
+}
+
+/// Points speak for what is not too near: at 0.5 and 1.5 of kNear radii the limit's ends, between them by u.
+TEST(KnownLight, PointsAnswerBeyondTheirBlur) {
+  test::ClosedBox box(Shape::cube, 0.5f);
+  Chain chain(box.scene, 20000, 500, 4);
+  KnownLight known;
+  const auto seen = chain.surface_at({0.3f, -1, 0.2f}, {0, 1, 0}, 0.01f);
+  ASSERT_TRUE(seen);
+  EXPECT_FALSE(known.all(seen->first, {0, 1, 0}, 100, 0)) << "there are no points";
+  known.points = &chain.lookup;
+  const PointLookup::Light* light = chain.lookup.find(seen->first.position, {0, 1, 0});
+  ASSERT_TRUE(light);
+  ASSERT_TRUE(chain.lookup.is_even(*light));
+  const float limit = KnownLight::kNear * light->radius;
+  for (const float u : {0.0f, 0.5f, 0.999f}) {
+    EXPECT_FALSE(known.all(seen->first, {0, 1, 0}, 0.99f * limit * (0.5f + u), u)) << u;
+    ASSERT_TRUE(known.all(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u)) << u;
+    EXPECT_EQ(*known.all(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u), light->all);
+  }
 }
 
 }  // namespace
