@@ -224,7 +224,7 @@ def hall(bench, _):
     largest = max(range(1, last + 1), key=lambda f: shares[f - 1])
     rows = [[f"0-{last}", big(int(added[0])), quantity(100 * mean(shares)) + " %", f"{percent(shares[largest - 1])} (frame {largest})",
              big(int(sum(added))), "yes" if digests[0] == digests[1] else "**no**", quantity(tracing["cpu_s"] + placing["cpu_s"]),
-             quantity(rendering["cpu_s"] / 3), str(int(rendering["counts"]["gathered_on_the_spot"]))]]
+             quantity(rendering["cpu_s"] / 3), str(int(rendering["counts"]["gathered_in_pixels"]))]]
     for file in (photons, cache, points):
         file.unlink()
     return figure("One cache for a hall that a camera walks through, S4", "after frame 0 at most 10 % new records in a frame; "

@@ -67,7 +67,7 @@ TEST_P(GatherInPixels, MeanIrradianceIsTheGeometricSeries) {
   const double exact = double(box.flux.g) * double(rho) / (test::AreaSampler(chain.frame).area() * (1 - double(rho)));
   const double relative = irradiance.sigma() / exact;
   EXPECT_NEAR(irradiance.mean() / exact, 1, 4 * relative + 4 * std::sqrt(double(rho) / kPhotons) + 0.005);
-  EXPECT_LT(relative, 0.005);
+  EXPECT_LT(relative, 0.01);
   EXPECT_EQ(counts.lookups, 0u);
   EXPECT_EQ(counts.gathered, 60000u);
   EXPECT_GT(counts.points_read, 45000u) << "paths must end at points";
@@ -109,11 +109,11 @@ TEST(MissingRecords, LeaveThePathAsItIs) {
   EXPECT_LE(counts.gathered, 64u * 36);
 }
 
-/// Half of the floor has one record, of irradiance 7, the other half none. There rays are taken and the mean is the closed box's;
-/// here it is the record's and no path goes farther than to what its next ray meets.
+/// One record, of irradiance 7, stands on the floor, none on the ceiling. On the floor it tells the light, and the path goes no farther
+/// than to what its next ray meets; on the ceiling that ray ends at points.
 TEST(MissingRecords, TakeOneRayEach) {
   test::ClosedBox box(Shape::cube, 0.5f);
-  const Chain chain(box.scene, 100000, 5000, 4);
+  const Chain chain(box.scene, 20000, 5000, 4);
   IrradianceRecord record;
   record.position = {-0.5f, -1, 0};
   record.normal = {0, 1, 0};
@@ -124,21 +124,23 @@ TEST(MissingRecords, TakeOneRayEach) {
   KnownLight known;
   known.points = &chain.lookup;
   known.records = &store;
-  RayCounts here, there;
+  RayCounts floor, ceiling;
   const RenderScene scene{chain.tracer, chain.lights};
-  const auto look_at = [&](float x, std::uint32_t i, RayCounts& counts) {
-    return trace_eye_path(scene, {{x, -0.5f, 0}, {0, -1, 0}, 0, INFINITY}, PixelRandom(3, 0, i), &known, counts)[Layer::indirect].g;
+  const auto look = [&](float y, std::uint32_t i, RayCounts& counts) {
+    return trace_eye_path(scene, {{-0.5f, 0, 0}, {0, y, 0}, 0, INFINITY}, PixelRandom(3, 0, i), &known, counts)[Layer::indirect].g;
   };
   constexpr std::uint32_t kCount = 1000;
   for (std::uint32_t i = 0; i < kCount; ++i) {
-    EXPECT_NEAR(look_at(-0.5f, i, here), 7 * 0.5f * kInvPi, 1e-5f);
-    EXPECT_GT(look_at(0.9f, i, there), 0);
+    EXPECT_NEAR(look(-1, i, floor), 7 * 0.5f * kInvPi, 1e-5f);
+    EXPECT_GT(look(1, i, ceiling), 0);
   }
-  EXPECT_EQ(here.lookups, kCount);
-  EXPECT_EQ(here.gathered, 0u);
-  EXPECT_EQ(here.bounce, kCount) << "one ray, to be joined with light sampling";
-  EXPECT_EQ(there.lookups, 0u);
-  EXPECT_EQ(there.gathered, kCount);
+  EXPECT_EQ(floor.lookups, kCount);
+  EXPECT_EQ(floor.gathered, 0u);
+  EXPECT_EQ(floor.bounce, kCount) << "one ray, to be joined with light sampling";
+  EXPECT_EQ(ceiling.lookups, 0u);
+  EXPECT_EQ(ceiling.gathered, kCount);
+  EXPECT_GT(ceiling.points_read, kCount * 3 / 4);
+  EXPECT_LT(ceiling.bounce, kCount * 3 / 2) << "most end at the first";
 }
 
 /// A plane under a uniform sky of 3, all else known to be nothing: rho L by light sampling and the ray that goes on, each with its
@@ -181,7 +183,7 @@ struct RoomWithMirror {
   static CameraView view(int width, int height) {
     PlacedCamera camera;
     camera.camera.kind = Camera::Kind::perspective;
-    camera.camera.yfov_rad = 1.2;
+    camera.camera.yfov_rad = 1.5;
     camera.scene_from_camera.translation = {0, 1.4, 1.9};
     return CameraView(camera, {}, width, height);
   }
@@ -214,7 +216,7 @@ TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
   const PhotonLight photons(chain.tracer, chain.traced.photons, {}, caustics);
   const RenderScene scene{chain.tracer, chain.lights};
   const std::array<double, kLayerCount> path = means(scene, view, nullptr, 128);
-  for (const double layer : path) ASSERT_GT(layer, 0.002);
+  for (std::size_t l = 0; l < kLayerCount; ++l) ASSERT_GT(path[l], 0.002) << kLayerNames[l];
   for (const bool with_records : {false, true})
     for (const bool with_photons : {false, true}) {
       KnownLight known;
