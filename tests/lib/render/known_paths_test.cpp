@@ -167,7 +167,7 @@ TEST(MatteEnds, JoinLightSamplingUnderASky) {
   EXPECT_NEAR(sum, 1.5, 0.003 * 1.5);
 }
 
-/// A grey room 4 m wide, a lamp under its ceiling that shines down, a tilted sheet of polished metal in it that throws light on
+/// A grey room 4 m wide, a lamp under its ceiling that shines down, a sheet of polished metal that stands in it, throws light on
 /// the floor and shows the room. From the eye all five layers are to be seen.
 struct RoomWithMirror {
   HandMadeScene made;
@@ -177,8 +177,8 @@ struct RoomWithMirror {
     made.add_quad({-0.5f, 2.9f, -0.5f}, {0.5f, 2.9f, -0.5f}, {0.5f, 2.9f, 0.5f}, {-0.5f, 2.9f, 0.5f}, matte(Rgb(0.0f), Rgb(5.0f)));
     Material metal = matte(Rgb(0.9f));
     metal.metallic = 1;
-    metal.roughness = 0.15f;
-    made.add_quad({-0.9f, 0.2f, -1.0f}, {0.9f, 0.2f, -1.0f}, {0.9f, 1.4f, -1.7f}, {-0.9f, 1.4f, -1.7f}, metal);
+    metal.roughness = 0.3f;
+    made.add_quad({-0.9f, 0.3f, -1.3f}, {0.9f, 0.3f, -1.3f}, {0.9f, 1.5f, -1.3f}, {-0.9f, 1.5f, -1.3f}, metal);
   }
   static CameraView view(int width, int height) {
     PlacedCamera camera;
@@ -200,22 +200,26 @@ std::array<double, kLayerCount> means(const RenderScene& scene, const CameraView
 }
 
 /// Layer by layer against path tracing: points alone, records and points, each without a photon map, when paths find the caustic
-/// light, and with one. What is counted twice or lost would be a whole kind of light. The path tracer's own noise of 2304 x 128
-/// samples is below 1 % in each layer (caustic light, the noisiest, seen: 0.7 % between seeds); points, records and the photons of one
-/// seed 1 % each; caustic light by density loses what falls beyond the edges of the sheet's shadow: 3 %.
+/// light, and with one. What is counted twice or lost would be a whole kind of light.
+///
+/// Emission, direct light and caustic light without photons are of the very samples of the path tracer: equal but for the order of
+/// sums. Else the path tracer's own noise of 2304 x 256 samples is 0.1 % of indirect, 1.5 % of specular and 2.5 % of caustic light (between
+/// seeds); points and the photons of one seed err by 1 %, records that are valid four pixels around them, 0.2 m here, by 2 %.
 TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
   RoomWithMirror room;
-  Chain chain(room.made, 400000, 8000, 200);
+  Chain chain(room.made, 400000, 8000, 500);
   const CameraView view = RoomWithMirror::view(64, 36);
   GatherCounts gathered;
-  place_records(chain.gather,
-                [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) { seen_through(chain.tracer, view, looks, seen); },
-                64, 36, chain.frame.bounds, {}, chain.store, gathered);
+  const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+    seen_through(chain.tracer, view, looks, seen);
+  };
+  place_records(chain.gather, views, 64, 36, chain.frame.bounds, {}, chain.store, gathered);
   PhotonLightOptions caustics;
   caustics.caustic_only = true;
   const PhotonLight photons(chain.tracer, chain.traced.photons, {}, caustics);
   const RenderScene scene{chain.tracer, chain.lights};
-  const std::array<double, kLayerCount> path = means(scene, view, nullptr, 128);
+  constexpr int kSamples = 32;
+  const std::array<double, kLayerCount> path = means(scene, view, nullptr, 256), same = means(scene, view, nullptr, kSamples);
   for (std::size_t l = 0; l < kLayerCount; ++l) ASSERT_GT(path[l], 0.002) << kLayerNames[l];
   for (const bool with_records : {false, true})
     for (const bool with_photons : {false, true}) {
@@ -223,10 +227,13 @@ TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
       known.points = &chain.lookup;
       if (with_records) known.records = &chain.store;
       if (with_photons) known.photons = &photons;
-      const std::array<double, kLayerCount> here = means(scene, view, &known, 32);
-      for (std::size_t l = 0; l < kLayerCount; ++l)
-        EXPECT_NEAR(here[l] / path[l], 1, Layer(l) == Layer::caustic ? 0.05 : 0.025)
+      const std::array<double, kLayerCount> here = means(scene, view, &known, kSamples);
+      for (std::size_t l = 0; l < kLayerCount; ++l) {
+        const Layer layer{std::uint8_t(l)};
+        const bool equal = layer == Layer::emission || layer == Layer::direct || (layer == Layer::caustic && !with_photons);
+        EXPECT_NEAR(here[l] / (equal ? same : path)[l], 1, equal ? 1e-6 : 0.04)
             << kLayerNames[l] << (with_records ? ", records" : "") << (with_photons ? ", photons" : "");
+      }
     }
 }
 
