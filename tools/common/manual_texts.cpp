@@ -54,9 +54,12 @@ constexpr ManualText kTexts[] = {
     {"frame-render",
      "Traces the pixels of a frame: direct light is sampled at the lights, indirect light is read from an irradiance "
      "cache or estimated from photons, caustics from photons; or everything is path traced, which is unbiased and "
-     "slow.",
+     "slow. What no file tells paths find: without photons they look for caustics, where a record is missing one ray of "
+     "the hemisphere takes its place, which ends at the points if there are any. Points alone will do, too.",
      "frame .exr: colour, depth, normals, ids (formats/frames/frames.md)",
      "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints -o 12.exr\n"
+     "# From points alone: nothing to be placed for a camera, more noise.\n"
+     "frame-render room.glb --frame 12 --size 640x360 --points 12.irradpoints -o 12.exr\n"
      "# A reference in two independent halves, so that its noise is known.\n"
      "frame-render room.glb --frame 12 --size 640x360 --integrator path --spp 256 --halves -o ref.exr",
      "irradcache-build aqm-compare tempolux-info"},
