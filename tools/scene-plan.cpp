@@ -19,6 +19,7 @@
 #include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/plan/plan_files.h"
+#include "lib/render/choose_indirect.h"
 #include "tools/common/option_words.h"
 #include "tools/common/pilot.h"
 #include "tools/common/scene_input.h"
@@ -46,7 +47,7 @@ bool write_if_changed(const std::string& path, const std::string& content) {
 }
 
 struct Options {
-  std::string scene, folder = "plan", tidy_folder;
+  std::string scene, folder = "plan", tidy_folder, indirect = "auto";
   double tidy_hours = 24;
   bool estimate = false, json = false;
   int jobs = 1;
@@ -79,6 +80,19 @@ void write_plan(tools::Tool& tool, const Plan& plan, const Scene& scene, const O
   tool.stats().count("state_files_changed", double(changed));
 }
 
+/// Decides how indirect light is to be found: as asked, or by a pilot of the middle one of the frames asked for.
+void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options& options, int camera, Plan& plan) {
+  if (plan.photon_kinds.empty()) return;
+  if (options.indirect != "auto") return use_indirect(plan, options.indirect, "--indirect " + options.indirect);
+  tool.stats().phase("pilot", true);
+  const SceneFrame frame = input.at(plan.frames[plan.frames.size() / 2]);
+  const CameraView view(frame.camera(camera), frame.origin, options.run.width, options.run.height);
+  const Tracer tracer(frame);
+  const Lights lights(frame, input.emission(frame.frame));
+  const IndirectChoice choice = choose_indirect(pilot_indirect({tracer, lights}, view, 0));
+  use_indirect(plan, kIndirectMethods[std::size_t(choice.method)], choice.because);
+}
+
 void plan_range(tools::Tool& tool, Options& options, bool write) {
   while (options.folder.size() > 1 && options.folder.back() == '/') options.folder.pop_back();
   std::optional<tools::Output> makefile;
@@ -88,12 +102,13 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
     makefile.emplace(options.folder + "/plan.mk", false, tools::Output::Kind::text);
   }
   tool.stats().phase("load");
-  const tools::SceneInput input(tool, options.scene, tools::SceneInput::light | tools::SceneInput::a_camera);
+  tools::SceneInput input(tool, options.scene, tools::SceneInput::light | tools::SceneInput::a_camera);
   const Scene& scene = input.scene();
 
   tool.stats().phase("plan");
   const int camera = scene.camera_node(tool.common().camera);
-  const Plan plan = make_plan(scene, tool.common().frames, camera, input.time());
+  Plan plan = make_plan(scene, tool.common().frames, camera, input.time());
+  decide_indirect(tool, input, options, camera, plan);
   for (const std::string& warning : plan.warnings) tool.warn(options.scene + ": " + warning);
   std::string estimate_as_json;
   if (options.estimate) {
@@ -123,6 +138,10 @@ int main(int argc, char** argv) {
                                                  "folder for plan.json, plan.mk and state/; with --estimate "
                                                  "only if it is given")
                                   ->capture_default_str();
+  app.add_option("--indirect", options.indirect,
+                 "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "records", "gather", "paths"}));
   const auto add = [&](CLI::Option* option) {
     tool.leave_out_of_history(option);
     return option;

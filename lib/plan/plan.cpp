@@ -226,6 +226,19 @@ void plan_stages(const Scene& scene, Plan& plan) {
 
 }  // namespace
 
+void use_indirect(Plan& plan, const std::string& method, const std::string& because) {
+  if (plan.photon_kinds.empty()) return;
+  plan.indirect = method;
+  if (method == "paths") plan.photon_kinds.clear();
+  for (Stage& stage : plan.stages) {
+    const bool records = stage.name == "irradcache-build records";
+    const bool before = stage.name.starts_with("photon-trace") || stage.name == "irradcache-build points";
+    if (!stage.needed || !(records || before)) continue;
+    if (records) stage.because += "; " + because;
+    if (method == "paths" || (records && method == "gather")) stage = {stage.name, false, because};
+  }
+}
+
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options) {
   if (frames.empty()) throw std::invalid_argument("make_plan: no frames");
   require_lights(scene);

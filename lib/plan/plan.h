@@ -57,8 +57,14 @@ struct Plan {
   std::vector<Stage> stages;
   bool walkthrough = false;         ///< key frames and warping pay: METHOD=auto follows it
   std::string photon_kinds;         ///< what photon-trace has to record: "caustic,indirect"; "" if no photons
+  /// How indirect light is found: "records", "gather" (in the pixel) or "paths". The last two leave out stages.
+  std::string indirect = "records";
   std::vector<std::string> warnings;
 };
+
+/// Leaves out what another way of finding indirect light does not need: records, or photons and points as well.
+/// `because`: the fact that decides. A plan whose scene has no indirect light stays as it is.
+void use_indirect(Plan& plan, const std::string& method, const std::string& because);
 
 /// Evaluates the segments that hold `frames` and compares their states by content: hashes decide, neither
 /// file times nor what the file calls an animation. A frame beyond the animation shows its nearest end and is

@@ -85,7 +85,8 @@ std::string plan_json(const Plan& plan, const std::string& scene_name, const std
                {"segment_length", plan.time.segment_length},
                {"light_units", plan.time.light_units},
                {"frames", plan.frames},
-               {"photon_kinds", plan.photon_kinds}};
+               {"photon_kinds", plan.photon_kinds},
+               {"indirect", photons ? plan.indirect : "paths"}};
   if (!plan.environment.empty()) json["environment"] = std::filesystem::path(plan.environment).filename().string();
   json["stages"] = Json::array();
   for (const Stage& stage : plan.stages)
@@ -116,6 +117,7 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   }
   text += variable("plan_frames", plan.frames) + variable("plan_pictures", pictures);
   text += variable("plan_photons", photon_frames) + "plan_kinds := " + plan.photon_kinds + "\n";
+  text += "plan_indirect := " + (photons ? plan.indirect : "paths") + "\n";
   text += std::string("plan_method := ") + (plan.walkthrough ? "walkthrough" : "frames") + "\n";
   for (const std::string& file : scene_files)  // the empty rule: a file that is gone asks for a new plan
     text += folder + "/plan.mk: " + escaped_for_make(file) + "\n" + escaped_for_make(file) + ":\n";

@@ -1,7 +1,5 @@
 #include "lib/render/adaptive_frame.h"
 
-#include <atomic>
-
 #include "lib/render/pixel_noise.h"
 
 namespace tempolux {

@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <span>
 
+#include "lib/core/frame.h"
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
-#include "lib/core/sobol.h"
-#include "lib/core/frame.h"
-#include "lib/gather/place_records.h"
-#include "lib/material/seen_side.h"
-#include "lib/render/known_light.h"
+#include "lib/render/places_seen.h"
 
 namespace tempolux {
 namespace {
@@ -25,14 +20,6 @@ constexpr double kFromFirst = 0.6;         ///< of the second pass' rays: by wha
 constexpr int kBlur = 2;                   ///< parts of the sky about one that have a say in it
 constexpr double kPrior = 0.5;             ///< rays' worth of what the whole sky sends there
 constexpr double kBeside = 0.5;            ///< weight of each of the six cells beside one, and of parts of the sky beside one
-
-/// A place where light is to be sampled.
-struct Place {
-  SurfacePoint surface;
-  Vec3 normal, geometric;   ///< on the side seen
-  std::uint64_t cell = 0;
-  bool open = false;        ///< its ray left the scene
-};
 
 /// Light of one kind or from one part of the sky, sums over rays [W/m^2, mean channel].
 struct Light {
@@ -55,42 +42,18 @@ struct Found {
   double rays = 0;
 };
 
-Vec3 lit_side(const SurfacePoint& point, Vec3 normal) {
-  return dot(point.normal_geometric, normal) < 0 ? -point.normal_geometric : point.normal_geometric;
-}
+/// A place where light is to be sampled, and the cell it is in.
+struct Place : SeenPlace {
+  std::uint64_t cell = 0;
+};
 
-/// What the view sees, and what a ray from there meets.
-std::vector<Place> places_seen(const RenderScene& scene, const CameraView& view, const LearnOptions& options) {
-  std::vector<Place> places(2 * std::size_t(options.looks));
-  parallel_chunks(std::size_t(options.looks), 64, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const PathRandom random(options.seed ^ 0x6c6561726e000001ull, i);
-      const Vec2 u = sobol_owen_2d(std::uint32_t(i), options.seed ^ 0x6c6f6f6bull);
-      const Look look{u.x * float(view.width()), u.y * float(view.height()), random};
-      std::optional<SeenPoint> seen;
-      seen_through(scene.tracer, view, {&look, 1}, {&seen, 1});
-      if (!seen) continue;
-      places[i] = {seen->surface, seen->normal, lit_side(seen->surface, seen->normal), 0, false};
-      const Vec3 travel = Frame(seen->normal).to_world(sample_hemisphere_cos(random.get2(40, Purpose::scatter)));
-      Hit hit;
-      if (!(dot(travel, places[i].geometric) > 0)) continue;
-      places[i].open = !scene.tracer.intersect(spawn_ray(seen->surface, travel), hit);
-      if (places[i].open) continue;
-      const SurfacePoint met = scene.tracer.surface_point(hit);
-      const SeenSide side(met, -travel);
-      places[std::size_t(options.looks) + i] = {met, side.normal, side.normal_geometric, 0, false};
-    }
-  });
-  return places;
-}
-
-/// Longest extent of what the first `count` places hold, but for 2 % at either end.
-float extent_of(const std::vector<Place>& places, std::size_t count) {
+/// Longest extent of what the places hold, but for 2 % at either end.
+float extent_of(const std::vector<SeenPlace>& places) {
   float extent = 0;
   for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
     std::vector<float> along;
-    for (std::size_t i = 0; i < count; ++i)
-      if (places[i].normal != Vec3{}) along.push_back(places[i].surface.position.*axis);
+    for (const SeenPlace& place : places)
+      if (place.exists()) along.push_back(place.surface.position.*axis);
     if (along.empty()) return 0;
     std::sort(along.begin(), along.end());
     extent = std::max(extent, along[(along.size() - 1) * 49 / 50] - along[along.size() / 50]);
@@ -134,8 +97,6 @@ class Learner {
   }
 
  private:
-  bool sees(const Place& place, Vec3 wi) const { return dot(wi, place.geometric) > 0 && dot(wi, place.normal) > 0; }
-
   /// One ray to the sky: by what is known, by its light and area, or by the cosine; weighed by the density of all three.
   void add_sky(const Place& place, const LightGrid::Cell* before, const PathRandom& random, Found& found) const {
     const double known = before ? kFromFirst : 0, even = 0.5 * (1 - known);
@@ -174,7 +135,7 @@ class Learner {
   template <class Occluded>
   void note(const Place& place, Vec3 wi, double sent, const Occluded& occluded, Light& light) const {
     light.sent += sent;
-    if (sent > 0 && sees(place, wi) && !occluded()) light.arrived += sent * double(dot(wi, place.normal));
+    if (sent > 0 && place.sees(wi) && !occluded()) light.arrived += sent * double(dot(wi, place.normal));
   }
 
   const RenderScene& scene_;
@@ -264,14 +225,15 @@ std::vector<Found> joined(const std::vector<std::uint64_t>& keys, const std::vec
 
 std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, const CameraView& view, const LearnOptions& options) {
   if (!scene.lights.has_distant()) return nullptr;
-  std::vector<Place> places = places_seen(scene, view, options);
-  const float extent = extent_of(places, std::size_t(options.looks));
-  const auto first_places = std::span(places).first(std::size_t(options.looks));
-  const auto seen = std::ranges::count_if(first_places, [](const Place& place) { return place.normal != Vec3{}; });
-  if (!(extent > 0) || double(std::ranges::count_if(first_places, &Place::open)) > kOpen * double(seen)) return nullptr;
+  const SeenPlaces seen = places_seen(scene, view, options.looks, options.seed);
+  const float extent = extent_of(seen.places);
+  const auto exist = std::ranges::count_if(seen.places, &SeenPlace::exists);
+  if (!(extent > 0) || double(std::ranges::count_if(seen.places, &SeenPlace::open)) > kOpen * double(exist)) return nullptr;
   auto grid = std::make_unique<LightGrid>(extent / kAcrossSeen, scene.lights.has_environment() ? scene.frame().environment : nullptr);
-  for (Place& place : places)
-    if (place.normal != Vec3{}) place.cell = grid->key(place.surface.position, place.normal);
+  std::vector<Place> places;
+  for (const std::vector<SeenPlace>* from : {&seen.places, &seen.beyond})
+    for (const SeenPlace& place : *from)
+      if (place.exists()) places.push_back({place, grid->key(place.surface.position, place.normal)});
   const std::vector<std::vector<Place>> cells = by_cell(std::move(places));
   std::vector<std::uint64_t> keys;
   for (const std::vector<Place>& cell : cells) keys.push_back(cell.front().cell);

@@ -148,6 +148,7 @@ class Pilots {
   Pilots(const std::string& scene, const Plan& plan, const RunOptions& options)
       : scene_(scene), options_(options), counts_(plan), frame_count_(double(plan.frames.size())) {
     kinds_ = plan.photon_kinds;
+    with_records_ = plan.indirect == "records";
     const Words cache = words_of(options.cache), frames = words_of(options.frames);
     for (const Words& words : {frames, cache})
       if (Words copy = words; std::find(words.begin(), words.end(), "--size") != words.end())
@@ -166,7 +167,7 @@ class Pilots {
       done(0.1);
       points();
       done(0.3);
-      records();
+      if (with_records_) records();
       done(0.7);
     }
     frames();
@@ -181,6 +182,7 @@ class Pilots {
   const Counts counts_;
   const double frame_count_;
   std::string kinds_;
+  bool with_records_;
   int width_ = 0, height_ = 0;
   Folder folder_;
   Estimate estimate_;
@@ -248,9 +250,10 @@ class Pilots {
     Words words = common(options_.frames, counts_.first);
     take(words, "--size", "");
     words.insert(words.end(), {"--size", size_of(width, height), "-o", output});
-    if (!kinds_.empty())
-      words.insert(words.end(),
-                   {"--irradcache", folder_.file("p.irradcache"), "--points", folder_.file("p.irradpoints")});
+    if (!kinds_.empty()) {
+      words.insert(words.end(), {"--points", folder_.file("p.irradpoints")});
+      if (with_records_) words.insert(words.end(), {"--irradcache", folder_.file("p.irradcache")});
+    }
     if (kinds_.find("caustic") != std::string::npos)
       words.insert(words.end(), {"--photons", folder_.file("p.photons")});
     return run(folder_, "frame-render", words, output);

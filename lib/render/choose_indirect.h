@@ -1,0 +1,38 @@
+// lib/render/choose_indirect.h -- by which way indirect light is cheapest in a scene, told by a pilot of a few thousand paths.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "lib/render/camera_view.h"
+#include "lib/render/path_tracer.h"
+
+namespace tempolux {
+
+/// How the light that surfaces send each other is found: by records between pixels, by one ray of the hemisphere for each sample of a
+/// pixel, which ends at irradiance points, or by paths that end nowhere but in the dark.
+enum class IndirectMethod : std::uint8_t { records, gather, paths };
+inline constexpr const char* kIndirectMethods[] = {"records", "gather", "paths"};
+
+/// What a pilot saw of the surfaces that a camera sees.
+struct IndirectPilot {
+  double indirect_share = 0;   ///< of the light that they scatter: layer indirect over direct, caustic and indirect
+  double open_share = 0;       ///< of the rays of their hemispheres: leave the scene
+  double lamp_share = 0;       ///< of the light that comes straight from lights: not from the sky or a sun
+  int places = 0;              ///< seen; 0: nothing is
+};
+
+/// 2048 places and 8192 paths: some hundredths of a second. Same result for any number of threads.
+IndirectPilot pilot_indirect(const RenderScene& scene, const CameraView& view, std::uint64_t seed);
+
+struct IndirectChoice {
+  IndirectMethod method;
+  std::string because;
+};
+
+/// Paths where indirect light is little or most rays leave the scene: what photons, points and records cost is then more than
+/// they save. Else records where lamps light the scene: from a few bright patches, which rays of single pixels seldom find; and
+/// gathering in the pixel where its light comes through openings. docs/pixels.md has the measurements that the limits are from.
+IndirectChoice choose_indirect(const IndirectPilot& pilot);
+
+}  // namespace tempolux
