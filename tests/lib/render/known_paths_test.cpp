@@ -213,7 +213,7 @@ TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
   const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
     seen_through(chain.tracer, view, looks, seen);
   };
-  place_records(chain.gather, views, 64, 36, chain.frame.bounds, {}, chain.store, gathered);
+  place_records(chain.gather, views, 64, 36, {}, chain.store, gathered);
   PhotonLightOptions caustics;
   caustics.caustic_only = true;
   const PhotonLight photons(chain.tracer, chain.traced.photons, {}, caustics);
