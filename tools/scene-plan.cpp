@@ -22,6 +22,7 @@
 #include "lib/render/choose_indirect.h"
 #include "tools/common/option_words.h"
 #include "tools/common/pilot.h"
+#include "tools/common/plan_views.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tidy.h"
 
@@ -110,6 +111,10 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
   Plan plan = make_plan(scene, tool.common().frames, camera, input.time());
   decide_indirect(tool, input, options, camera, plan);
   for (const std::string& warning : plan.warnings) tool.warn(options.scene + ": " + warning);
+  if (write && !plan.photon_kinds.empty()) {
+    tool.stats().phase("views", true);
+    tools::plan_views(input, camera, options.run.width, options.run.height, plan);
+  }
   std::string estimate_as_json;
   if (options.estimate) {
     tool.stats().phase("estimate");

@@ -54,7 +54,8 @@ LightBounds bounds_of(const PlacedLight& placed) {
 }  // namespace
 
 Lights::Impl::Impl(const SceneFrame& frame_, const EmissionTable& table)
-    : frame(&frame_), sphere_centre(Vec3(table.sphere_centre)), sphere_radius(table.sphere_radius), environment(table.environment) {
+    : frame(&frame_), sphere_centre(Vec3(table.sphere_centre)), sphere_radius(table.sphere_radius), environment(table.environment),
+      aim(table.aim, sphere_centre, sphere_radius) {
   if (environment) environment_weight = max_component(environment->integral()) / 4;
   add_slots(table);
   build_tree();
@@ -150,6 +151,7 @@ std::vector<Lights::Sun> Lights::suns() const {
 bool Lights::empty() const { return impl_->slots.empty(); }
 std::size_t Lights::count() const { return impl_->slots.size(); }
 const std::vector<EmissionSlot>& Lights::slots() const { return impl_->slots; }
+const Aim& Lights::aim() const { return impl_->aim; }
 
 Rgbd Lights::total_flux() const {
   Rgbd sum;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lib/core/vec.h"
+#include "lib/light/aim.h"
 #include "lib/light/environment_light.h"
 #include "lib/light/light_grid.h"
 #include "lib/light/light_tree.h"
@@ -45,6 +46,7 @@ struct EmissionTable {
   Vec3d sphere_centre{};                ///< scene sphere over the segment, scene space, m
   double sphere_radius = 0;
   std::shared_ptr<const EnvironmentLight> environment;  ///< nullptr: none; its Environment must outlive it
+  std::vector<AimSphere> aim;            ///< where photons of directional lights and the environment go; empty: everywhere
 };
 
 /// The triangles of table.surfaces[index] as lights of a frame, in their order.
@@ -56,7 +58,8 @@ EmissionTable build_emission_table(const Scene& scene, const Segment& segment, c
 /// least one. To be the segment's table they must be all frames at which an emitter's size differs.
 EmissionTable build_emission_table(std::span<const SceneFrame> frames);
 
-/// Content hash of what the segment freezes beyond its static geometry: probabilities of lights, distance scales. Photons
+/// Content hash of what the segment freezes beyond its static geometry: probabilities of lights, distance scales, and
+/// where photons are aimed. Photons
 /// whose tables hash alike may replace each other path by path.
 std::string emission_hash(const EmissionTable& table, const Segment& segment);
 
@@ -138,7 +141,8 @@ class Lights {
   /// flux = (what the slot emits at this frame) / probability: the mean over u is total_flux(). Triangle: pi
   /// L A (twice if two-sided), by the cosine; point: 4 pi I, uniform; spot: as its intensity; directional: E
   /// pi R^2, origin on the disc of radius R outside the scene; environment: the same with radiance / density of
-  /// the direction for E. Zero flux for what emits nothing at this
+  /// the direction for E. With table.aim the origins of these two are spread as Aim says, and the flux is
+  /// divided by that density instead. Zero flux for what emits nothing at this
   /// frame. InputError if flux / probability is beyond float32.
   PhotonEmission emit(const std::array<double, 4>& u) const {
     PhotonEmission photon;
@@ -148,6 +152,9 @@ class Lights {
   /// The same for as many as kMostEmitted, photons[i] of u[i]: in half the time.
   void emit(std::span<const std::array<double, 4>> u, std::span<PhotonEmission> photons) const;
   static constexpr std::size_t kMostEmitted = 64;
+
+  /// Where photons from afar are aimed; empty: everywhere.
+  const Aim& aim() const;
 
  private:
   struct Impl;

@@ -31,6 +31,7 @@ struct Lights::Impl {
   std::vector<std::uint32_t> suns;        // indices of directional lights that shine
   std::shared_ptr<const EnvironmentLight> environment;
   double environment_weight = 0;  // irradiance by the environment, the mean over all normals; 0: none or black
+  Aim aim;                                // of the photons of suns and environment
   bool any_distant = false;       // an environment that is not black, or a sun
   const LightGrid* grid = nullptr;  // what is known of what reaches a place
   LightTree tree{{}};

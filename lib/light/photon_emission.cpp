@@ -65,14 +65,20 @@ void Lights::Impl::emit_punctual(const PlacedLight& placed, double u0, const std
     e.travel = sample_punctual_direction(placed, u0, u[1]);
     return;
   }
+  e.travel = placed.direction;
+  if (!aim.empty()) {
+    const Aim::Start start = aim.start(e.travel, u0, u[1]);
+    e.origin = start.origin;
+    e.flux = Rgb(Rgbd(e.flux) * start.flux);
+    return;
+  }
   const Vec2 disc = sample_disc_concentric({to_float(u0), to_float(u[1])});
   const Frame frame_of_light(placed.direction);
   const float r = float(sphere_radius);
-  e.travel = placed.direction;
   e.origin = sphere_centre + frame_of_light.to_world({disc.x * r, disc.y * r, -r});
 }
 
-/// Flux: radiance / density x pi R^2.
+/// Flux: radiance / density x pi R^2, or what Aim puts in its place.
 void Lights::Impl::emit_environment(std::size_t slot, double u0, const std::array<double, 4>& u,
                                     PhotonEmission& e) const {
   EnvironmentLight::Sample from;
@@ -80,11 +86,18 @@ void Lights::Impl::emit_environment(std::size_t slot, double u0, const std::arra
     e.travel = {0, -1, 0};
     return;
   }
+  const Rgbd flux = Rgbd(from.radiance) * (disc_area() / from.pdf_solid_angle) / slots[slot].probability;
+  e.travel = -from.direction;
+  if (!aim.empty()) {
+    const Aim::Start start = aim.start(e.travel, u[2], u[3]);
+    e.origin = start.origin;
+    e.flux = Rgb(flux * start.flux);
+    return;
+  }
   const Vec2 disc = sample_disc_concentric({to_float(u[2]), to_float(u[3])});
   const float r = float(sphere_radius);
-  e.travel = -from.direction;
   e.origin = sphere_centre + Frame(e.travel).to_world({disc.x * r, disc.y * r, -r});
-  e.flux = Rgb(Rgbd(from.radiance) * (disc_area() / from.pdf_solid_angle) / slots[slot].probability);
+  e.flux = Rgb(flux);
 }
 
 void Lights::emit(std::span<const std::array<double, 4>> u, std::span<PhotonEmission> photons) const {

@@ -51,6 +51,7 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
         result.path_count += item.batch.path_count;
         result.ray_count += item.batch.ray_count;
         result.specular_ray_count += item.batch.specular_ray_count;
+        result.seen_count += item.batch.seen_count;
         emitted += item.batch.emitted;
         escaped += item.batch.escaped;
         absorbed += item.batch.absorbed;

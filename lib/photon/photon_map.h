@@ -13,6 +13,7 @@ namespace tempolux {
 struct PhotonMapResult {
   formats::PhotonTotals totals;      ///< photon_count and stored_flux as the writer counted them
   std::uint64_t path_count = 0, ray_count = 0, specular_ray_count = 0, byte_count = 0;
+  std::uint64_t seen_count = 0;      ///< photons stored in the spheres of Lights::aim()
 };
 
 /// Traces all photons and writes them in file order through `sink`: batches are traced and encoded in

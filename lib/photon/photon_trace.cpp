@@ -168,6 +168,9 @@ PhotonBatch PhotonTracer::trace(std::size_t number) const {
   if (!lights_.empty())
     for (std::uint64_t q = piece * kBatch; q < last; q += kWave)
       follow(group + q * group_count_, std::size_t(std::min(last - q, kWave)), batch);
+  if (!lights_.aim().empty())
+    for (const formats::Photon& photon : batch.block.photons)
+      batch.seen_count += lights_.aim().holds({photon.position[0], photon.position[1], photon.position[2]});
   return batch;
 }
 

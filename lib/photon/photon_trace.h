@@ -35,6 +35,7 @@ struct PhotonBatch {
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};   ///< W; emitted = escaped + absorbed up to rounding
   std::uint64_t ray_count = 0, path_count = 0;
   std::uint64_t specular_ray_count = 0;      ///< of the rays: those that an event S sent
+  std::uint64_t seen_count = 0;              ///< photons stored in the spheres of Lights::aim()
 };
 
 /// Traces photons through one frame. Photon i starts at point i of a scrambled Halton sequence and draws all

@@ -264,4 +264,37 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   return plan;
 }
 
+std::vector<ViewGroup> view_groups(const Plan& plan) {
+  // By segment the first that it shares photons with: those a segment reads were traced in it or before it.
+  std::vector<std::size_t> first_of(plan.segments.size());
+  std::map<int, std::size_t> holder;   // of each frame at which photons may be traced: its segment
+  for (std::size_t i = 0; i < plan.segments.size(); ++i) {
+    first_of[i] = i;
+    for (const PlannedFrame& frame : plan.segments[i].frames) holder.try_emplace(frame.frame, i);
+  }
+  const auto join = [&](std::size_t a, std::size_t b) {
+    const std::size_t from = std::max(first_of[a], first_of[b]), to = std::min(first_of[a], first_of[b]);
+    std::ranges::replace(first_of, from, to);
+  };
+  for (std::size_t i = 0; i < plan.segments.size(); ++i)
+    for (const PlannedFrame& frame : plan.segments[i].frames) join(i, holder.at(frame.lit_frame));
+
+  struct Members {
+    std::set<int> photon_frames, pictures;
+  };
+  std::map<std::size_t, Members> groups;
+  for (std::size_t i = 0; i < plan.segments.size(); ++i)
+    for (const PlannedFrame& frame : plan.segments[i].frames)
+      if (frame.asked) {
+        groups[first_of[i]].photon_frames.insert(frame.lit_frame);
+        groups[first_of[i]].pictures.insert(frame.picture);
+      }
+  std::vector<ViewGroup> list;
+  for (const auto& [first, members] : groups)
+    list.push_back({plan.segments[first].first,
+                    {members.photon_frames.begin(), members.photon_frames.end()},
+                    {members.pictures.begin(), members.pictures.end()}});
+  return list;
+}
+
 }  // namespace tempolux

@@ -48,6 +48,20 @@ struct Stage {
   std::string because;
 };
 
+/// Segments whose frames share photons, directly or by others between them.
+struct ViewGroup {
+  int first = 0;                    ///< first frame of the first of the segments
+  std::vector<int> photon_frames;   ///< where photons are traced for what is asked for, ascending
+  std::vector<int> pictures;        ///< different pictures that they light, ascending
+};
+
+/// Where the cameras of a group look: a file of state/ for its photons.
+struct PlannedView {
+  int first = 0;                    ///< of the group
+  std::vector<int> photon_frames;
+  std::string content;              ///< formats/plan/view.h
+};
+
 struct Plan {
   std::string camera;               ///< name of the camera's node
   std::string environment;          ///< file of the light around the scene, or its option; "": none
@@ -59,6 +73,7 @@ struct Plan {
   std::string photon_kinds;         ///< what photon-trace has to record: "caustic,indirect"; "" if no photons
   /// How indirect light is found: "records", "gather" (in the pixel) or "paths". The last two leave out stages.
   std::string indirect = "records";
+  std::vector<PlannedView> views;   ///< empty: photons are not aimed. make_plan leaves it so, it traces no rays
   std::vector<std::string> warnings;
 };
 
@@ -74,5 +89,8 @@ void use_indirect(Plan& plan, const std::string& method, const std::string& beca
 /// frames of the segments, and in what stands, times the segments. Throws InputError for a scene without
 /// light or one that cannot be evaluated, std::invalid_argument for an empty `frames`.
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options);
+
+/// By first frame. Photons of one group are aimed alike, so that photon i is the same in all of its frames.
+std::vector<ViewGroup> view_groups(const Plan& plan);
 
 }  // namespace tempolux

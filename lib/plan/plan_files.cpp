@@ -136,6 +136,10 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   }
   if (photons) text += "\n# photon maps, and the pictures they light\n";
   for (const int light : photon_frames) text += variable("views_" + frame_digits(light), lit.at(light));
+  if (!plan.views.empty()) text += "\n# where the photons of sun and sky are aimed\n";
+  for (const PlannedView& view : plan.views)
+    for (const int light : view.photon_frames)
+      text += "view_" + frame_digits(light) + " := " + folder + "/state/view." + frame_digits(view.first) + "\n";
   return text;
 }
 
@@ -154,6 +158,7 @@ std::vector<PlanFile> state_files(const Plan& plan) {
       if (frame.asked) add("camera", frame.frame, frame.camera);
     }
   }
+  for (const PlannedView& view : plan.views) files.push_back({"state/view." + frame_digits(view.first), view.content});
   return files;
 }
 

@@ -27,7 +27,7 @@ void check_folder_name(const std::string& folder);
 std::string plan_makefile(const Plan& plan, const std::string& folder,
                           const std::vector<std::string>& scene_files);
 
-/// state/CONCERN.FFFF: one hash per line. To be rewritten only when their content differs.
+/// state/CONCERN.FFFF: one hash per line; state/view.SSSS: spheres. To be rewritten only when their content differs.
 std::vector<PlanFile> state_files(const Plan& plan);
 
 /// A frame number as it stands in names: at least four digits.

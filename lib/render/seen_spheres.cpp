@@ -1,0 +1,156 @@
+// lib/render/seen_spheres.cpp -- eye rays, their places, and the octree cells that hold them.
+#include "lib/render/seen_spheres.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "lib/core/frame.h"
+#include "lib/core/sampling.h"
+#include "lib/light/aim.h"
+#include "lib/render/cache_light.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kColumns = 48, kRows = 27;         ///< positions of a picture: 1296, a standard error of 3 % for a cell of half
+constexpr int kBounces = 2;
+constexpr double kReflected = 0.5;
+constexpr double kSplitShare = 1.0 / 32, kLeastShare = 1.0 / 512;
+constexpr double kRadiusOfCell = 0.875;          ///< of its size: half its diagonal is .866
+constexpr double kLeastGain = 1;                 ///< log2: twice as dense
+
+struct Cell {
+  int level = 0;                                 // size 2^level m
+  std::array<double, 3> index{};                 // whole numbers: corner = index 2^level
+  std::vector<const SeenPlace*> places;
+  double weight = 0;
+
+  double size() const { return std::ldexp(1.0, level); }
+};
+
+/// The cells of this level that hold the places, in the order of their indices.
+std::vector<Cell> cells_of(const std::vector<const SeenPlace*>& places, int level) {
+  std::map<std::array<double, 3>, Cell> cells;
+  for (const SeenPlace* place : places) {
+    const Vec3d& p = place->position;
+    const std::array index{std::floor(std::ldexp(p.x, -level)), std::floor(std::ldexp(p.y, -level)), std::floor(std::ldexp(p.z, -level))};
+    Cell& cell = cells[index];
+    cell.level = level;
+    cell.index = index;
+    cell.places.push_back(place);
+    cell.weight += place->weight;
+  }
+  std::vector<Cell> list;
+  for (auto& [index, cell] : cells) list.push_back(std::move(cell));
+  return list;
+}
+
+/// The first power of two that is not below x, as its exponent.
+int level_above(double x) {
+  int exponent;
+  return std::frexp(x, &exponent) == 0.5 ? exponent - 1 : exponent;
+}
+
+/// A quarter of the median distance seen, rounded down to a power of two; the lowest there is if nothing was.
+int lowest_level(const std::vector<SeenPlace>& places) {
+  std::vector<double> distances;
+  for (const SeenPlace& place : places)
+    if (place.distance > 0) distances.push_back(place.distance);
+  if (distances.empty()) return -1000;
+  const auto middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  int exponent;
+  std::frexp(*middle / 4, &exponent);
+  return exponent - 1;
+}
+
+/// Halves heavy cells while there may be more of them.
+std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
+  const auto drop_light = [&](std::vector<Cell>& some) {
+    std::erase_if(some, [&](const Cell& cell) { return cell.weight < kLeastShare * whole; });
+  };
+  std::vector<Cell> done;
+  drop_light(cells);
+  while (!cells.empty()) {
+    const auto heaviest = std::ranges::max_element(cells, {}, &Cell::weight);
+    Cell cell = std::move(*heaviest);
+    cells.erase(heaviest);
+    std::vector<Cell> parts;
+    if (cell.weight > kSplitShare * whole && cell.level > lowest) {
+      parts = cells_of(cell.places, cell.level - 1);
+      drop_light(parts);
+    }
+    if (parts.empty() || done.size() + cells.size() + parts.size() > formats::kMaxViewSpheres) done.push_back(std::move(cell));
+    else std::ranges::move(parts, std::back_inserter(cells));
+  }
+  return done;
+}
+
+}  // namespace
+
+void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t number, std::vector<SeenPlace>& places) {
+  const Vec3d origin = tracer.frame().origin;
+  const auto add = [&](Vec3 position, double weight, double distance) {
+    places.push_back({Vec3d(position) + origin, weight, distance});
+  };
+  for (std::uint32_t i = 0; i < kColumns * kRows; ++i) {
+    const PathRandom random(number, i);
+    const Vec2 within = random.get2(0, Purpose::place);
+    const Look look{(float(i % kColumns) + within.x) * float(view.width()) / kColumns,
+                    (float(i / kColumns) + within.y) * float(view.height()) / kRows, random};
+    std::optional<SeenPoint> seen;
+    seen_through(tracer, view, {&look, 1}, {&seen, 1});
+    if (!seen) continue;
+    add(seen->surface.position, 1, length(Vec3d(seen->surface.position) - Vec3d(view.eye())));
+    SurfacePoint at = seen->surface;
+    Vec3 normal = at.normal_geometric * std::copysign(1.0f, dot(at.normal_geometric, seen->normal));
+    double weight = kReflected;
+    for (std::uint32_t bounce = 1; bounce <= kBounces; ++bounce, weight *= kReflected) {
+      const Ray ray = spawn_ray(at, Frame(normal).to_world(sample_hemisphere_cos(random.get2(bounce, Purpose::place))));
+      Hit hit;
+      if (!tracer.intersect(ray, hit)) break;
+      at = tracer.surface_point(hit);
+      normal = at.normal_geometric * -std::copysign(1.0f, dot(at.normal_geometric, ray.direction));
+      add(at.position, weight, 0);
+    }
+  }
+}
+
+std::vector<formats::ViewSphere> spheres_around(const std::vector<SeenPlace>& places, double scene_radius) {
+  double farthest = 0, whole = 0;
+  std::vector<const SeenPlace*> all;
+  for (const SeenPlace& place : places) {
+    const Vec3d& p = place.position;
+    farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    whole += place.weight;
+    all.push_back(&place);
+  }
+  if (!(whole > 0) || !(farthest > 0) || !(scene_radius > 0)) return {};
+  // Eight cells around the world's origin hold all places.
+  const std::vector<Cell> cells = split(cells_of(all, level_above(farthest) + 1), whole, lowest_level(places));
+
+  std::vector<formats::ViewSphere> spheres;
+  double weights = 0;
+  for (const Cell& cell : cells) {
+    formats::ViewSphere sphere;
+    for (int axis = 0; axis < 3; ++axis) sphere.centre[std::size_t(axis)] = (cell.index[std::size_t(axis)] + 0.5) * cell.size();
+    sphere.radius = kRadiusOfCell * cell.size();
+    sphere.weight = std::exp2(std::round(std::log2(cell.weight / whole)));
+    weights += sphere.weight;
+    spheres.push_back(sphere);
+  }
+  double gain = 0, held = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const double ratio = scene_radius / spheres[i].radius, share = (1 - Aim::kUniform) * spheres[i].weight / weights;
+    gain += cells[i].weight / whole * std::log2(Aim::kUniform + share * ratio * ratio);
+    held += cells[i].weight / whole;
+  }
+  gain += (1 - held) * std::log2(Aim::kUniform);
+  if (!(gain >= kLeastGain)) return {};
+  std::ranges::sort(spheres, {}, [](const formats::ViewSphere& s) { return std::pair(s.centre, s.radius); });
+  return spheres;
+}
+
+}  // namespace tempolux

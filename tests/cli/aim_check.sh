@@ -1,0 +1,62 @@
+# Photons of sun and sky are aimed where the cameras look: a view file where it helps and none elsewhere, the same bytes for any
+# number of threads, what is no view file refused, too few photons said.
+. "$HERE/expect.sh"
+failed=0
+bad() { echo "$*"; failed=1; }
+scenes=$HERE/../../pipelines/scenes
+python3 -B - "$HERE/../bench" <<'EOF' || bad 'scenes'
+import sys
+sys.path.insert(0, sys.argv[1])
+from open_scenes import hut
+hut(5, True).save("small.glb")
+hut(500, True).save("wide.glb")
+EOF
+plan() { scene=$1; shift; scene-plan "$scene" --frames 0 -q "$@" || bad "plan of $scene"; }
+plan wide.glb --camera inside -o wide
+plan wide.glb --camera outside -o outside
+plan small.glb --camera inside -o small
+plan "$scenes/S2_cornell_moving.glb" -o lamps
+
+# Wide ground: spheres. Small ground: a file without spheres. Lamps alone: no file.
+[ "$(head -1 wide/state/view.0000)" = 'tempolux view 1.0' ] || bad 'wide: first line'
+[ "$(wc -l <wide/state/view.0000)" -gt 8 ] || bad 'wide: few spheres'
+[ "$(wc -l <wide/state/view.0000)" -le 33 ] || bad 'wide: many spheres'
+cmp -s wide/state/view.0000 outside/state/view.0000 && bad 'two cameras look to the same places'
+[ "$(cat small/state/view.0000)" = 'tempolux view 1.0' ] || bad 'small: spheres where none help'
+[ -e lamps/state/view.0000 ] && bad 'lamps alone: a view file'
+grep -q view_ lamps/plan.mk && bad 'lamps alone: plan.mk names a view file'
+grep -qx 'view_0000 := wide/state/view.0000' wide/plan.mk || bad 'plan.mk does not name the view file'
+# A plan made again leaves the file untouched.
+touch -d '2001-01-01' wide/state/view.0000
+plan wide.glb --camera inside -o wide
+[ -n "$(find wide/state/view.0000 ! -newermt 2001-01-02)" ] || bad 'written again with the same content'
+
+# Far more photons in the hut, and the same for any number of threads.
+trace() { photon-trace wide.glb --frame 0 --photons 30k --kinds indirect -q "$@" || bad "photon-trace $*"; }
+trace -o uniform.photons --stats uniform.json
+for threads in 1 2 7; do trace --importance wide/state/view.0000 --threads $threads -o $threads.photons --stats $threads.json; done
+cmp 1.photons 2.photons && cmp 1.photons 7.photons || bad 'other bytes with other threads'
+tempolux-info --check 1.photons >out.txt || bad "$(cat out.txt)"
+seen=$(sed -n 's/.*"photons_seen": *\([0-9]*\).*/\1/p' 1.json)
+[ "${seen:-0}" -gt 1600 ] || bad "only $seen photons seen"
+grep -q photons_seen uniform.json && bad 'counted without spheres'
+# A view without spheres changes nothing but the history.
+photon-trace small.glb --frame 0 --photons 10k -q -o none.photons
+photon-trace small.glb --frame 0 --photons 10k -q --importance small/state/view.0000 -o empty.photons
+cat >same.py <<'EOF'
+from read_photons import read_photons
+a, b = read_photons("none.photons"), read_photons("empty.photons")
+assert [x.records for x in a.blocks] == [x.records for x in b.blocks]
+EOF
+PYTHONPATH=$HERE/../formats python3 -B same.py || bad 'a view without spheres changes photons'
+
+# What is refused, and what is said.
+aim() { photon-trace wide.glb --frame 0 --photons 1k -o made.photons --importance "$@"; }
+expect 2 'absent: cannot read' aim absent
+expect 2 'line 1: not a view file' aim wide.glb
+{ cat wide/state/view.0000; echo 0 0 0 1; } >short
+expect 2 'five numbers wanted' aim short
+printf 'tempolux view 1.0\n0 0 0 -1 1\n' >negative
+expect 2 'line 2: radius and weight must be above 0' aim negative
+expect 0 'photons lie where the cameras look' aim wide/state/view.0000
+exit $failed

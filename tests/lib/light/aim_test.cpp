@@ -1,0 +1,136 @@
+// Aimed photons carry the same light as uniform ones: total, through any small window, from sun and sky.
+#include "lib/light/aim.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "lib/core/random.h"
+#include "tests/lib/light/light_scene.h"
+
+namespace tempolux {
+namespace {
+
+constexpr double kPiD = std::numbers::pi;
+
+/// Mean and standard error of what `value` says of n photons.
+struct Estimate {
+  double mean = 0, error = 0, most = 0;
+  int hits = 0;
+};
+template <class Value>
+Estimate estimate(int n, Value value) {
+  double sum = 0, squares = 0;
+  Estimate e;
+  for (int i = 0; i < n; ++i) {
+    const PathRandom random(7, std::uint64_t(i));
+    std::array<double, 4> u;
+    for (std::uint32_t k = 0; k < 4; ++k) u[k] = unit_double(random.bits(0, Purpose::test, k));
+    const double x = value(u);
+    sum += x;
+    squares += x * x;
+    e.hits += x > 0;
+    e.most = std::max(e.most, x);
+  }
+  e.mean = sum / n;
+  e.error = std::sqrt(std::max(0.0, squares / n - e.mean * e.mean) / n);
+  return e;
+}
+
+/// Two that overlap, one apart, of unlike weights, in a scene of radius 100.
+const std::vector<AimSphere> kSpheres = {{{10, 0, 5}, 3, 1}, {{11, 1, 6}, 2, 5}, {{-60, 20, 0}, 0.5, 0.1}};
+const Vec3 kTravel = normalize(Vec3{0.3f, -0.2f, -0.9f});
+
+/// Mean flux is what the uniform disc carries, 1; no photon has more than 1 / kUniform of it.
+TEST(Aim, TheTotalIsThatOfTheUniformDisc) {
+  const Aim aim(kSpheres, {1, 2, 3}, 100);
+  const Estimate total = estimate(1 << 18, [&](const auto& u) { return aim.start(kTravel, u[0], u[1]).flux; });
+  EXPECT_NEAR(total.mean, 1, 3 * total.error);
+  EXPECT_LE(total.most, 1 / Aim::kUniform);
+}
+
+/// A sphere half outside of the scene sphere adds nothing: what starts beside the scene's disc is black.
+TEST(Aim, SpheresBeyondTheSceneAddNothing) {
+  const Aim aim(std::vector<AimSphere>{{{100, 0, 0}, 20, 1}}, {}, 100);
+  const Estimate total = estimate(1 << 18, [&](const auto& u) { return aim.start({0, 0, -1}, u[0], u[1]).flux; });
+  EXPECT_NEAR(total.mean, 1, 3 * total.error);
+}
+
+/// Through a window of radius a that faces the light goes a^2 / R^2 of it, wherever the window is: in one sphere, in two, at
+/// the rim of one, in none. In a sphere half a million photons say so to 2 %, where uniform ones would need a hundred million.
+TEST(Aim, ThroughAnyWindowGoesItsShare) {
+  const Vec3 centre{1, 2, 3};
+  const Aim aim(kSpheres, centre, 100), wide;
+  EXPECT_TRUE(wide.empty());
+  struct Window {
+    Vec3 middle;
+    float a;
+    bool inside;
+  };
+  for (const auto& [middle, a, inside] : {Window{{11, 0.5f, 6}, 0.5f, true}, Window{{8, -2, 5}, 1, false},
+                                          Window{{-60, 20, 0}, 0.4f, true}, Window{{30, 40, 0}, 20, false}}) {
+    const Estimate through = estimate(1 << 19, [&](const auto& u) {
+      const Aim::Start start = aim.start(kTravel, u[0], u[1]);
+      const Vec3 to = middle - start.origin;
+      const Vec3 off = to - kTravel * dot(to, kTravel);
+      return dot(off, off) < a * a ? start.flux : 0;
+    });
+    const double exact = double(a) * a / 1e4;
+    EXPECT_NEAR(through.mean, exact, 3 * through.error + 1e-5 * exact) << middle.x;   // floats of 100 m
+    if (inside) EXPECT_LT(through.error, 0.02 * exact) << middle.x;
+  }
+}
+
+TEST(Aim, HoldsWhatLiesInASphere) {
+  const Aim aim(kSpheres, {1, 2, 3}, 100);
+  EXPECT_TRUE(aim.holds({10, 2.9f, 5}));
+  EXPECT_TRUE(aim.holds({-60, 20.4f, 0}));
+  EXPECT_FALSE(aim.holds({-60, 20.6f, 0}));
+}
+
+/// A hut of 4 m with a hole of 1 m x 1 m in its roof, z = 3, in a scene of 1000 m: what sun and sky send through the hole,
+/// E cos A and pi L A (of the half sphere above). The aim's directions are those of the light, all of them.
+class ThroughTheRoof : public testing::Test {
+ protected:
+  LightScene scene_{500};
+  Environment environment_;
+  const double kIrradiance = 3, kRadiance = 2;
+
+  Estimate through(bool aimed, int photons) {
+    EmissionTable table = scene_.table();
+    if (aimed) table.aim = {{{20, 30, 2}, 3.5, 0.75}, {{22, 30, 2}, 3.5, 0.25}};
+    const Lights lights(scene_.frame, table);
+    const double total = lights.total_flux().g;
+    const Estimate all = estimate(photons, [&](const auto& u) { return double(lights.emit(u).flux.g); });
+    EXPECT_NEAR(all.mean, total, 3 * all.error + 1e-6 * total) << "the total";
+    return estimate(photons, [&](const auto& u) {
+      const PhotonEmission e = lights.emit(u);
+      if (!(e.travel.z < 0)) return 0.0;
+      const Vec3 at = e.origin + e.travel * ((3 - e.origin.z) / e.travel.z);
+      return std::abs(at.x - 20) < 0.5f && std::abs(at.y - 30) < 0.5f ? double(e.flux.g) : 0.0;
+    });
+  }
+};
+
+TEST_F(ThroughTheRoof, OfTheSun) {
+  const Vec3 down = normalize(Vec3{0.4f, 0.1f, -0.8f});
+  scene_.add(PunctualLight::Kind::directional, Rgb(float(kIrradiance)), {}, down);
+  const Estimate aimed = through(true, 1 << 17), uniform = through(false, 1 << 17);
+  EXPECT_NEAR(aimed.mean, kIrradiance * double(-down.z), 3 * aimed.error);
+  EXPECT_LT(aimed.error, 0.03 * aimed.mean);
+  EXPECT_LT(1000 * uniform.hits, aimed.hits) << "the scene's disc has 2.4 km^2";
+}
+
+TEST_F(ThroughTheRoof, OfTheSky) {
+  environment_.width = 8;
+  environment_.height = 4;
+  environment_.radiance.assign(32, Rgb(float(kRadiance)));
+  scene_.frame.environment = &environment_;
+  const Estimate aimed = through(true, 1 << 17);
+  EXPECT_NEAR(aimed.mean, kPiD * kRadiance, 3 * aimed.error);
+  EXPECT_LT(aimed.error, 0.05 * aimed.mean);
+}
+
+}  // namespace
+}  // namespace tempolux

@@ -1,0 +1,88 @@
+// Spheres around what cameras see: few, tight, still when the camera moves a little, none where they gain nothing.
+#include "lib/render/seen_spheres.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lib/core/random.h"
+
+namespace tempolux {
+namespace {
+
+/// `count` places on the walls of a cube of this size around `middle`, seen from its middle, and `far` more on a ground
+/// that reaches `reach` to each side.
+std::vector<SeenPlace> room(Vec3d middle, double size, int count, int far = 0, double reach = 0) {
+  std::vector<SeenPlace> places;
+  for (int i = 0; i < count + far; ++i) {
+    const PathRandom random(3, std::uint64_t(i));
+    const auto number = [&](std::uint32_t k) { return 2 * unit_double(random.bits(0, Purpose::test, k)) - 1; };
+    if (i >= count) {
+      places.push_back({{reach * number(0), 0, reach * number(1)}, 1, reach});
+      continue;
+    }
+    std::array<double, 3> at{number(0), number(1), number(2)};
+    at[std::size_t(i % 3)] = i % 2 ? 1 : -1;
+    places.push_back({middle + Vec3d{at[0], at[1], at[2]} * (size / 2), 1, size / 2});
+  }
+  return places;
+}
+
+bool held(const std::vector<formats::ViewSphere>& spheres, Vec3d p) {
+  for (const formats::ViewSphere& s : spheres) {
+    const Vec3d to = p - Vec3d{s.centre[0], s.centre[1], s.centre[2]};
+    if (dot(to, to) <= s.radius * s.radius) return true;
+  }
+  return false;
+}
+
+TEST(SpheresAround, ARoomInAWideLandIsHeldByFewSmallOnes) {
+  const Vec3d middle{100.3, 2, -40};
+  const std::vector<SeenPlace> places = room(middle, 4, 3000);
+  const std::vector<formats::ViewSphere> spheres = spheres_around(places, 700);
+  ASSERT_FALSE(spheres.empty());
+  EXPECT_LE(spheres.size(), formats::kMaxViewSpheres);
+  for (const SeenPlace& place : places) EXPECT_TRUE(held(spheres, place.position));
+  for (const formats::ViewSphere& s : spheres) {
+    EXPECT_LE(s.radius, 4 * 0.875) << "the room's own size";
+    EXPECT_GE(s.radius, 0.5 * 0.875) << "a quarter of the distance seen, 2 m";
+  }
+}
+
+/// What is seen of the land beyond, a hundredth, does not spread the photons: the room keeps its small spheres.
+TEST(SpheresAround, AGlanceOutDoesNotWidenThem) {
+  const std::vector<formats::ViewSphere> spheres = spheres_around(room({5, 2, 5}, 4, 3000, 30, 500), 700);
+  ASSERT_FALSE(spheres.empty());
+  double small = 0, all = 0;
+  for (const formats::ViewSphere& s : spheres) {
+    all += s.weight;
+    if (s.radius < 4) small += s.weight;
+  }
+  EXPECT_GT(small, 0.9 * all);
+}
+
+TEST(SpheresAround, AClosedRoomHasNone) {
+  for (const double size : {0.01, 1.0, 3.0, 4.0, 5.5})
+    EXPECT_TRUE(spheres_around(room({0, 0, 0}, size, 3000), size * std::sqrt(3.0) / 2).empty()) << size;
+}
+
+TEST(SpheresAround, NothingSeenHasNone) {
+  EXPECT_TRUE(spheres_around({}, 10).empty());
+  EXPECT_TRUE(spheres_around({SeenPlace{{0, 0, 0}, 1, 1}}, 10).empty());
+}
+
+/// All places at one point: one cell, of finite size, however deep it could go.
+TEST(SpheresAround, OnePlaceIsOneCell) {
+  const std::vector<formats::ViewSphere> spheres = spheres_around({SeenPlace{{10, 1, 3}, 1, 2}, SeenPlace{{10, 1, 3}, 1, 2}}, 1000);
+  ASSERT_EQ(spheres.size(), 1u);
+  EXPECT_EQ(spheres[0].radius, 0.5 * 0.875);
+}
+
+/// A step of a millimetre moves places of a room of 4 m, but no cell.
+TEST(SpheresAround, ASmallStepLeavesThemAsTheyAre) {
+  const std::vector<SeenPlace> before = room({100.3, 2.2, -40.6}, 4, 3000), after = room({100.301, 2.2, -40.6}, 4, 3000);
+  EXPECT_EQ(formats::view_text(spheres_around(before, 700)), formats::view_text(spheres_around(after, 700)));
+}
+
+}  // namespace
+}  // namespace tempolux
