@@ -9,7 +9,7 @@
 #include "lib/core/frame.h"
 #include "lib/core/sampling.h"
 #include "lib/light/aim.h"
-#include "lib/render/cache_light.h"
+#include "lib/render/known_light.h"
 
 namespace tempolux {
 namespace {

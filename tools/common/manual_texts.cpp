@@ -24,7 +24,9 @@ constexpr ManualText kTexts[] = {
      ".photons: photons in blocks with checksums (formats/photons/photons.md)",
      "photon-trace room.glb --frame 12 --photons 200k --kinds caustic,indirect -o 12.photons\n"
      "# A map for each frame of a range; the scene is read once.\n"
-     "photon-trace room.glb --frames 0-47 -o map.####.photons",
+     "photon-trace room.glb --frames 0-47 -o map.####.photons\n"
+     "# A house in a wide land: sun and sky where the cameras of the plan look.\n"
+     "photon-trace house.glb --frame 0 --importance plan/state/view.0000 -o 0.photons",
      "scene-plan irradcache-build tempolux-info"},
     {"photonmap-split",
      "Divides the light of photons or irradiance points in two files that add up to the whole to the last bit. By "
