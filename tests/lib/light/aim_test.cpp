@@ -78,7 +78,7 @@ TEST(Aim, ThroughAnyWindowGoesItsShare) {
     });
     const double exact = double(a) * a / 1e4;
     EXPECT_NEAR(through.mean, exact, 3 * through.error + 1e-5 * exact) << middle.x;   // floats of 100 m
-    if (inside) EXPECT_LT(through.error, 0.02 * exact) << middle.x;
+    EXPECT_LT(through.error, (inside ? 0.02 : 1) * exact) << middle.x;
   }
 }
 
