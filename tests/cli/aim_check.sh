@@ -54,7 +54,7 @@ PYTHONPATH=$HERE/../formats python3 -B same.py || bad 'a view without spheres ch
 aim() { photon-trace wide.glb --frame 0 --photons 1k -o made.photons --importance "$@"; }
 expect 2 'absent: cannot read' aim absent
 expect 2 'line 1: not a view file' aim wide.glb
-{ cat wide/state/view.0000; echo 0 0 0 1; } >short
+{ head -5 wide/state/view.0000; echo 0 0 0 1; } >short
 expect 2 'five numbers wanted' aim short
 printf 'tempolux view 1.0\n0 0 0 -1 1\n' >negative
 expect 2 'line 2: radius and weight must be above 0' aim negative
