@@ -28,7 +28,7 @@ each_tool() {
   "$1" frame-render frame-render "$mirror" --size 96x54 --irradcache "$in/c.irradcache" --points "$in/p.irradpoints" \
     --photons "$in/p.photons" --spp 2 --channels RGBA,layers,Z,N,id -o a.exr
   "$1" frame-render-paths frame-render "$mirror" --size 96x54 --integrator path --spp 2 --halves -o a.exr
-  "$1" st-filter st-filter "$in/x.exr" "$in/x.exr" "$in/x.exr" -o a.exr
+  "$1" st-filter st-filter "$in/x.exr" "$in/x.exr" "$in/x.exr" --quiet -o a.exr
   "$1" aqm-compare aqm-compare "$in/x.exr" --reference-halves "$in/r_a.exr" "$in/r_b.exr" --json a.json --difference d.exr
   "$1" error-report error-report --run scene=S,curve=a,x=1 "$in/x.json" "$in/e.json" \
     --run scene=S,curve=a,x=2 "$in/x.json" "$in/e.json" --no-plots -o report

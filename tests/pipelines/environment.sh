@@ -66,7 +66,7 @@ before=$(cat "$work/plan/state/lights.0000") static=$(cat "$work/plan/state/stat
 for goal in "-s $work/out/plan/plan.mk" '-n demo'; do
   make $goal -f Makefile.example BIN="$bin" SCENE="$yard" ENVIRONMENT="$work/sky.hdr" FRAMES=0 OUT="$work/out" > "$work/make.txt" 2>&1
 done
-grep -q "photon-trace .*--environment $work/sky.hdr" "$work/make.txt" || bad "make does not pass ENVIRONMENT on: $(tail -3 "$work/make.txt")"
+grep -q "frame-render .*--environment $work/sky.hdr" "$work/make.txt" || bad "make does not pass ENVIRONMENT on: $(tail -3 "$work/make.txt")"
 
 # The same bytes for any number of threads.
 for threads in 1 3; do

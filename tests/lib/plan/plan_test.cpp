@@ -249,6 +249,7 @@ TEST(PlanMakefile, SaysWhichPhotonsHoldForAFrameAndWhatTheyDependOn) {
             "plan_pictures := 0002\n"
             "plan_photons := 0001\n"
             "plan_kinds := indirect\n"
+            "plan_indirect := records\n"
             "plan_method := frames\n"
             "out/plan/plan.mk: room.glb\n"
             "room.glb:\n"
