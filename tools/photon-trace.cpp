@@ -10,6 +10,7 @@
 
 #include "formats/photons/layout.h"
 #include "lib/photon/photon_map.h"
+#include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
 
@@ -19,6 +20,7 @@ namespace {
 
 struct Options {
   std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto";
+  float volume_share = PhotonOptions{}.volume_share;
 };
 
 /// 0 stands for automatic.
@@ -45,6 +47,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   photon_options.photon_count = tools::parse_count(options.photons);
   photon_options.group_count = group_count(options.groups);
   photon_options.set_kinds(options.kinds);
+  photon_options.volume_share = options.volume_share;
   formats::PhotonHeader header;
   header.history = tool.history_line(frame_number);
   header.identity = tools::identity_of(frame);
@@ -63,6 +66,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   tool.stats().count("paths", double(result.path_count));
   tool.stats().count("rays", double(result.ray_count));
   tool.stats().count("specular_rays", double(result.specular_ray_count));
+  if (frame.media) tool.stats().count("medium_steps", double(result.medium_steps));
   tool.stats().count("bytes_written", double(result.byte_count));
   tool.stats().count("refused_rays", double(tracer.refused_ray_count()));
 }
@@ -78,11 +82,14 @@ int main(int argc, char** argv) {
   app.add_option("--photons", options.photons,
                  "photon paths to start per frame (10k, 1M, 1G), rounded up to a multiple of the groups")
       ->capture_default_str();
-  app.add_option("--kinds", options.kinds, "kinds of light to record: direct,caustic,indirect")->capture_default_str();
+  app.add_option("--kinds", options.kinds, "kinds of light to record: direct,caustic,indirect, and volume, which is recorded where there is a medium")->capture_default_str();
   app.add_option("--groups", options.groups, "photon groups N_g (photon i is of group i mod N_g), or auto")
       ->capture_default_str();
   app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
       ->required();
+  app.add_option("--volume-share", options.volume_share, "share of the tentative collisions in media that are recorded")
+      ->capture_default_str()
+      ->check(tools::number_between(0.001, 1));
   tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_frames);
 
   return tool.run([&] {

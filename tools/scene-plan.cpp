@@ -65,9 +65,9 @@ void remove_left_overs(tools::Tool& tool, const Options& options) {
 }
 
 /// The plan as files; of those whose content would be the same only plan.mk is written.
-void write_plan(tools::Tool& tool, const Plan& plan, const Scene& scene, const Options& options,
+void write_plan(tools::Tool& tool, const Plan& plan, const std::vector<std::string>& files, const Options& options,
                 tools::Output& makefile, const std::string& estimate) {
-  const std::string rules = plan_makefile(plan, options.folder, scene.files);
+  const std::string rules = plan_makefile(plan, options.folder, files);
   std::size_t changed = 0;
   const std::vector<PlanFile> states = state_files(plan);
   for (const PlanFile& state : states) changed += write_if_changed(options.folder + "/" + state.name, state.content);
@@ -88,12 +88,13 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
     makefile.emplace(options.folder + "/plan.mk", false, tools::Output::Kind::text);
   }
   tool.stats().phase("load");
-  const tools::SceneInput input(tool, options.scene, tools::SceneInput::light | tools::SceneInput::a_camera);
+  tools::SceneInput input(tool, options.scene, tools::SceneInput::light | tools::SceneInput::a_camera);
   const Scene& scene = input.scene();
 
   tool.stats().phase("plan");
   const int camera = scene.camera_node(tool.common().camera);
-  const Plan plan = make_plan(scene, tool.common().frames, camera, input.time());
+  const MediaHash media = [&](int frame) { return input.media_hash(frame); };
+  const Plan plan = make_plan(scene, tool.common().frames, camera, input.time(), input.has_media() ? media : MediaHash{});
   for (const std::string& warning : plan.warnings) tool.warn(options.scene + ": " + warning);
   std::string estimate_as_json;
   if (options.estimate) {
@@ -106,7 +107,9 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
     std::cout << (options.json ? estimate_as_json : estimate_text(estimate, processors, options.jobs, threads));
   }
   tool.stats().phase("write");
-  if (makefile) write_plan(tool, plan, scene, options, *makefile, estimate_as_json);
+  std::vector<std::string> files = scene.files;
+  files.insert(files.end(), input.media_files().begin(), input.media_files().end());
+  if (makefile) write_plan(tool, plan, files, options, *makefile, estimate_as_json);
   for (const Stage& stage : plan.stages)
     tool.say(stage.name + (stage.needed ? ": needed: " : ": not needed: ") + stage.because);
 }

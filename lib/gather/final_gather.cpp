@@ -8,6 +8,7 @@
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/gather/hemisphere.h"
+#include "lib/gather/medium_event.h"
 #include "lib/material/bsdf.h"
 #include "lib/material/inside.h"
 #include "lib/material/seen_side.h"
@@ -139,10 +140,12 @@ inline void FinalGather::meet(Vec3 wo, float distance, Met& met) const {
   met.distance = distance;
 }
 
-/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything. alike: as
-/// Tracer::intersect.
-template <class Take>
-void FinalGather::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take) const {
+/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything. Of those that a
+/// medium scatters before: take_medium(i, collision, distance), by the numbers of key(i). alike: as Tracer::intersect.
+template <class Take, class Key, class TakeMedium>
+void FinalGather::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key,
+                         const TakeMedium& take_medium) const {
+  const Media* const media = tracer_.frame().media.get();
   std::array<Hit, kAtOnce> hits;
   std::array<Met, kAtOnce> met;
   std::array<PointLookup::Question, kAtOnce> questions;
@@ -152,8 +155,13 @@ void FinalGather::follow(std::span<const Ray> rays, bool alike, GatherCounts& co
     tracer_.intersect(rays.subspan(first, count), std::span(hits).first(count), alike);
     for (std::size_t i = 0; i < count; ++i) {
       met[i].bsdf = nullptr;
-      if (hits[i].surface == kNone) continue;
       const Ray& ray = rays[first + i];
+      MediumPoint collision;
+      if (media && collides(*media, ray, hits[i].surface == kNone ? INFINITY : hits[i].t, PathRandom(key(first + i), 3), 0, collision)) [[unlikely]] {
+        take_medium(first + i, collision, length(collision.position - ray.origin));
+        continue;
+      }
+      if (hits[i].surface == kNone) continue;
       tracer_.surface_points(std::span(hits).subspan(i, 1), &met[i].hit);
       meet(-ray.direction, length(met[i].hit.position - ray.origin), met[i]);
       if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(met[i].hit.position, met[i].geometric);
@@ -177,6 +185,9 @@ void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint6
   follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
     distance[i] = met.distance;
     radiance[i] = reflected(met, point, {{}, keys[i], Rgb(1.0f), i}, 0, counts, next);
+  }, [&](std::size_t i) { return keys[i]; }, [&](std::size_t i, const MediumPoint& collision, float way) {
+    distance[i] = way;
+    radiance[i] = scattered_in_media(collision, {{}, keys[i], Rgb(1.0f), i}, counts, next);
   });
   for (int depth = 1; !next.empty(); ++depth) {
     std::swap(now, next);
@@ -186,6 +197,9 @@ void FinalGather::radiance(std::span<const Ray> rays, std::span<const std::uint6
     follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
       const Further from = now[i];
       radiance[from.of] += from.weight * reflected(met, point, from, depth, counts, next);
+    }, [&](std::size_t i) { return now[i].key; }, [&](std::size_t i, const MediumPoint& collision, float) {
+      const Further from = now[i];
+      radiance[from.of] += from.weight * scattered_in_media(collision, from, counts, next);
     });
   }
 }
@@ -244,7 +258,17 @@ Rgb FinalGather::reflected_beyond(const SurfacePoint& start, Vec3 travel, float 
                                   GatherCounts& counts, std::vector<Further>& further, const MaterialValues* inside) const {
   Hit hit;
   ++counts.rays;
-  if (!tracer_.intersect(spawn_ray(start, travel), hit))
+  const Ray ray = spawn_ray(start, travel);
+  const bool meets = tracer_.intersect(ray, hit);
+  if (const Media* const media = tracer_.frame().media.get()) [[unlikely]] {
+    MediumPoint collision;
+    if (collides(*media, ray, meets ? hit.t : INFINITY, PathRandom(from.key, 3), 0, collision)) {
+      const Rgb left = inside ? transmittance(*inside, length(collision.position - start.position)) : Rgb(1.0f);
+      from.weight *= left;
+      return left * scattered_in_media(collision, from, counts, further);
+    }
+  }
+  if (!meets)
     return from.sees_lamps && lights_.has_environment() ? lights_.environment(travel) : Rgb(0.0f);
   Met met;
   met.hit = tracer_.surface_point(hit);
@@ -255,6 +279,23 @@ Rgb FinalGather::reflected_beyond(const SurfacePoint& start, Vec3 travel, float 
   const Rgb emitted = from.sees_lamps ? lights_.emitted(met.hit, met.wo, 0) : Rgb(0.0f);
   const PointLookup::Light* point = met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric) : nullptr;
   return left * (emitted + reflected(met, point, from, depth, counts, further));
+}
+
+/// Light of a lamp that a medium sends back along a ray from its collision; `further` receives the ray that goes on. Left out is light that
+/// mirrors or glass throw into the medium.
+Rgb FinalGather::scattered_in_media(const MediumPoint& at, const Further& from, GatherCounts& counts, std::vector<Further>& further) const {
+  const PathRandom random(from.key, 4);
+  Rgb light{0.0f};
+  if (!lights_.empty())
+    light = at.albedo * tempolux::sampled_light(tracer_, lights_, at, random.get2(1, Purpose::light_point), false,
+                                                {random, 1, way_shadow_of_medium}, counts.shadow_rays);
+  Rgb weight = from.weight * at.albedo;
+  const float survival = std::min(kLargestSurvival, max_component(weight));
+  if (!(random.get1(1, Purpose::roulette) < survival)) return light;
+  weight *= 1 / survival;
+  const Vec3 travel = sample_hg(at.g, at.travel, random.get2(1, Purpose::phase));
+  further.push_back({{at.position, travel, 0, INFINITY}, mix64(from.key + 1), weight, from.of, false});
+  return light;
 }
 
 /// Irradiance at a hit but for what arrives along the ray that goes on, which `further` receives. Near hits take caustic light
@@ -289,8 +330,11 @@ Rgb FinalGather::sampled_light(const Met& met, const SeenSide& side, const PathR
                                          random.get2(1, Purpose::light_point), light) || !side.sees(light.wi))
     return Rgb(0.0f);
   ++counts.shadow_rays;
-  if (tracer_.occluded(spawn_shadow_ray(met.hit, light.position, light.position_offset))) return Rgb(0.0f);
+  const Ray shadow = spawn_shadow_ray(met.hit, light.position, light.position_offset);
+  if (tracer_.occluded(shadow)) return Rgb(0.0f);
   const float cosine = dot(light.wi, side.normal);
+  if (const Media* const media = tracer_.frame().media.get()) [[unlikely]]
+    light.radiance *= media_transmittance(*media, shadow, {random, 1, way_shadow});
   return light.radiance * (cosine * met.bsdf->arrival_weight(cosine));
 }
 

@@ -34,7 +34,9 @@ struct GatherCounts {
   }
 };
 
-/// Gathers the light of kind indirect that arrives at surface points. Thread-safe.
+struct MediumPoint;   // lib/gather/medium_event.h
+
+/// Gathers the light of kind indirect that arrives at surface points; media on the way take out and scatter. Thread-safe.
 class FinalGather {
  public:
   FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options);
@@ -74,7 +76,9 @@ class FinalGather {
   static Strata strata(int rays);
   struct Further;
   void meet(Vec3 wo, float distance, Met& met) const;
-  template <class Take> void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take) const;
+  template <class Take, class Key, class TakeMedium>
+  void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key, const TakeMedium& take_medium) const;
+  Rgb scattered_in_media(const MediumPoint& at, const Further& from, GatherCounts& counts, std::vector<Further>& further) const;
   Rgb reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth, GatherCounts& counts,
                 std::vector<Further>& further) const;
   Rgb reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth, GatherCounts& counts,

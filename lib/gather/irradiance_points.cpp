@@ -1,3 +1,4 @@
+#include "lib/gather/medium_event.h"
 #include "lib/gather/irradiance_points.h"
 
 #include <algorithm>
@@ -139,7 +140,10 @@ Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoi
     if (!(cosine > 0 && dot(light.wi, point.normal) > 0) ||
         tracer.occluded(spawn_shadow_ray(from, light.position, light.position_offset)))
       continue;
-    sum += Rgbd(light.radiance) * double(scattering.coat ? cosine * scattering.coat->arrival_weight(cosine) : cosine);
+    Rgb left{1.0f};
+    if (const Media* const media = tracer.frame().media.get()) [[unlikely]]
+      left = Rgb(media_transmittance(*media, spawn_shadow_ray(from, light.position, light.position_offset), {random, std::uint32_t(s), way_shadow}));
+    sum += Rgbd(light.radiance * left) * double(scattering.coat ? cosine * scattering.coat->arrival_weight(cosine) : cosine);
   }
   return Rgb(sum / double(samples));
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct PlannedFrame {
   std::string moving_geometry;      ///< hashes, as in SceneHashes
   std::string lights;
   std::string materials;
+  std::string media;                ///< empty: the scene has no media at any frame
 };
 
 /// A segment that holds some of the frames asked for, with all frames it has.
@@ -57,8 +59,12 @@ struct Plan {
   std::vector<Stage> stages;
   bool walkthrough = false;         ///< key frames and warping pay: METHOD=auto follows it
   std::string photon_kinds;         ///< what photon-trace has to record: "caustic,indirect"; "" if no photons
+  bool media = false;               ///< has the scene media?
   std::vector<std::string> warnings;
 };
+
+/// The media at a frame: content hash (SceneHashes::media). An empty function: there are none.
+using MediaHash = std::function<std::string(int frame)>;
 
 /// Evaluates the segments that hold `frames` and compares their states by content: hashes decide, neither
 /// file times nor what the file calls an animation. A frame beyond the animation shows its nearest end and is
@@ -67,6 +73,7 @@ struct Plan {
 /// `camera_node` is an index into Scene::nodes (Scene::camera_node). Time is linear in what moves, times the
 /// frames of the segments, and in what stands, times the segments. Throws InputError for a scene without
 /// light or one that cannot be evaluated, std::invalid_argument for an empty `frames`.
-Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options);
+Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,
+               const MediaHash& media = {});
 
 }  // namespace tempolux

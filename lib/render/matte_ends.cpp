@@ -5,6 +5,7 @@
 #include <array>
 
 #include "lib/core/check.h"
+#include "lib/gather/medium_event.h"
 
 namespace tempolux {
 namespace {
@@ -18,28 +19,35 @@ struct Sampling {
   std::uint32_t number;   ///< of the pixel's sample
 };
 
-bool reaches(const RenderScene& scene, const MatteEnd& end, const LightSample& light, RayCounts& counts) {
+/// Takes from the radiance what is lost on the way from the light: all where something is between; what media scatter or absorb.
+/// False if nothing is left. `way`: tells the samples of large lights from those of the rest.
+bool reaches(const RenderScene& scene, const MatteEnd& end, const LightSample& light, const PixelRandom& random, std::uint32_t way,
+             Rgb& radiance, RayCounts& counts) {
   if (!end.sees(light.wi)) return false;
   ++counts.shadow;
-  return !scene.tracer.occluded(spawn_shadow_ray(end.surface, light.position, light.position_offset));
+  const Ray shadow = spawn_shadow_ray(end.surface, light.position, light.position_offset);
+  if (scene.tracer.occluded(shadow)) return false;
+  if (const Media* const media = scene.frame().media.get()) [[unlikely]]
+    radiance *= media_transmittance(*media, shadow, {random.hashed(), end.bounce, way});
+  return true;
 }
 
 Rgb arriving(const MatteEnd& end, const LightSample& light) {
   return end.reflected * light.radiance * std::max(0.0f, dot(light.wi, end.normal));
 }
 
-void add_large(const RenderScene& scene, MatteEnd& end, const LightSample& light, RayCounts& counts) {
-  const Rgb radiance = arriving(end, light);
+void add_large(const RenderScene& scene, MatteEnd& end, const LightSample& light, const PixelRandom& random, RayCounts& counts) {
+  Rgb radiance = arriving(end, light);
   (end.layer == Layer::direct ? end.control.direct : end.control.specular) += radiance;
   end.control.sampled += channel_mean(radiance);
-  if (is_black(radiance) || !reaches(scene, end, light, counts)) return;
+  if (is_black(radiance) || !reaches(scene, end, light, random, way_shadow, radiance, counts)) return;
   end.control.seen += channel_mean(radiance);
   end.light += radiance;
 }
 
-void add_rest(const RenderScene& scene, MatteEnd& end, const LightSample& light, RayCounts& counts) {
-  const Rgb radiance = arriving(end, light);
-  if (!is_black(radiance) && reaches(scene, end, light, counts)) end.light += radiance;
+void add_rest(const RenderScene& scene, MatteEnd& end, const LightSample& light, const PixelRandom& random, RayCounts& counts) {
+  Rgb radiance = arriving(end, light);
+  if (!is_black(radiance) && reaches(scene, end, light, random, way_shadow_of_rest, radiance, counts)) end.light += radiance;
 }
 
 void take(const RenderScene& scene, const PixelRandom& random, std::span<const Sampling> samplings, RayCounts& counts) {
@@ -57,8 +65,9 @@ void take(const RenderScene& scene, const PixelRandom& random, std::span<const S
     rest_found |= unsigned(scene.lights.sample_rest(*at[i], choice, rest[i])) << i;
   }
   for (std::size_t i = 0; i < samplings.size(); ++i) {
-    if (found >> i & 1) add_large(scene, *samplings[i].end, large[i], counts);
-    if (rest_found >> i & 1) add_rest(scene, *samplings[i].end, rest[i], counts);
+    const PixelRandom of_sample = random.of_sample(samplings[i].number);
+    if (found >> i & 1) add_large(scene, *samplings[i].end, large[i], of_sample, counts);
+    if (rest_found >> i & 1) add_rest(scene, *samplings[i].end, rest[i], of_sample, counts);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "lib/core/check.h"
 #include "lib/core/sampling.h"
+#include "lib/gather/medium_event.h"
 #include "lib/material/inside.h"
 #include "lib/render/matte_ends.h"
 
@@ -48,8 +49,11 @@ void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, const Rg
   }
   if (is_black(diffuse) && is_black(glossy)) return;
   ++counts.shadow;
-  if (scene.tracer.occluded(spawn_shadow_ray(x.surface, light.position, light.position_offset))) return;
+  const Ray shadow = spawn_shadow_ray(x.surface, light.position, light.position_offset);
+  if (scene.tracer.occluded(shadow)) return;
   Rgb arriving = throughput * light.radiance * (std::abs(wi.z) / share);
+  if (const Media* const media = scene.frame().media.get()) [[unlikely]]
+    arriving *= media_transmittance(*media, shadow, {random.hashed(), bounce, way_shadow});
   if (inside.any()) arriving *= inside.transmittance_over(scene.frame().materials, length(light.position - x.surface.position));
   result[path.after(true).layer()] += arriving * diffuse;
   result[path.after(false).layer()] += arriving * glossy;
@@ -80,6 +84,31 @@ void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter
   result[layer] += throughput * scene.lights.environment(direction) * weight;
 }
 
+/// Scattering in a medium: light of a lamp, roulette, a new direction. False if the path ends there.
+bool scatter_in_medium(const RenderScene& scene, const MediumPoint& point, const PixelRandom& random, std::uint32_t bounce,
+                       EyePath& path, Rgb& throughput, LastScatter& last, Ray& ray, Layers& result, RayCounts& counts) {
+  path.scatter_in_medium();
+  throughput *= point.albedo;
+  const WayBits bits{random.hashed(), bounce, way_shadow_of_medium};
+  result[path.layer()] +=
+      throughput * sampled_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), true, bits, counts.shadow);
+  if (bounce + 1 >= kRouletteFrom) {
+    const float survival = std::min(kLargestSurvival, max_component(throughput));
+    if (!(random.get1(bounce, Purpose::roulette) < survival)) return false;
+    throughput *= 1 / survival;
+  } else if (is_black(throughput)) {
+    return false;
+  }
+  const Vec3 travel = sample_hg(point.g, point.travel, random.get2(bounce, Purpose::phase));
+  last.weighed = true;
+  last.position = point.position;
+  last.normal = {};
+  last.light_share = 1;
+  last.pdf_solid_angle = pdf_hg(point.g, point.travel, travel);
+  ray = {point.position, travel, 0, INFINITY};
+  return true;
+}
+
 /// Follows a path; adds to `result`. With `end` it may end at a matte surface of which all but the light sampled there is
 /// known: then that is set and the answer is true.
 bool follow(const RenderScene& scene, const EyeRay& eye, const PixelRandom& random, const DiffuseLight* diffuse_light,
@@ -94,8 +123,27 @@ bool follow(const RenderScene& scene, const EyeRay& eye, const PixelRandom& rand
   Ray ray = eye.ray;
   Hit hit = eye.hit;
   ++counts.camera;
+  const Media* const media = frame.media.get();
 
   for (std::uint32_t bounce = 0;; ++bounce) {
+    if (media) [[unlikely]] {
+      const float way = hit.surface == kNone ? INFINITY : hit.t;
+      MediumPoint collision;
+      if (diffuse_light && bounce == 0) {
+        const auto left = float(std::exp(-media->optical_depth(ray.origin, ray.direction, way)));
+        throughput *= left;
+        result.coverage = 1 - left;
+      } else if (collides(*media, ray, way, random.hashed(), bounce, collision)) {
+        if (bounce == 0) result.coverage = 1;
+        if (inside.any()) throughput *= inside.transmittance_over(frame.materials, length(collision.position - ray.origin));
+        if (!scatter_in_medium(scene, collision, random, bounce, path, throughput, last, ray, result, counts)) break;
+        cone = {};
+        ++counts.bounce;
+        hit = {};
+        scene.tracer.intersect(ray, hit);
+        continue;
+      }
+    }
     if (hit.surface == kNone) {
       if (scene.lights.has_environment()) add_environment(scene, ray.direction, last, throughput, path.layer(), result);
       break;

@@ -31,7 +31,7 @@ void SampleHalves::add(int rank, int count, const Layers& sample, int stands_for
   Sum& sum = half[second ? 1 : 0];
   const Rgb diffuse = sample[Layer::direct] + sample[Layer::caustic] + sample[Layer::indirect];
   const auto weight = float(stands_for);
-  sum.image += (sample[Layer::emission] + sample[Layer::specular] + diffuse) * weight;
+  sum.image += (sample[Layer::emission] + sample[Layer::specular] + diffuse + sample[Layer::volume]) * weight;
   sum.diffuse += diffuse * weight;
   sum.count += weight;
 }
