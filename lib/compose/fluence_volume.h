@@ -36,7 +36,10 @@ class FluenceSums {
   std::uint64_t photons() const { return photons_; }
   /// Can tentative collisions happen in the cell: is its majorant above 0?
   const std::vector<std::uint8_t>& open() const { return open_; }
-  bool operator==(const FluenceSums&) const = default;
+  /// The same cells, with the same sums.
+  bool operator==(const FluenceSums& other) const {
+    return counts_ == other.counts_ && unit_ == other.unit_ && photons_ == other.photons_ && sums_ == other.sums_;
+  }
 
  private:
   Box3 box_;

@@ -66,19 +66,7 @@ check() {  # FILE TOLERANCE R G B [LAYER.]: means of channels
 import json, sys
 tolerance, *wanted = map(float, sys.argv[1:5])
 prefix = sys.argv[5] if len(sys.argv) > 5 else ""
-def find(node):
-    if isinstance(node, dict):
-        for key, value in node.items():
-            yield key, value
-            yield from find(value)
-    elif isinstance(node, list):
-        for value in node:
-            yield from find(value)
-channels = {}
-for key, value in find(json.load(open("info.json"))):
-    if isinstance(value, dict) and "mean" in value: channels[key.removeprefix("channel ")] = value["mean"]
-    if key == "channels" and isinstance(value, list):
-        for c in value: channels[c["name"]] = c["mean"]
+channels = {c["channel"]: c["mean"] for c in json.load(open("info.json"))["channels"]}
 for name, want in zip("RGB", wanted):
     got = channels[prefix + name]
     assert abs(got - want) <= tolerance * max(want, 1e-9), (name, got, want)
@@ -99,7 +87,7 @@ check composed.exr .02 2 5 1.25
 
 # Without the medium the file is as if there were no such option, and no medium is known.
 frame-render "$furnace" --volume none --size 8x8 --spp 1 --integrator path -q -o none.exr && frame-render "$furnace" --size 8x8 --spp 1 --integrator path -q -o plain.exr
-[ "$(tempolux-info --digest none.exr)" = "$(tempolux-info --digest plain.exr)" ] || bad '--volume none is not nothing'
+[ "$(tempolux-info --digest none.exr | cut -c 1-32)" = "$(tempolux-info --digest plain.exr | cut -c 1-32)" ] || bad '--volume none is not nothing'
 tempolux-info --json plain.exr | grep -q 'volume.R' && bad 'a layer volume without medium'
 photon-trace "$furnace" --volume none --photons 10k --kinds indirect -q -o none.photons
 expect 2 'media differ' volume-compose "$furnace" $medium --photons none.photons --base base.exr -o x.exr

@@ -6,6 +6,7 @@
 // left out. An existing file gets the grid as one more.
 #include <openvdb/openvdb.h>
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -16,7 +17,7 @@
 namespace {
 
 template <class Grid>
-typename Grid::Ptr make(const std::vector<float>& values, const int (&size)[3], typename Grid::ValueType background, float zero) {
+typename Grid::Ptr make(const std::vector<float>& values, const std::array<int, 3>& size, typename Grid::ValueType background, float zero) {
   auto grid = Grid::create(background);
   auto accessor = grid->getAccessor();
   std::size_t i = 0;
@@ -31,7 +32,7 @@ typename Grid::Ptr make(const std::vector<float>& values, const int (&size)[3], 
 
 int main(int argc, char** argv) {
   if (argc < 9) return std::fprintf(stderr, "make-vdb OUT NX NY NZ VOXEL X Y Z [NAME [CLASS [BACKGROUND [TYPE]]]] < VALUES\n"), 2;
-  const int size[3] = {std::atoi(argv[2]), std::atoi(argv[3]), std::atoi(argv[4])};
+  const std::array<int, 3> size{std::atoi(argv[2]), std::atoi(argv[3]), std::atoi(argv[4])};
   const std::string name = argc > 9 ? argv[9] : "density", kind = argc > 10 ? argv[10] : "fog", type = argc > 12 ? argv[12] : "float";
   const double voxel = std::atof(argv[5]), background = argc > 11 ? std::atof(argv[11]) : 0;
   std::vector<float> values(std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]));
