@@ -5,11 +5,15 @@
 //
 // Format: formats/photons/photons.md.
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "formats/photons/layout.h"
 #include "lib/photon/photon_map.h"
+#include "lib/photon/photon_ledger.h"
+#include "lib/photon/photon_update.h"
 #include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
@@ -21,7 +25,23 @@ namespace {
 struct Options {
   std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto";
   float volume_share = PhotonOptions{}.volume_share;
+  std::string update, share, strategy = "oldest";
+  std::uint64_t max_groups = 0;
+  UpdateOptions updating;
 };
+
+/// "10%" of the groups, rounded up.
+std::uint64_t groups_of(const std::string& share, std::uint32_t group_count) {
+  std::size_t read = 0;
+  double percent = -1;
+  try {
+    percent = std::stod(share, &read);
+  } catch (const std::exception&) {
+  }
+  if (!(percent >= 0 && percent <= 100) || (share.substr(read) != "%" && read != share.size()))
+    throw InputError("--share: '" + share + "' is not a share; write 10% or 2.5%");
+  return std::uint64_t(std::ceil(percent / 100 * group_count));
+}
 
 /// 0 stands for automatic.
 std::uint32_t group_count(const std::string& text) {
@@ -30,6 +50,37 @@ std::uint32_t group_count(const std::string& text) {
   if (count < 1 || count > formats::photons::kMaxGroupCount)
     throw InputError("--groups: " + text + " is not in 1 .. " + std::to_string(formats::photons::kMaxGroupCount));
   return std::uint32_t(count);
+}
+
+/// Are all states of the scene that light depends on those of the map?
+bool is_still(const formats::Identity& a, const formats::Identity& b) {
+  return a.known() && a.static_geometry == b.static_geometry && a.moving_geometry == b.moving_geometry && a.materials == b.materials &&
+         a.lights == b.lights && a.media == b.media;
+}
+
+PhotonMapResult update_map(tools::Tool& tool, const Options& options, const PhotonTracer& photons, const PhotonOptions& photon_options,
+                           const formats::PhotonHeader& header, const SceneFrame& frame,
+                           const std::function<void(const void*, std::size_t)>& sink) {
+  const std::string previous_name = tools::frame_name(options.update, frame.frame - 1);
+  const bool census = options.updating.strategy == UpdateStrategy::census;
+  const PreviousMap previous = read_previous(previous_name, photons, census, frame.origin);
+  tool.depends_on(previous_name, tools::InputRole::replaceable);
+  formats::PhotonHeader wanted = header;
+  describe_map(photons, photon_options, wanted);
+  if (const std::string why = why_not_updatable(previous.header, wanted); !why.empty())
+    throw InputError(previous_name + ": cannot be updated: " + why + "; trace this frame anew, without --update");
+  UpdateOptions updating = options.updating;
+  updating.most_groups = options.max_groups;
+  if (!options.share.empty()) updating.most_groups = groups_of(options.share, photons.group_count());
+  const std::vector<std::uint32_t> groups =
+      choose_groups(previous, frame.frame, is_still(previous.header.identity, header.identity), updating);
+  tool.stats().count("groups_updated", double(groups.size()));
+  const std::string output = tools::frame_name(options.output, frame.frame);
+  const auto folder = [](const std::string& path) { return path.substr(0, path.rfind('/') + 1); };
+  formats::PhotonHeader with_history = header;
+  with_history.history = previous.header.history + header.history;
+  return write_updated_map(photons, photon_options, with_history, previous_name, previous, groups,
+                           output != "-" && folder(output) == folder(previous_name), sink);
 }
 
 void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int frame_number,
@@ -56,9 +107,11 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
 
   tool.stats().phase("trace", true);
   const PhotonTracer photons(tracer, lights, photon_options);
-  const PhotonMapResult result = write_photon_map(
-      photons, photon_options, header, [&](const void* data, std::size_t size) { output.write(data, size); },
-      [&](double fraction) { tool.progress(fraction); });
+  const auto sink = [&](const void* data, std::size_t size) { output.write(data, size); };
+  const PhotonMapResult result =
+      options.update.empty()
+          ? write_photon_map(photons, photon_options, header, sink, [&](double fraction) { tool.progress(fraction); })
+          : update_map(tool, options, photons, photon_options, header, frame, sink);
   tool.stats().phase("commit");
   output.commit();
   tool.stats().end_phase();
@@ -87,6 +140,20 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
       ->required();
+  app.add_option("--update", options.update,
+                 "map of the frame before, or a pattern: keep its groups but for those that are traced again; needs photons in media and "
+                 "--majorants")
+      ->type_name("FILE");
+  app.add_option("--share", options.share, "of --update: share of the groups that is traced again, as 10%")->type_name("PERCENT");
+  app.add_option("--max-groups", options.max_groups, "of --update: instead of a share, their number")->type_name("N");
+  app.add_option("--strategy", options.strategy,
+                 "which groups go first: oldest; random; census: where the stored photons saw most change, times age; all")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"oldest", "random", "census", "all"}));
+  app.add_option("--age-floor", options.updating.age_floor, "of --update: groups as many frames old go before all others; 0: none")
+      ->type_name("FRAMES")
+      ->capture_default_str()
+      ->check(tools::number_between(0, 1e6));
   app.add_option("--volume-share", options.volume_share, "share of the tentative collisions in media that are recorded")
       ->capture_default_str()
       ->check(tools::number_between(0.001, 1));
@@ -96,6 +163,14 @@ int main(int argc, char** argv) {
     const std::vector<int>& frames = tool.common().frames;
     if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
       throw InputError("--output: several frames need a pattern, for example f.####.photons");
+    using Strategy = UpdateStrategy;
+    options.updating.strategy = options.strategy == "census" ? Strategy::census : options.strategy == "random" ? Strategy::random
+                                : options.strategy == "all" ? Strategy::all : Strategy::oldest;
+    if (!options.update.empty() && options.share.empty() && options.max_groups == 0 && options.strategy != "all")
+      throw InputError("--update: say how many groups to trace again, --share 10% or --max-groups N");
+    if (!options.update.empty() && tool.common().volume.majorants.empty())
+      throw InputError("--update: needs the --majorants of the segment (scene-plan writes state/majorants.FFFF): without them photons look at "
+                       "other places in each frame");
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light);
     StandingTree standing;

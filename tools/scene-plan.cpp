@@ -107,6 +107,10 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
     std::cout << (options.json ? estimate_as_json : estimate_text(estimate, processors, options.jobs, threads));
   }
   tool.stats().phase("write");
+  if (makefile && plan.media)
+    for (const PlannedSegment& segment : plan.segments)
+      write_if_changed(options.folder + "/state/majorants." + frame_digits(segment.first),
+                       majorants_text(input.frozen_majorants(segment.first, segment.last)));
   std::vector<std::string> files = scene.files;
   files.insert(files.end(), input.media_files().begin(), input.media_files().end());
   if (makefile) write_plan(tool, plan, files, options, *makefile, estimate_as_json);
