@@ -136,6 +136,7 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
   if (options.light.irradcache.empty() && !options.light.points.empty())
     throw InputError("--points: only a cache needs them, --irradcache FILE");
+  tools::check_influence(options.light.influence);
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
@@ -181,6 +182,7 @@ void add_light_options(tools::Tool& tool, Options& options) {
   app.add_option("--caustic-radius", options.light.photon_light.caustic_radius,
                  "farthest caustic photon used, m; 0: from the photons' spacing")
       ->capture_default_str()->check(tools::number_between(0));
+  tools::influence_options(tool, options.light.influence);
   app.add_option("--rays", options.light.gather.rays, "gather rays for a missing record")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
 }
