@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lib/core/frame.h"
+#include "lib/core/ideas.h"
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/gather/hemisphere.h"
@@ -196,6 +197,7 @@ inline float FinalGather::threshold(const PathRandom& random) { return 0.5f + ra
 /// Is the hit too near for its point to be read: within about near_factor radii of the estimate behind it?
 inline bool FinalGather::is_near(const Met& met, const PointLookup::Light& point, const PathRandom& random) const {
   // Most hits are far from the seam: they need no random number.
+  if (!used(Idea::near_hits)) return false;
   const float reach = options_.near_factor * point.radius;
   if (!(met.distance < 1.5f * reach)) return false;
   return met.distance < 0.5f * reach || met.distance < reach * threshold(random);
@@ -355,7 +357,8 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
   record.radius = sky.nearest_across();
 
   // More rays where light is uneven: a cell's value becomes the mean of all of its own.
-  sky.further_rays(further);
+  if (used(Idea::further_rays)) sky.further_rays(further);
+  else further.assign(order.size(), 0);
   shots.clear();
   for (const std::uint32_t c : order)
     for (std::uint32_t sample = 1; sample <= further[c]; ++sample) shots.aim(c, sample);

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "lib/core/ideas.h"
 #include "lib/core/random.h"
 #include "lib/core/vec.h"
 #include "lib/density/photon_index.h"
@@ -83,6 +84,7 @@ class PointLookup {
   /// a chair's shadow is seen by the chair. A point's own light has no say in it: it is known by a few shadow rays, and were
   /// those that came out bright replaced, what is read would be dark in the mean.
   bool is_even(const Light& light) const {
+    if (!used(Idea::shadow_edges)) return true;
     const std::uint8_t known = light.even.load(std::memory_order_relaxed);
     return known == kNotAsked ? compare_neighbours(light) : known == kEven;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lib/core/check.h"
+#include "lib/core/ideas.h"
 #include "lib/core/sampling.h"
 
 namespace tempolux {
@@ -251,6 +252,11 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
       within[i] = x * x + y * y + z * z <= node.shell_radius2[i] ? node.two_sided[i] : 0.0f;
     }
     two_sided = within;
+  }
+  if (!used(Idea::light_tree)) {
+    double sum = 0;
+    for (int i = 0; i < kWidth; ++i) sum += importance[i] = node.weight[i];
+    return sum;
   }
   const float no_normal = normal == Vec3{} ? 1.0f : 0.0f;
   for (int i = 0; i < kWidth; ++i) {

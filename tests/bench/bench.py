@@ -18,6 +18,9 @@ from measure import Bench, Missing, machine, walk_speed
 from required import FIGURES
 
 
+SLOW = ("cycles", "ablation")     # only when asked for
+
+
 def options():
     project = Path(__file__).resolve().parents[2]
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -25,7 +28,7 @@ def options():
     parser.add_argument("--out", type=Path, default=project / "out" / "bench", help="raw results, references [out/bench]")
     parser.add_argument("--results", type=Path, default=project / "RESULTS.md", help="the page [RESULTS.md]")
     parser.add_argument("--docs", type=Path, default=project / "docs", help="folder of its figures [docs]")
-    parser.add_argument("--only", help="parts, by comma [sweep,%s; cycles with --peers]" % ",".join(name for name in FIGURES if name != "cycles"))
+    parser.add_argument("--only", help=f"parts, by comma: {', '.join(['sweep', *FIGURES])} [all but {', '.join(SLOW)}]")
     parser.add_argument("--peers", action="store_true", help="also Cycles on this machine; wants Blender and numpy")
     parser.add_argument("--scenes", default="", help="parts found, everyscene: regular expression, these scenes alone; the others as measured before")
     parser.add_argument("--sizes", default="320x180", help="part everyscene: by comma [320x180]")
@@ -48,7 +51,8 @@ def draw_curves(bench, peers):
 
 def measure(bench, name, peers, args):
     """One required figure; kept as JSON."""
-    more = {"found": {"only": args.scenes}, "everyscene": {"only": args.scenes, "sizes": args.sizes.split(","), "seeds": args.seeds}}
+    more = {"found": {"only": args.scenes}, "everyscene": {"only": args.scenes, "sizes": args.sizes.split(","), "seeds": args.seeds},
+            "ablation": {"only": args.scenes}}
     load = os.getloadavg()[0]
     begin = time.monotonic()
     bench.walk = walk_speed(bench)
@@ -65,7 +69,7 @@ def main():
     bench = Bench(args.build.resolve(), args.out.resolve(), project, args.tiny, args.reference_samples)
     peers = json.loads((Path(__file__).parent / "peers.json").read_text())
     left_out = {}
-    parts = args.only.split(",") if args.only else ["sweep", *(name for name in FIGURES if name != "cycles" or args.peers)]
+    parts = args.only.split(",") if args.only else ["sweep", *(name for name in FIGURES if name not in SLOW or (name == "cycles" and args.peers))]
     for name in [] if args.page else parts:
         print(f"== {name}", flush=True)
         try:

@@ -4,6 +4,11 @@ import math
 from measure import quantity
 
 
+def efficiency(old, new, speed=1):
+    """CPU x MSE of one row of everyscene over that of another; `speed`: the processor's at the time of the new, over the old."""
+    return (old["cpu_s"] * old["mse"]) / (new["cpu_s"] * speed * new["mse"])
+
+
 def compared(old, new):
     """Text. CPU seconds of the two runs are made comparable by the bare walk measured in each (unknown: as they are). Efficiency is
     CPU x MSE of the old run over that of the new; above 1: the new one is better."""
@@ -18,9 +23,9 @@ def compared(old, new):
                 lines.append(f"{name:34} {was.get('refused') or 'rendered'} -> {row.get('refused') or 'rendered'}")
             continue
         cpu, mse = row["cpu_s"] * speed / was["cpu_s"], row["mse"] / was["mse"]
-        gains.append(1 / (cpu * mse))
+        gains.append(efficiency(was, row, speed))
         biases = [100 * r["bias"]["picture"]["difference"] for r in (was, row)]
-        lines.append(f"{name:34} {cpu:12.2f} {mse:12.2f} {1 / (cpu * mse):11.2f} {quantity(was['speed_up']):>7} -> {quantity(row['speed_up']):<6}"
+        lines.append(f"{name:34} {cpu:12.2f} {mse:12.2f} {gains[-1]:11.2f} {quantity(was['speed_up']):>7} -> {quantity(row['speed_up']):<6}"
                      f" {biases[0]:+6.2f} ->{biases[1]:+6.2f} {was['dots']:4.0f} ->{row['dots']:4.0f}")
     if gains:
         gains.sort()

@@ -6,6 +6,7 @@ Ratios are of CPU seconds within one run, the sides alternating, medians of the 
 import math
 import os
 
+import ablation
 import cycles
 import demo
 import gathering
@@ -202,4 +203,4 @@ def object_table(objects):
 
 FIGURES = {"everyscene": everyscene, "path-tracer": path_tracer, "photon-rate": photon_rate, "photon-growth": photon_growth, "nearest": nearest,
            "threads": threads, "start": start} | demo.FIGURES | {"estimate": estimate, "reading": reading, "references": references,
-           "found": found} | gathering.FIGURES | million.FIGURES | cycles.FIGURES | {"million-threads": million_threads} | instructions.FIGURES
+           "found": found} | gathering.FIGURES | million.FIGURES | cycles.FIGURES | ablation.FIGURES | {"million-threads": million_threads} | instructions.FIGURES
