@@ -4,7 +4,7 @@ import shutil
 from pathlib import Path
 
 import open_scenes
-from furnish import Asset, bounds, looking
+from furnish import Asset
 
 SKY_OF_SUN = ("--environment-color", "0.1,0.12,0.15")     # beside the sun of `-sun` scenes: an eighth of its light
 WITH_SUN = ("house", "low-poly-jungle", "GrassFieldInstanced", "CesiumMan", "issum", "lamborghini", "DepthOfFieldExample")
@@ -67,18 +67,8 @@ def found_names(folder):
     return {stem if stems.count(stem) == 1 else f"{stem}{p.suffix}": p for stem, p in zip(stems, files)}
 
 
-def framed(copy):
-    """Gives a file without a camera one that sees all of it, from the upper right in front."""
-    lower, upper = bounds(copy.gltf)
-    centre, r = [(a + b) / 2 for a, b in zip(lower, upper)], max(1e-6, sum((b - a) ** 2 for a, b in zip(lower, upper)) ** 0.5 / 2)
-    eye = [c + r * x for c, x in zip(centre, (0.9, 0.9, 2.9))]
-    copy.gltf.setdefault("cameras", []).append({"type": "perspective", "perspective": {"yfov": 0.66, "znear": 0.001 * r}})
-    copy.node(name="AddedCamera", camera=len(copy.gltf["cameras"]) - 1, matrix=looking(eye, [c - e for c, e in zip(centre, eye)]))
-
-
-def found(bench, folder, wanted, auto_frames):
-    """Those made by others; without a light under an environment map, some also under a sun. `auto_frames`: --camera auto frames
-    a scene without a camera; else it gets one here."""
+def found(bench, folder, wanted):
+    """Those made by others; without a light under an environment map, some also under a sun."""
     top = bench.shared / "found" if bench.shared else None
     if not top or not top.is_dir():
         return
@@ -89,23 +79,18 @@ def found(bench, folder, wanted, auto_frames):
             if not wanted(title):
                 continue
             asset, added = Asset(file), []
-            camera = not asset.has_camera and not auto_frames
-            if camera or sun:
-                asset = copied(asset, folder / title)
-            if camera:
-                framed(asset)
-                added.append("camera")
             if sun:
+                asset = copied(asset, folder / title)
                 asset.sun([-0.5, -0.8, -0.6])
                 added.append("sun")
             dark = not asset.has_light
-            yield Case(title, asset.save() if added else file, 10, "open" if dark or sun else "closed",
+            yield Case(title, asset.save() if sun else file, 10, "open" if dark or sun else "closed",
                        shared=SKY_OF_SUN if sun else (), environment=light if dark else None,
                        note=", ".join(added + (["environment map"] if dark else [])))
 
 
-def all_cases(bench, wanted, auto_frames):
+def all_cases(bench, wanted):
     folder = bench.out / "every" / "scenes"
     yield from (case for case in ours(bench) if case.name != "PC" and wanted(case.name))
     yield from scripted(folder, wanted)
-    yield from found(bench, folder / "found", wanted, auto_frames)
+    yield from found(bench, folder / "found", wanted)

@@ -31,7 +31,7 @@ import pixels
 from comparing import compared
 from measure import Bench, figure, machine, percent, quantity, walk_speed
 from references import Law, Reference
-from shipped import STAGES, Side, Unfinished, frames_without_camera, yardstick
+from shipped import STAGES, Side, Unfinished, yardstick
 
 PILOT = 16                       # samples per pixel of the first path-traced picture
 OF_PICTURE, OF_LAYER, TENTH = 0.01, 0.02, 0.1
@@ -206,7 +206,7 @@ def run(bench, only, sizes, seeds, patience, reference_cpu, kept):
     rows = {f"{r['scene']} {r['size']}": r for r in json.loads(kept.read_text())["rows"]} if kept.exists() else {}
     print("  ".join(HEADER), flush=True)
     measured = []
-    for case in cases.all_cases(bench, wanted, frames_without_camera(bench)):
+    for case in cases.all_cases(bench, wanted):
         for size in sizes:
             try:
                 row = measure(bench, case, size, seeds, patience, reference_cpu)
@@ -247,7 +247,7 @@ def main():
     args = parser.parse_args()
     bench = Bench(args.build.resolve(), args.out.resolve(), project, False, 0)
     if args.list:
-        print(*(case.name for case in cases.all_cases(bench, lambda name: True, False)), sep="\n")
+        print(*(case.name for case in cases.all_cases(bench, lambda name: True)), sep="\n")
         return
     kept = (args.json or bench.out / "every" / ("quick.json" if args.quick else "rows.json")).resolve()
     _, rows = run(bench, args.scenes if args.scenes is not None else "quick" if args.quick else "",

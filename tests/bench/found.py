@@ -33,6 +33,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
+from cases import found_names
 from furnish import LEAST_ROUGHNESS, Asset, furnished, roughened, with_sun
 from measure import Bench, Missing, commit_of, figure
 
@@ -268,18 +269,34 @@ def is_good(file, row):
             and all(r["verdict"] in ("agrees", None) for r in row["layers"].values()))
 
 
-def table_rows(name, row):
-    """Strings: the file's line, one for each layer that is not black."""
+def by_preset(bench):
+    """{file: its row of part everyscene}: what the shipped preset made of the same files, each as it is, under a map if it has no light."""
+    kept = bench.out / "every" / "rows.json"
+    rows = {row["scene"]: row for row in json.loads(kept.read_text())["rows"] if row["size"] == "320x180"} if kept.exists() else {}
+    folder = bench.project / ".." / "shared" / "scenes" / "found" / "gltf"
+    return {str(file.relative_to(folder)): rows[name] for name, file in found_names(folder).items() if name in rows}
+
+
+def beside(preset, layer):
+    """A layer by the preset: difference from the path tracer, of the picture, with three standard errors."""
+    if not preset or "refused" in preset:
+        return ""
+    r = preset["bias"][layer]
+    return f"{100 * r['difference']:+.2f} ± {100 * r['bar']:.2f} %" + {"apart": " (!)", "undecided": " (?)"}.get(r["verdict"], "")
+
+
+def table_rows(name, row, preset=None):
+    """Strings: the file's line, one for each layer that is not black. `preset`: its row of part everyscene."""
     if row["exit"] != 0:
-        return [[name, f"exit {row['exit']}: {row['message']}", "", "", "", ""]]
+        return [[name, f"exit {row['exit']}: {row['message']}", "", "", "", "", ""]]
     cpu = f"{row['path_cpu_s']:.1f} ({row['spp']} samples), {row['chain_cpu_s']:.1f} ({row['seeds']} seeds, {row['photons'] / 1e6:g} M photons)"
-    lines = [[name, "rendered" + (f" ({row['given']})" if row["given"] else ""), "", "", "", cpu]]
+    lines = [[name, "rendered" + (f" ({row['given']})" if row["given"] else ""), "", "", "", cpu, f"{preset['cpu_s']:.1f} CPU s" if preset and "cpu_s" in preset else ""]]
     for layer, r in row["layers"].items():
         if r["path"] or r["chain"]:
             relative = f"{100 * r['difference']:+.2f} ± {100 * r['bar']:.2f} %" if r["path"] else "-"
             said = {"agrees": "", "apart": " (!)", "undecided": " (?)", None: " (below 0.1 % of the picture)"}[r["verdict"]]
             lines.append(["", layer, f"{r['path']:.4g} ± {r['path_error']:.1g}", f"{r['chain']:.4g} ± {r['chain_error']:.1g}",
-                          relative + said, ""])
+                          relative + said, "", beside(preset, layer)])
     return lines
 
 
@@ -320,6 +337,7 @@ def found(bench, _=None, only="", size="320x180", cpu=120, photons=12_000_000):
                 rows[name]["same_bytes"] = work.same_for_threads(files[name])
         pictures = [picture for name in rendered for picture in work.shown(files[name])]
     kept.write_text(json.dumps(rows, indent=1))
+    presets = by_preset(bench)
     good = all(is_good(files[name], row) for name, row in rows.items())
     notes = [f"{name}: {warning}" for name, row in rows.items() for warning in row.get("warnings", [])]
     notes += [f"{Path(name).name}: {'the same' if row['same_bytes'] else 'OTHER'} bytes with 1, 2, 3 and 7 threads."
@@ -333,8 +351,9 @@ def found(bench, _=None, only="", size="320x180", cpu=120, photons=12_000_000):
         bench.run([bench.bin / "tempolux-info", "--sheet", bench.out / "found.png", "--columns", 6, "--exposure", 0, *pictures])
     return figure("Scenes made by others, path tracer and photon chain",
                   "all render or are refused by name; means of layers within 1.5 %; the same bytes for any number of threads",
-                  ["file, layer", "", "path tracer, mean", "photon chain, mean", "chain / path - 1, error bar", "CPU s, path tracer and chain"],
-                  [line for name, row in rows.items() for line in table_rows(name, row)],
+                  ["file, layer", "", "path tracer, mean", "photon chain, mean", "chain / path - 1, error bar", "CPU s, path tracer and chain",
+                   "preset final (everyscene), of the picture"],
+                  [line for name, row in rows.items() for line in table_rows(name, row, presets.get(name))],
                   good if len(rows) == len(files) and not bench.tiny else None, notes)
 
 

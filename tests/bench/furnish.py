@@ -107,37 +107,6 @@ def looking(eye, forward):
     return [*x, 0, *cross(z, x), 0, *z, 0, *eye, 1]
 
 
-def bounds(gltf):
-    """(lower, upper) corner of all meshes as the nodes place them, without skins, morphs and instances; +-1 without meshes."""
-    lower, upper = [math.inf] * 3, [-math.inf] * 3
-
-    def times(m, n):
-        return [sum(m[4 * k + i] * n[4 * j + k] for k in range(4)) for j in range(4) for i in range(4)]
-
-    def local(node):
-        if "matrix" in node:
-            return node["matrix"]
-        x, y, z, w = node.get("rotation", [0, 0, 0, 1])
-        turned = [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w), 2 * (x * y - z * w), 1 - 2 * (x * x + z * z),
-                  2 * (y * z + x * w), 2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)]
-        return [v for j, s in enumerate(node.get("scale", [1, 1, 1])) for v in (*(s * turned[3 * j + i] for i in range(3)), 0)] + [
-            *node.get("translation", [0, 0, 0]), 1]
-    todo = [(i, [float(i % 5 == 0) for i in range(16)]) for i in gltf.get("scenes", [{}])[gltf.get("scene", 0)].get("nodes", [])]
-    while todo:
-        index, above = todo.pop()
-        node = gltf["nodes"][index]
-        place = times(above, local(node))
-        todo += [(child, place) for child in node.get("children", [])]
-        for primitive in gltf["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []:
-            corners = gltf["accessors"][primitive["attributes"]["POSITION"]]
-            for corner in range(8):
-                p = [corners["max" if corner >> c & 1 else "min"][c] for c in range(3)]
-                for i in range(3):
-                    v = sum(place[4 * k + i] * p[k] for k in range(3)) + place[12 + i]
-                    lower[i], upper[i] = min(lower[i], v), max(upper[i], v)
-    return (lower, upper) if lower[0] <= upper[0] else ([-1] * 3, [1] * 3)
-
-
 def with_sun(asset, folder):
     """A copy with a sun from the upper front right: what it lights tells where things are. All is matte in it."""
     copy = asset.copied(folder)

@@ -23,16 +23,6 @@ def yardstick(bench):
     return ["--integrator", "path", *(["--visibility-grid", "off"] if "--visibility-grid" in known else [])]
 
 
-def frames_without_camera(bench):
-    """Does --camera auto frame a scene that has no camera?"""
-    scene = bench.out / "tmp" / "no-camera.gltf"
-    made = cases.open_scenes.Scene()
-    made.quad((-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1), made.material(0.5, 1.0))
-    made.save(scene)
-    done = subprocess.run([bench.bin / "scene-plan", scene, "-q", "-o", bench.out / "tmp" / "no-camera"], capture_output=True)
-    return done.returncode == 0
-
-
 class Side:
     """Runs of the chain or of the path tracer on one scene at one size."""
 
