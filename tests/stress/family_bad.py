@@ -5,6 +5,9 @@ import pathlib
 from scenes import Scene
 from session import case
 
+# Once refused, as no reader here could unpack it: its meshopt streams are whole. Without a lamp only frame-render takes it.
+SOUND = {"meshoptimizer-fuzz.glb"}
+
 FOLDER = pathlib.Path(__file__).resolve().parents[3] / "shared/scenes/bad"
 
 
@@ -26,4 +29,7 @@ def files(s):
             out = s.path(ending)
             run = s.run(tool, "-q", file, *options, "-o", out, timeout=20, address_space=2 << 30)
             written = out if ending else out + "/plan.json"
-            s.refused(f"{tool} {file.relative_to(FOLDER)}", run, written, seconds=2, memory=300e6)
+            if tool == "frame-render" and file.name in SOUND:
+                s.true(f"{tool} {file.name}, which is sound", run.code == 0 and not run.err, f"exit {run.code}", "exit 0")
+            else:
+                s.refused(f"{tool} {file.relative_to(FOLDER)}", run, written, seconds=2, memory=300e6)

@@ -76,8 +76,8 @@ def touching(s):
 
 @case("caches", "all misses")
 def misses(s):
-    """A floor under a lamp and nothing above it: no gather ray hits. No light, and the largest radius: a tenth of the
-    scene's diagonal."""
+    """A floor under a lamp and nothing above it: no gather ray hits. No light, and the largest radius of records that
+    saw nothing: 32 pixels, of 2 x 0.9 / 32 m each (PlaceOptions::unseen_radius_px)."""
     scene = Scene()
     scene.quad((-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1), scene.material(0.8))
     scene.point_light((0, 1, 0), 1.0)
@@ -88,7 +88,7 @@ def misses(s):
     s.true("hit distance of every record", all(r.radius_unclamped == math.inf for r in records),
            f"{min(r.radius_unclamped for r in records):g}", "inf")
     for what, bound in (("smallest", min), ("largest", max)):
-        s.near(f"{what} radius, m", 0.1 * math.hypot(2, 2), bound(r.radius for r in records), 1e-5)
+        s.near(f"{what} radius, m", 32 * 2 * 0.9 / 32, bound(r.radius for r in records), 1e-5)
     s.true("gradients", all(g == 0 for r in records for g in (*r.rotational, *r.translational)), expected="0")
 
 
