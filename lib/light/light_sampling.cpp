@@ -69,6 +69,16 @@ bool Lights::Impl::sample_sun(Vec3 point, Vec3 normal, double u, double probabil
   return true;
 }
 
+/// Light from a direction of the environment, drawn with this density [1/sr].
+bool Lights::Impl::take_from_sky(const EnvironmentLight::Sample& found, Vec3 point, double pdf, LightSample& s) const {
+  s.wi = found.direction;
+  s.position = point + s.wi * distance_beyond();
+  s.radiance = Rgb(Rgbd(found.radiance) / pdf);
+  s.pdf_solid_angle = float(pdf);
+  s.distant = true;
+  return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
+}
+
 /// u_float: what u comes from. Where its 24 bits are used up, bits of the other coordinate take their place.
 bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const {
   const auto more_bits = [](float other) { return 0x1p-24 * unit_double(mix64(std::bit_cast<std::uint32_t>(other))); };
@@ -76,13 +86,7 @@ bool Lights::Impl::sample_environment(Vec3 point, Vec2 u_float, double u, double
   if (!environment->sample(std::min(u + more_bits(u_float.y) / probability, 1 - 0x1p-53),
                            std::min(double(u_float.y) + more_bits(u_float.x), 1 - 0x1p-53), found))
     return false;
-  const double pdf = found.pdf_solid_angle * probability;
-  s.wi = found.direction;
-  s.position = point + s.wi * distance_beyond();
-  s.radiance = Rgb(Rgbd(found.radiance) / pdf);
-  s.pdf_solid_angle = float(pdf);
-  s.distant = true;
-  return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
+  return take_from_sky(found, point, found.pdf_solid_angle * probability, s);
 }
 
 /// A point or spot light.
@@ -156,13 +160,7 @@ bool Lights::Impl::sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 
     EnvironmentLight::Sample found;
     double density;
     if (!grid->sample_sky(cell, u_choice / cell.sky, joint ? u.y : u.x, found, density)) return false;
-    const double pdf = density * double(cell.sky);
-    s.wi = found.direction;
-    s.position = point + s.wi * distance_beyond();
-    s.radiance = Rgb(Rgbd(found.radiance) / pdf);
-    s.pdf_solid_angle = float(pdf);
-    s.distant = true;
-    return s.pdf_solid_angle > 0 && s.pdf_solid_angle < INFINITY;
+    return take_from_sky(found, point, density * double(cell.sky), s);
   }
   u_choice -= cell.sky;
   if (u_choice < cell.suns) return sample_sun(point, normal, u_choice / cell.suns, double(cell.suns), s);

@@ -45,6 +45,7 @@ struct Lights::Impl {
   bool sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const;
   bool sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint,
                    LightSample& sample) const;
+  bool take_from_sky(const EnvironmentLight::Sample& found, Vec3 point, double pdf, LightSample& s) const;
   bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
   const LightGrid::Cell* known(Vec3 point, Vec3 normal) const { return grid ? grid->find(point, normal) : nullptr; }
   double sum_distant(Vec3 normal) const;
