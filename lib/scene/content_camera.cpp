@@ -105,10 +105,10 @@ std::array<double, 2> inner_range(const std::vector<Piece>& pieces, int axis) {
 void leave_out_strays(std::vector<Piece>& pieces) {
   for (int axis = 0; axis < 3; ++axis) {
     Box3d all, inner;
-    const auto [low, high] = inner_range(pieces, axis);
+    const auto range = inner_range(pieces, axis);
     const auto inside = [&](const Piece& piece) {
       const double at = coordinate(Vec3d(piece.centre()), axis);
-      return at >= low && at <= high;
+      return at >= range[0] && at <= range[1];
     };
     for (const Piece& piece : pieces)
       for (const Vec3 p : piece.corners) {
