@@ -21,6 +21,7 @@
 #include "lib/core/random.h"
 #include "lib/core/sampling.h"
 #include "lib/gather/final_gather.h"
+#include "lib/gather/hemisphere.h"
 #include "lib/gather/irradiance_points.h"
 #include "lib/photon/photon_trace.h"
 #include "lib/scene/gltf_load.h"
@@ -162,7 +163,7 @@ double time_gather(const FinalGather& gather, const std::vector<Ray>& rays, Gath
   std::vector<float> distance(each);
   const double start = cpu_seconds();
   for (std::size_t first = 0; first < rays.size(); first += each) {
-    gather.radiance(std::span(rays).subspan(first, each), std::span(keys).subspan(first, each), radiance, distance,
+    gather.incoming()(std::span(rays).subspan(first, each), std::span(keys).subspan(first, each), radiance, distance,
                     counts);
     for (const Rgb& l : radiance) sum += double(l.g);
   }

@@ -1,0 +1,248 @@
+#include "lib/gather/incoming_radiance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/frame.h"
+#include "lib/core/sampling.h"
+#include "lib/material/inside.h"
+#include "lib/material/seen_side.h"
+#include "lib/material/surface_material.h"
+
+namespace tempolux {
+namespace {
+
+/// Events followed by one ray; roulette ends all but 4e-12 of them before, clear or not.
+constexpr int kDeepest = 512;
+constexpr float kLargestSurvival = 0.95f;
+constexpr std::size_t kAtOnce = 32;  ///< rays whose answers are fetched together
+
+}  // namespace
+
+/// A surface at a ray's end.
+struct IncomingRadiance::Met {
+  SurfacePoint hit;
+  Vec3 wo, geometric;             ///< geometric: the normal on the side of wo
+  float distance = INFINITY;      ///< m, along the path since the gather ray's start
+  const Bsdf* bsdf = nullptr;     ///< null: nothing was met
+  std::optional<Bsdf> textured;   ///< what bsdf points to where the material has textures
+};
+
+/// A ray that goes on from a hit, and what is to become of the radiance along it. All of one depth follow together.
+struct IncomingRadiance::Further {
+  Ray ray;
+  std::uint64_t key = 0;
+  Rgb weight{0.0f};
+  std::size_t of = 0;        ///< the gather ray
+  bool sees_lamps = false;   ///< beyond events S: light of kind caustic where it started, which no point has told
+};
+
+/// Where what is found along the way goes.
+struct IncomingRadiance::Gathered {
+  GatherCounts& counts;
+  std::vector<Further>& further;
+  std::span<RadianceSource> sources;   ///< by gather ray; may be empty
+
+  RadianceSource* source_of(const Further& from) const { return sources.empty() ? nullptr : &sources[from.of]; }
+};
+
+IncomingRadiance::IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor)
+    : tracer_(tracer), lights_(lights), points_(points), near_factor_(near_factor) {
+  for (const Material& material : tracer.frame().materials)
+    bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
+}
+
+Bsdf IncomingRadiance::bsdf_at(const SurfacePoint& place, Vec3 normal) const {
+  Met met;
+  met.hit = place;
+  meet(normal, 0, met);
+  return *met.bsdf;
+}
+
+/// Fills in the rest where met.hit is known. A material with textures is made for this hit; a normal map bends its normal.
+inline void IncomingRadiance::meet(Vec3 wo, float distance, Met& met) const {
+  const float cosine = dot(met.hit.normal_geometric, wo);
+  met.bsdf = &bsdfs_[met.hit.material][cosine > 0];
+  if (tracer_.frame().materials[met.hit.material].textures) [[unlikely]] {
+    const SurfaceMaterial material(tracer_.frame(), met.hit);
+    met.bsdf = &met.textured.emplace(material, cosine > 0);
+  }
+  met.wo = wo;
+  met.geometric = cosine < 0 ? -met.hit.normal_geometric : met.hit.normal_geometric;
+  met.distance = distance;
+}
+
+/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything. alike: as
+/// Tracer::intersect.
+template <class Take>
+void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take) const {
+  std::array<Hit, kAtOnce> hits;
+  std::array<Met, kAtOnce> met;
+  std::array<PointLookup::Question, kAtOnce> questions;
+  std::array<PointLookup::Answer, kAtOnce> answers;
+  for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, rays.size() - first);
+    tracer_.intersect(rays.subspan(first, count), std::span(hits).first(count), alike);
+    for (std::size_t i = 0; i < count; ++i) {
+      met[i].bsdf = nullptr;
+      if (hits[i].surface == kNone) continue;
+      const Ray& ray = rays[first + i];
+      tracer_.surface_points(std::span(hits).subspan(i, 1), &met[i].hit);
+      meet(-ray.direction, length(met[i].hit.position - ray.origin), met[i]);
+      if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(met[i].hit.position, met[i].geometric);
+    }
+    const auto reads_point = [&](std::size_t i) { return met[i].bsdf && met[i].bsdf->has_diffuse(); };
+    for (std::size_t i = 0; i < count; ++i)
+      if (reads_point(i)) answers[i] = points_.answer(questions[i]);
+    for (std::size_t i = 0; i < count; ++i)
+      if (met[i].bsdf) take(first + i, met[i], reads_point(i) ? points_.read(questions[i], answers[i]) : nullptr);
+  }
+  counts.rays += rays.size();
+}
+
+void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std::uint64_t> keys, std::span<Rgb> radiance,
+                                  std::span<float> distance, GatherCounts& counts, std::span<RadianceSource> sources) const {
+  thread_local std::vector<Further> now, next;
+  thread_local std::vector<Ray> further_rays;
+  std::fill(radiance.begin(), radiance.end(), Rgb(0.0f));
+  std::fill(distance.begin(), distance.end(), INFINITY);
+  std::fill(sources.begin(), sources.end(), RadianceSource{});
+  next.clear();
+  const Gathered to{counts, next, sources};
+  follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
+    distance[i] = met.distance;
+    radiance[i] = reflected(met, point, {{}, keys[i], Rgb(1.0f), i}, 0, to);
+  });
+  for (int depth = 1; !next.empty(); ++depth) {
+    std::swap(now, next);
+    next.clear();
+    further_rays.clear();
+    for (const Further& f : now) further_rays.push_back(f.ray);
+    follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
+      const Further from = now[i];
+      radiance[from.of] += from.weight * reflected(met, point, from, depth, to);
+    });
+  }
+}
+
+/// From 1/2 to 1 1/2, for all that depends on how near a hit is: no seam where that begins.
+inline float IncomingRadiance::threshold(const PathRandom& random) { return 0.5f + random.get1(0, Purpose::gather); }
+
+/// Is the hit too near for its point to be read: within about near_factor radii of the estimate behind it?
+inline bool IncomingRadiance::is_near(const Met& met, const PointLookup::Light& point, const PathRandom& random) const {
+  // Most hits are far from the seam: they need no random number.
+  const float reach = near_factor_ * point.radius;
+  if (!(met.distance < 1.5f * reach)) return false;
+  return met.distance < 0.5f * reach || met.distance < reach * threshold(random);
+}
+
+/// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to read there, or by
+/// going on where none stands for the hit or a first hit is near; its other lobes by following one of them. to.further
+/// receives the ray that goes on from a Lambert lobe, if any.
+Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
+                                const Gathered& to) const {
+  const Bsdf& bsdf = *met.bsdf;
+  const bool specular = bsdf.has_specular();
+  std::optional<SeenSide> side;
+  if (specular) side.emplace(met.hit, met.wo);
+  const PathRandom random(from.key, std::uint64_t(depth));
+  RadianceSource* const source = to.source_of(from);
+  if (source) {
+    source->mover |= met.hit.surface >= tracer_.frame().static_count;
+    if (depth == 0 && point) source->point = point->point;
+    source->partial |= depth > 0;
+  }
+  Rgb result{0.0f};
+  if (bsdf.has_diffuse()) {
+    const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
+    if (point && (depth > 0 || !is_near(met, *point, random))) {
+      ++to.counts.points_read;
+      const bool even = points_.is_even(*point);
+      if (source) source->partial |= !even;
+      result = scale * (even ? point->all : beside_edge(met, *point, random, to.counts));
+    } else {
+      if (source) source->partial = true;
+      result = scale * scattered(met, point, from, scale, random, depth, to);
+    }
+  }
+  if (!specular || depth >= kDeepest) return result;
+  // Other lobes: one sampled direction, by roulette on its weight; the Lambert lobe was read above.
+  const MaterialValues& material = tracer_.frame().materials[met.hit.material];
+  const bool front = dot(met.hit.normal_geometric, met.wo) > 0, solid = is_solid_glass(material);
+  const auto next = bsdf.sample(side->wo_local, random.get1(2, Purpose::lobe), random.get2(2, Purpose::scatter));
+  if (next.diffuse || is_black(next.weight)) return result;
+  const Vec3 travel = side->frame.to_world(next.wi);
+  if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, met.geometric) <= 0) return result;
+  const float survival = std::min(0.95f, max_component(next.weight));
+  if (!(random.get1(2, Purpose::roulette) < survival)) return result;
+  const Rgb weight = next.weight * (1 / survival);
+  Further beyond = from;
+  beyond.key = mix64(from.key + 2);
+  beyond.weight *= weight;
+  if (source) source->partial = true;
+  return result + weight * reflected_beyond(met.hit, travel, met.distance, beyond, depth + 1, to,
+                                            solid && front == next.transmitted ? &material : nullptr);
+}
+
+/// Radiance along a ray that goes on after an event S at `start`, `distance` on the way already, inside a solid of glass or not.
+Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth,
+                                       const Gathered& to, const MaterialValues* inside) const {
+  Hit hit;
+  ++to.counts.rays;
+  if (!tracer_.intersect(spawn_ray(start, travel), hit))
+    return from.sees_lamps && lights_.has_environment() ? lights_.environment(travel) : Rgb(0.0f);
+  Met met;
+  met.hit = tracer_.surface_point(hit);
+  const float on = length(met.hit.position - start.position);
+  const Rgb left = inside ? transmittance(*inside, on) : Rgb(1.0f);
+  from.weight *= left;
+  meet(-travel, distance + on, met);
+  const Rgb emitted = from.sees_lamps ? lights_.emitted(met.hit, met.wo, 0) : Rgb(0.0f);
+  const PointLookup::Light* point = met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric) : nullptr;
+  return left * (emitted + reflected(met, point, from, depth, to));
+}
+
+/// Irradiance at a hit but for what arrives along the ray that goes on, which to.further receives. Near hits take caustic light
+/// from the point that stands for them; direct light too, which is known to the spacing of the points instead of an estimate's
+/// radius, if they are farther than about that; else by light sampling. Without a point all but direct light is the ray's.
+Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
+                                const PathRandom& random, int depth, const Gathered& to) const {
+  ++(point ? to.counts.near_hits : to.counts.unanswered);
+  const SeenSide side(met.hit, met.wo);
+  Rgb irradiance{0.0f};
+  if (point) irradiance = points_.point(*point).caustic;
+  if (point && points_.is_even(*point) && met.distance >= points_.spacing() * threshold(random)) irradiance += points_.point(*point).direct;
+  else irradiance += sampled_light(met, side, random, to.counts);
+  // Each by itself. Spread over near hits side by side (a sequence), records in corners had half the noise, but came out 5 %
+  // bright: cells get further rays by what neighbours saw, on which their own value must not depend.
+  const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
+  if (!(dot(travel, met.geometric) > 0)) return irradiance;
+  Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn.z));
+  if (depth > 0) {
+    const float survival = std::min(kLargestSurvival, max_component(weight));
+    if (!(random.get1(1, Purpose::roulette) < survival)) return irradiance;
+    weight *= 1 / survival;
+  }
+  to.further.push_back({spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point});
+  return irradiance;
+}
+
+/// Direct irradiance at a hit by one light sample.
+Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PathRandom& random, GatherCounts& counts) const {
+  LightSample light;
+  if (lights_.empty() || !lights_.sample(met.hit.position, side.normal, random.get1(1, Purpose::light_choice),
+                                         random.get2(1, Purpose::light_point), light) || !side.sees(light.wi))
+    return Rgb(0.0f);
+  ++counts.shadow_rays;
+  if (tracer_.occluded(spawn_shadow_ray(met.hit, light.position, light.position_offset))) return Rgb(0.0f);
+  const float cosine = dot(light.wi, side.normal);
+  return light.radiance * (cosine * met.bsdf->arrival_weight(cosine));
+}
+
+/// Irradiance at a hit where the point's direct light is not its own.
+Rgb IncomingRadiance::beside_edge(const Met& met, const PointLookup::Light& light, const PathRandom& random, GatherCounts& counts) const {
+  const IrradiancePoint& point = points_.point(light);
+  return point.indirect + point.caustic + sampled_light(met, SeenSide(met.hit, met.wo), random, counts);
+}
+
+}  // namespace tempolux

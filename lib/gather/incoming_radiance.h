@@ -1,0 +1,72 @@
+// lib/gather/incoming_radiance.h -- what gather rays bring: the light of kind indirect that arrives along them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lib/core/random.h"
+#include "lib/irradcache/points.h"
+#include "lib/light/lights.h"
+#include "lib/material/bsdf.h"
+#include "lib/trace/trace.h"
+
+namespace tempolux {
+
+/// near_hits: went on though a point stood for them; unanswered: went on as none did.
+struct GatherCounts {
+  std::uint64_t rays = 0, near_hits = 0, shadow_rays = 0, points_read = 0, unanswered = 0;
+  GatherCounts& operator+=(const GatherCounts& o) {
+    rays += o.rays; near_hits += o.near_hits; shadow_rays += o.shadow_rays; points_read += o.points_read; unanswered += o.unanswered;
+    return *this;
+  }
+};
+
+/// What the radiance along a ray follows from, for whoever keeps it.
+struct RadianceSource {
+  std::uint32_t point = kNone;   ///< the irradiance point that stands for the first hit, if it has a Lambert lobe and one does
+  bool partial = false;          ///< there is more to the radiance than that point's light times a constant
+  bool mover = false;            ///< a surface on the way moves in the segment
+};
+
+/// Follows rays from places to what they meet. Emission counts nowhere on the way; events S are passed; at the first Lambert lobe
+/// the point that stands for the hit is read, or the path goes on where none does or the first hit is near. Thread-safe.
+class IncomingRadiance {
+ public:
+  /// near_factor: hits nearer than about this many radii of the estimate behind their point go on by one bounce.
+  IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor);
+
+  /// Radiance [W/m^2/sr] arriving along rays that counts as indirect at their starts, and the distance to what each meets
+  /// first, m (infinity: nothing). keys: random numbers, one for each ray. Fastest if rays that follow one another
+  /// leave one place into like directions. All spans are of one length, but for `sources`, which may be empty.
+  void operator()(std::span<const Ray> rays, std::span<const std::uint64_t> keys, std::span<Rgb> radiance,
+                  std::span<float> distance, GatherCounts& counts, std::span<RadianceSource> sources = {}) const;
+  /// The lobes of the surface at a place, seen along its normal.
+  Bsdf bsdf_at(const SurfacePoint& place, Vec3 normal) const;
+
+ private:
+  struct Met;
+  struct Further;
+  struct Gathered;
+  void meet(Vec3 wo, float distance, Met& met) const;
+  template <class Take> void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take) const;
+  Rgb reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth, const Gathered& to) const;
+  Rgb reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth, const Gathered& to,
+                       const MaterialValues* inside) const;
+  Rgb scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale, const PathRandom& random,
+                int depth, const Gathered& to) const;
+  static float threshold(const PathRandom& random);
+  bool is_near(const Met& met, const PointLookup::Light& point, const PathRandom& random) const;
+  Rgb beside_edge(const Met& met, const PointLookup::Light& light, const PathRandom& random, GatherCounts& counts) const;
+  Rgb sampled_light(const Met& met, const struct SeenSide& side, const PathRandom& random, GatherCounts& counts) const;
+
+  const Tracer& tracer_;
+  const Lights& lights_;
+  const PointLookup& points_;
+  float near_factor_;
+  std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: seen from behind, from in front
+};
+
+}  // namespace tempolux
