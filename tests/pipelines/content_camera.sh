@@ -2,6 +2,7 @@
 # A file without a camera, packed by Draco, goes through the whole chain: every tool that looks through a camera says where it
 # put one, and all say the same. Run at the top of the tree: sh tests/pipelines/content_camera.sh BIN
 bin=$1
+unset MAKEFLAGS MFLAGS MAKELEVEL  # of the make that runs the tests: the one below is no part of it
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
 bad() { echo "$*"; cat "$work/log"; exit 1; }
