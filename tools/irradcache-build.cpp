@@ -1,6 +1,9 @@
 // irradcache-build -- irradiance points over the surfaces, and irradiance records where a camera needs them.
 //
 //     irradcache-build points  room.glb --frame 12 --photons p.0012.photons -o p.0012.irradpoints
+//     irradcache-build points  room.glb --frame 0 --map static --photons s.photons -o s.irradpoints
+//     irradcache-build points  room.glb --frame 12 --update s.irradpoints --photons s.photons --dynamic d.photons
+//                              -o p.0012.irradpoints
 //     irradcache-build records room.glb --frame 12 --points p.0012.irradpoints --size 960x540 -o c.0012.irradcache
 //     irradcache-build         room.glb --frame 12 --photons p.0012.photons --size 960x540 -o c.0012.irradcache
 //     irradcache-build         hall.glb --frames 0-47 --photons p.photons --size 960x540 -o c.irradcache
@@ -15,6 +18,7 @@
 #include "lib/gather/cache_files.h"
 #include "lib/image/images_by_module.h"
 #include "lib/render/known_light.h"
+#include "lib/scene/standing.h"
 #include "tools/common/gather_input.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
@@ -27,7 +31,7 @@ constexpr std::uint64_t kMaxPoints = 1 << 28;   ///< per side of all surfaces
 
 struct Options {
   std::vector<std::string> inputs;  // [points|records] SCENE
-  std::string photons, points, records, mask, output, keep_points, radii = "ward";
+  std::string photons, points, records, mask, output, keep_points, radii = "ward", map = "global", update, dynamic;
   std::uint64_t point_count = PointOptions{}.count;
   int width = 640, height = 360;
   PointOptions point;
@@ -46,6 +50,54 @@ tools::GatherPoints points_of_photons(tools::Tool& tool, const std::string& file
   const formats::PhotonMap map = tools::read_photons(tool, file, tracer.frame(), tools::LightNeeded::all);
   tool.stats().phase("points", true);
   return tools::make_points(tool, map, tracer, lights, options);
+}
+
+/// Points of what stands, once for a segment, from its static map.
+void build_standing_points(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number) {
+  tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
+  tool.stats().phase("evaluate");
+  const SceneFrame frame = standing_scene(input.at(number));
+  tool.stats().phase("build");
+  const Tracer tracer(frame);
+  const Lights lights(frame, input.emission(frame.frame));
+  tool.stats().phase("read photons");
+  const formats::PhotonMap map = tools::read_photons(tool, tools::frame_name(options.photons, number), frame,
+                                                     tools::LightNeeded::all, "static");
+  tool.stats().phase("points", true);
+  const tools::GatherPoints points = tools::make_points(tool, map, tracer, lights, options.point);
+  tool.stats().phase("write");
+  tools::write_points(tool, points, frame, output, std::array{frame.segment.first, frame.segment.last});
+}
+
+/// Points of a frame from those of what stands: what movers change is added, and their own points.
+void build_updated_points(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number,
+                          StandingTree& tree) {
+  tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
+  tool.stats().phase("evaluate");
+  const SceneFrame frame = input.at(number), standing = standing_scene(frame);
+  const EmissionTable& emission = input.emission(frame.frame);
+  tool.stats().phase("build");
+  const Tracer whole(frame, tree), without(standing, tree);
+  const Lights lights(frame, emission);
+  tool.stats().phase("read points");
+  tools::GatherPoints points = tools::read_points(tool, tools::frame_name(options.update, number), standing);
+  tool.stats().phase("read photons");
+  const formats::PhotonMap fixed = tools::read_photons(tool, tools::frame_name(options.photons, number), standing,
+                                                       tools::LightNeeded::all, "static");
+  const formats::PhotonMap moved = tools::read_photons(tool, tools::frame_name(options.dynamic, number), frame,
+                                                       tools::LightNeeded::all, "dynamic");
+  if (moved.header.emitted_count != fixed.header.emitted_count || moved.header.group_count != fixed.header.group_count)
+    throw InputError(options.dynamic + ": of " + std::to_string(moved.header.emitted_count) + " paths, and the static map of " +
+                     std::to_string(fixed.header.emitted_count) + "; trace it with the .paths file of that map");
+  tool.stats().phase("points", true);
+  PointUpdateCounts counts;
+  tools::update_points(tool, fixed, moved, whole, without, lights, options.point, points, counts);
+  tool.stats().phase("write");
+  points.history = points.history + moved.header.history;
+  tools::write_points(tool, points, frame, output);
+  tool.stats().count("direct_sampled", double(counts.direct));
+  tool.stats().count("points_changed", double(counts.changed));
+  tool.stats().count("points_anew", double(counts.anew));
 }
 
 void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number,
@@ -179,6 +231,11 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (mode == "records" && options.points.empty()) throw InputError("records: name the points with --points FILE");
   if (mode == "both" && options.photons.empty() == options.points.empty())
     throw InputError("name either the photon map, --photons FILE, or the points made from it, --points FILE");
+  if (mode != "points") refuse_unread(app, mode == "both" ? "a run without a step" : mode, {"--map", "--update", "--dynamic"});
+  if (options.update.empty() != options.dynamic.empty())
+    throw InputError("--update and --dynamic go together: points of what stands, and what movers change");
+  if (!options.update.empty() && options.map == "static")
+    throw InputError("--update: makes points of the whole scene; leave out --map static");
   if (mode == "points")
     refuse_unread(app, "points", {"--points", "--records", "--rays", "--error-bound", "--radii", "--free-radii",
                                   "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
@@ -201,7 +258,15 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons")
       ->type_name("FILE");
   app.add_option("--records", options.records, ".irradcache file to extend: its records are kept")->type_name("FILE");
-  tool.count_option("--point-count", options.point_count, "irradiance points per side of all surfaces together");
+  tool.count_option("--point-count", options.point_count, "irradiance points per side of all surfaces that stand; what moves gets as many per area");
+  app.add_option("--map", options.map, "of points: global, or static: without what moves in the frame's segment, from its static map")
+      ->capture_default_str()->check(CLI::IsMember({"global", "static"}));
+  app.add_option("--update", options.update,
+                 "of points: .irradpoints file made with --map static; with --photons (that static map) and --dynamic, points of "
+                 "this frame follow from it")
+      ->type_name("FILE");
+  app.add_option("--dynamic", options.dynamic, "of --update: .photons file of this frame, photon-trace --map dynamic")
+      ->type_name("FILE");
   app.add_option("--neighbours", options.point.neighbours, "photons per density estimate")
       ->capture_default_str()->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
@@ -259,7 +324,10 @@ int main(int argc, char** argv) {
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | camera);
     StandingTree standing;
     if (options.mode() == "points")
-      for (int frame : frames) build_points(tool, input, options, frame, standing);
+      for (int frame : frames)
+        if (options.map == "static") build_standing_points(tool, input, options, frame);
+        else if (!options.update.empty()) build_updated_points(tool, input, options, frame, standing);
+        else build_points(tool, input, options, frame, standing);
     else
       build_records(tool, input, options, frames);
     return tools::exit_ok;

@@ -2,15 +2,23 @@
 //
 //     photon-trace room.glb --frame 12 --photons 1M -o photons.0012.photons
 //     photon-trace room.glb --frames 0-47 --photons 1M -o photons.####.photons
+//     photon-trace room.glb --frame 0 --map static --photons 1M -o s.photons --paths s.paths
+//     photon-trace room.glb --frames 0-23 --map dynamic --static s.paths -o d.####.photons
 //
-// Format: formats/photons/photons.md.
+// Formats: formats/photons/photons.md, formats/paths/paths.md. Method: docs/methods/dynamic.md.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "formats/hash.h"
+#include "formats/paths/paths.h"
 #include "formats/photons/layout.h"
 #include "formats/plan/view.h"
+#include "lib/photon/dynamic_map.h"
 #include "lib/photon/photon_map.h"
+#include "lib/scene/standing.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
 
@@ -19,7 +27,8 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto", importance;
+  std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto", map = "global",
+              importance, paths, static_paths;
 };
 
 /// 0 stands for automatic.
@@ -53,6 +62,28 @@ void warn_of_few(tools::Tool& tool, const Lights& lights, const PhotonMapResult&
                        : "start " + std::to_string((result.path_count * needed + seen - 1) / seen) + " with --photons"));
 }
 
+void count(tools::Tool& tool, const PhotonMapResult& result, std::uint64_t refused) {
+  tool.stats().count("photons", double(result.totals.photon_count));
+  tool.stats().count("paths", double(result.path_count));
+  tool.stats().count("rays", double(result.ray_count));
+  tool.stats().count("specular_rays", double(result.specular_ray_count));
+  tool.stats().count("bytes_written", double(result.byte_count));
+  tool.stats().count("refused_rays", double(refused));
+}
+
+auto sink_of(tools::Output& output) {
+  return [&output](const void* data, std::size_t size) { output.write(data, size); };
+}
+
+formats::PhotonHeader header_of(const tools::Tool& tool, const SceneFrame& frame, const EmissionTable& emission, int number) {
+  formats::PhotonHeader header;
+  header.history = tool.history_line(number);
+  header.identity = tools::identity_of(frame);
+  header.identity.emission = emission_hash(emission, frame.segment);
+  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  return header;
+}
+
 void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options,
                  const std::vector<formats::ViewSphere>& view, int frame_number,
                  StandingTree& standing) {
@@ -70,27 +101,171 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   photon_options.photon_count = tools::parse_count(options.photons);
   photon_options.group_count = group_count(options.groups);
   photon_options.set_kinds(options.kinds);
-  formats::PhotonHeader header;
-  header.history = tool.history_line(frame_number);
-  header.identity = tools::identity_of(frame);
-  header.identity.emission = emission_hash(emission, frame.segment);
-  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  const formats::PhotonHeader header = header_of(tool, frame, emission, frame_number);
 
   tool.stats().phase("trace", true);
   const PhotonTracer photons(tracer, lights, photon_options);
-  const PhotonMapResult result = write_photon_map(
-      photons, photon_options, header, [&](const void* data, std::size_t size) { output.write(data, size); },
-      [&](double fraction) { tool.progress(fraction); });
+  const PhotonMapResult result = write_photon_map(photons, photon_options, header, sink_of(output),
+                                                  [&](double fraction) { tool.progress(fraction); });
   tool.stats().phase("commit");
   output.commit();
   tool.stats().end_phase();
   if (!lights.aim().empty()) warn_of_few(tool, lights, result, frame_number);
-  tool.stats().count("photons", double(result.totals.photon_count));
-  tool.stats().count("paths", double(result.path_count));
-  tool.stats().count("rays", double(result.ray_count));
-  tool.stats().count("specular_rays", double(result.specular_ray_count));
-  tool.stats().count("bytes_written", double(result.byte_count));
-  tool.stats().count("refused_rays", double(tracer.refused_ray_count()));
+  count(tool, result, tracer.refused_ray_count());
+}
+
+/// What moves in one interval of a segment: where it is, and a hash of its states.
+struct Movers {
+  MovingBoxes boxes;
+  std::string hash;
+};
+
+/// Of interval i of `intervals`: all frames f of the segment with interval_of(f) == i.
+Movers movers_in(tools::SceneInput& input, const Segment& segment, std::size_t i, std::size_t intervals) {
+  Movers movers;
+  Hasher hasher;
+  for (int f = segment.first; f <= segment.last; ++f) {
+    if (formats::interval_of(f, segment.first, segment.last, intervals) != i) continue;
+    const SceneFrame frame = input.at(f, false);
+    movers.boxes.add(moving_boxes(frame));
+    for (const std::string& hash : {frame.hashes.moving_geometry, frame.hashes.lights, frame.hashes.materials})
+      hasher.add(std::string_view(hash));
+  }
+  movers.hash = hasher.hex();
+  return movers;
+}
+
+/// The map of what stands, once for a segment, and which of its paths movers can touch.
+void trace_standing(tools::Tool& tool, tools::SceneInput& input, const Options& options,
+                    const std::vector<formats::ViewSphere>& view, int frame_number) {
+  tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
+  std::optional<tools::Output> paths_output;
+  if (!options.paths.empty()) paths_output.emplace(tools::frame_name(options.paths, frame_number), tool.common().no_clobber);
+  tool.stats().phase("evaluate");
+  const SceneFrame frame = standing_scene(input.at(frame_number));
+  const Segment& segment = frame.segment;
+  const std::size_t intervals = std::min<std::size_t>(formats::kMostIntervals, std::size_t(segment.last - segment.first + 1));
+  std::vector<MovingBoxes> boxes;
+  std::vector<std::string> hashes;
+  for (std::size_t i = 0; paths_output && i < intervals; ++i) {
+    const Movers movers = movers_in(input, segment, i, intervals);
+    boxes.push_back(movers.boxes);
+    hashes.push_back(movers.hash);
+  }
+  EmissionTable emission = input.emission(frame.frame);
+  emission.aim = aims_of(view, frame.origin);
+  tool.stats().phase("build");
+  const Tracer tracer(frame);
+  const Lights lights(frame, emission);
+
+  PhotonOptions photon_options;
+  photon_options.seed = tool.common().seed_for_frame(frame_number);
+  photon_options.photon_count = tools::parse_count(options.photons);
+  photon_options.group_count = group_count(options.groups);
+  photon_options.set_kinds(options.kinds);
+  formats::PhotonHeader header = header_of(tool, frame, emission, frame_number);
+  header.map = "static";
+  header.identity.first_frame = segment.first;
+  header.identity.last_frame = segment.last;
+
+  tool.stats().phase("trace", true);
+  PhotonTracer photons(tracer, lights, photon_options);
+  std::optional<MoverWatch> watch;
+  if (paths_output) photons.watch(&watch.emplace(std::move(boxes)));
+  const PhotonMapResult result = write_photon_map(photons, photon_options, header, sink_of(output),
+                                                  [&](double fraction) { tool.progress(fraction); });
+  tool.stats().phase("commit");
+  if (paths_output) {
+    formats::PathsHeader paths;
+    paths.history = header.history;
+    paths.identity = header.identity;
+    paths.origin = header.origin;
+    paths.group_count = photons.group_count();
+    paths.emitted_count = photons.photon_count();
+    paths.seed = photon_options.seed;
+    paths.kinds = photon_options.kinds();
+    paths.movers = hashes;
+    formats::PathsWriter writer(sink_of(*paths_output), paths);
+    writer.write(result.touched);
+    writer.finish();
+    paths_output->commit();
+    tool.stats().count("touched_paths", double(result.touched.size()));
+  }
+  output.commit();
+  tool.stats().end_phase();
+  if (!lights.aim().empty()) warn_of_few(tool, lights, result, frame_number);
+  count(tool, result, tracer.refused_ray_count());
+}
+
+/// Refuses paths that were found for another segment, other things that stand or other movers.
+void check_paths(tools::Tool& tool, tools::SceneInput& input, const std::string& file, const formats::PathsHeader& paths,
+                 const SceneFrame& standing, const std::string& emission, int frame) {
+  const Segment segment = standing.segment;
+  if (paths.identity.first_frame != segment.first || paths.identity.last_frame != segment.last)
+    throw InputError(file + ": holds for the segment of frames " + std::to_string(paths.identity.first_frame) + " to " +
+                     std::to_string(paths.identity.last_frame) + ", and frame " + std::to_string(frame) + " lies in " +
+                     std::to_string(segment.first) + " to " + std::to_string(segment.last) + "; trace the static map of that one");
+  tools::check_identity(tool, file, paths.identity, standing);
+  std::string stale;
+  if (!paths.identity.emission.empty() && paths.identity.emission != emission) stale = "emission";
+  const std::size_t interval = formats::interval_of(frame, segment.first, segment.last, paths.movers.size());
+  if (movers_in(input, segment, interval, paths.movers.size()).hash != paths.movers[interval])
+    stale += (stale.empty() ? "" : ", ") + std::string("what moves");
+  if (!stale.empty())
+    throw InputError(file + ": made for another state of the scene: " + stale + " differ at frame " + std::to_string(frame) +
+                     "; trace the static map again");
+}
+
+/// What movers change at a frame: the paths that they touch, with and without them.
+void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options& options,
+                      const std::vector<formats::ViewSphere>& view, int frame_number, StandingTree& tree) {
+  tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
+  const std::string file = tools::frame_name(options.static_paths, frame_number);
+  tool.stats().phase("read paths");
+  tool.depends_on(file);
+  const formats::PathsFile paths = formats::load_paths(file);
+  tool.stats().phase("evaluate");
+  const SceneFrame frame = input.at(frame_number);
+  const SceneFrame standing = standing_scene(frame);
+  EmissionTable emission = input.emission(frame.frame);
+  emission.aim = aims_of(view, frame.origin);
+  check_paths(tool, input, file, paths.header, standing, emission_hash(emission, frame.segment), frame.frame);
+  const Segment& segment = frame.segment;
+  const std::uint64_t bit = std::uint64_t(1) << formats::interval_of(frame.frame, segment.first, segment.last, paths.header.movers.size());
+  std::vector<std::uint64_t> touched;
+  for (const formats::TouchedPath& path : paths.paths)
+    if (path.intervals & bit) touched.push_back(path.path);
+  tool.stats().phase("build");
+  const Tracer tracer(frame, tree), standing_tracer(standing, tree);
+  const Lights lights(frame, emission), standing_lights(standing, emission);
+
+  PhotonOptions photon_options;
+  photon_options.seed = paths.header.seed;
+  photon_options.photon_count = paths.header.emitted_count;
+  photon_options.group_count = paths.header.group_count;
+  photon_options.set_kinds(paths.header.kinds);
+  formats::PhotonHeader header = header_of(tool, frame, emission, frame_number);
+  header.map = "dynamic";
+
+  tool.stats().phase("trace", true);
+  const PhotonTracer whole(tracer, lights, photon_options), without(standing_tracer, standing_lights, photon_options);
+  const PhotonMapResult result = write_dynamic_map(without, whole, touched, photon_options, header, sink_of(output),
+                                                   [&](double fraction) { tool.progress(fraction); });
+  tool.stats().phase("commit");
+  output.commit();
+  tool.stats().end_phase();
+  count(tool, result, tracer.refused_ray_count() + standing_tracer.refused_ray_count());
+  tool.stats().count("touched_paths", double(touched.size()));
+}
+
+void check(const CLI::App& app, const Options& options) {
+  if (options.map != "static" && !options.paths.empty()) throw InputError("--paths: only with --map static");
+  if (options.map != "dynamic" && !options.static_paths.empty()) throw InputError("--static: only with --map dynamic");
+  if (options.map != "dynamic") return;
+  if (options.static_paths.empty())
+    throw InputError("--map dynamic needs --static: the .paths file that --map static --paths has written");
+  for (const char* name : {"--photons", "--kinds", "--groups", "--seed"})
+    if (app.get_option(name)->count() > 0) throw InputError(std::string(name) + ": of --map dynamic the static map has it");
 }
 
 }  // namespace
@@ -112,9 +287,17 @@ int main(int argc, char** argv) {
       ->type_name("FILE");
   app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
       ->required();
+  app.add_option("--map", options.map,
+                 "global: the scene at the frame; static: without what moves in the frame's segment; dynamic: the difference, "
+                 "of paths that movers touch")
+      ->capture_default_str()->check(CLI::IsMember({"global", "static", "dynamic"}));
+  tool.output_option(options.paths, "of --map static: also write which paths movers can touch, .paths", "--paths");
+  app.add_option("--static", options.static_paths, "of --map dynamic: the .paths file of the segment's static map")
+      ->type_name("FILE");
   tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_frames);
 
   return tool.run([&] {
+    check(app, options);
     const std::vector<int>& frames = tool.common().frames;
     if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
       throw InputError("--output: several frames need a pattern, for example f.####.photons");
@@ -126,7 +309,10 @@ int main(int argc, char** argv) {
       view = formats::read_view(options.importance);
       tool.depends_on(options.importance);
     }
-    for (int frame : frames) trace_frame(tool, input, options, view, frame, standing);
+    for (int frame : frames)
+      if (options.map == "static") trace_standing(tool, input, options, view, frame);
+      else if (options.map == "dynamic") trace_difference(tool, input, options, view, frame, standing);
+      else trace_frame(tool, input, options, view, frame, standing);
     return tools::exit_ok;
   });
 }

@@ -1,6 +1,7 @@
 #include "lib/gather/irradiance_points.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -119,16 +120,16 @@ Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, flo
   return found;
 }
 
-/// Direct light at a point: mean over stratified light samples of radiance cos / pdf where nothing is in between, times
-/// arrival_weight under a coat. The cosine is to the shading normal, as where an eye looks at the place and where photons
-/// arrive (photon_trace.h); what comes from behind either normal does not count.
-Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset,
-                 int samples, const Scattering& scattering, const PathRandom& random) {
+/// Calls each(sample, share, shadow ray) for the stratified light samples of a point that can give it light; share: cosine to the
+/// shading normal, as where an eye looks at the place and where photons arrive (photon_trace.h), times arrival_weight
+/// under a coat. What comes from behind either normal does not count.
+template <class Each>
+void for_light_samples(const Lights& lights, const IrradiancePoint& point, float offset, int samples,
+                       const Scattering& scattering, const PathRandom& random, const Each& each) {
   SurfacePoint from;
   from.position = point.position;
   from.normal = from.normal_geometric = point.normal;
   from.offset = offset;
-  Rgbd sum{0.0};
   for (int s = 0; s < samples; ++s) {
     const float u = (float(s) + random.get1(0, Purpose::light_choice, std::uint32_t(s))) / float(samples);
     LightSample light;
@@ -136,23 +137,46 @@ Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoi
                        random.get2(0, Purpose::light_point, std::uint32_t(s)), light))
       continue;
     const float cosine = dot(light.wi, scattering.normal);
-    if (!(cosine > 0 && dot(light.wi, point.normal) > 0) ||
-        tracer.occluded(spawn_shadow_ray(from, light.position, light.position_offset)))
-      continue;
-    sum += Rgbd(light.radiance) * double(scattering.coat ? cosine * scattering.coat->arrival_weight(cosine) : cosine);
+    if (!(cosine > 0 && dot(light.wi, point.normal) > 0)) continue;
+    each(light, scattering.coat ? cosine * scattering.coat->arrival_weight(cosine) : cosine,
+         spawn_shadow_ray(from, light.position, light.position_offset));
   }
+}
+
+/// Direct light at a point: mean over light samples of radiance share / pdf where nothing is in between.
+Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset,
+                 int samples, const Scattering& scattering, const PathRandom& random) {
+  Rgbd sum{0.0};
+  for_light_samples(lights, point, offset, samples, scattering, random, [&](const LightSample& light, float share, const Ray& ray) {
+    if (!tracer.occluded(ray)) sum += Rgbd(light.radiance) * double(share);
+  });
   return Rgb(sum / double(samples));
+}
+
+/// Neighbours in space one after the other: look-ups and rays find their data in cache. `which`: numbers of points.
+std::vector<std::uint32_t> in_space(const std::vector<IrradiancePoint>& points, std::span<const std::uint32_t> which) {
+  std::vector<Vec3> positions;
+  for (const std::uint32_t i : which) positions.push_back(points[i].position);
+  std::vector<std::uint32_t> order = morton_order(positions);
+  for (std::uint32_t& i : order) i = which[i];
+  return order;
+}
+
+PathRandom random_of(const PointOptions& options, std::uint32_t point) {
+  return PathRandom(options.seed ^ 0x706f696e74ull, point);
 }
 
 }  // namespace
 
 PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) {
   std::vector<std::optional<Areas>> areas(frame.surfaces.size());  // of those that store light
-  double whole = 0;
+  double standing = 0, moving = 0;
   for (std::size_t i = 0; i < areas.size(); ++i) {
     if (!stores_light(frame, frame.surfaces[i])) continue;
-    for (const double area : std::span<double>(areas[i].emplace(triangle_areas(frame.surfaces[i])))) whole += area;
+    double& sum = i < frame.static_count ? standing : moving;
+    for (const double area : std::span<double>(areas[i].emplace(triangle_areas(frame.surfaces[i])))) sum += area;
   }
+  const double whole = standing > 0 ? standing : moving;
   PlacedPoints placed;
   if (whole > 0) placed.spacing = float(std::sqrt(whole / std::max(1u, options.count)));
   const double area_per_point = double(placed.spacing) * double(placed.spacing);
@@ -166,20 +190,29 @@ PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) 
 
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,
                      Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points) {
-  const DensityOptions density{options.neighbours, options.max_radius, options.area_probes};
+  std::vector<std::uint32_t> all(points.size());
+  std::iota(all.begin(), all.end(), 0u);
+  estimate_points(tracer, lights, photons, photon_shift, options, all, points);
+}
+
+DensityOptions density_of(const PointOptions& options, const SceneFrame& frame) {
+  DensityOptions density{options.neighbours, options.max_radius, options.area_probes};
+  if (!(density.max_radius > 0)) density.max_radius = 0.05f * frame.bounds.diagonal();
+  return density;
+}
+
+void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons, Vec3d photon_shift,
+                     const PointOptions& options, std::span<const std::uint32_t> which, std::vector<IrradiancePoint>& points) {
+  const DensityOptions density = density_of(options, tracer.frame());
   const FootprintDensity caustic(tracer, photons, {density.neighbours, density.max_radius, 0}, kind_bit(formats::PathKind::caustic), photon_shift);
   const PointDensity indirect(tracer, photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
   const float offset = Reach(tracer).offset();
   const bool asks = !lights.empty() && (any_coated(tracer.frame()) || any_bent(tracer.frame()));
-
-  // Neighbours in space one after the other: look-ups and rays find their data in cache.
-  std::vector<Vec3> positions;
-  for (const IrradiancePoint& point : points) positions.push_back(point.position);
-  const std::vector<std::uint32_t> order = morton_order(positions);
-  parallel_chunks(points.size(), 256, [&](std::size_t first, std::size_t last) {
+  const std::vector<std::uint32_t> order = in_space(points, which);
+  parallel_chunks(order.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[order[i]];
-      const PathRandom random(options.seed ^ 0x706f696e74ull, order[i]);
+      const PathRandom random = random_of(options, order[i]);
       point.direct = lights.empty()
                          ? Rgb(0.0f)
                          : direct_light(tracer, lights, point, offset, options.light_samples,
@@ -189,6 +222,34 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
       point.indirect = indirect.estimate(point, random, point.radius);
     }
   });
+}
+
+std::size_t update_direct(const Tracer& tracer, const Lights& lights, const MoverWatch* watch, const PointOptions& options,
+                          std::vector<IrradiancePoint>& points) {
+  if (lights.empty()) return 0;
+  const float offset = Reach(tracer).offset();
+  const bool asks = any_coated(tracer.frame()) || any_bent(tracer.frame());
+  std::vector<std::uint32_t> all(points.size());
+  std::iota(all.begin(), all.end(), 0u);
+  const std::vector<std::uint32_t> order = in_space(points, all);
+  std::atomic<std::size_t> sampled = 0;
+  parallel_chunks(order.size(), 256, [&](std::size_t first, std::size_t last) {
+    std::size_t count = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      IrradiancePoint& point = points[order[i]];
+      const PathRandom random = random_of(options, order[i]);
+      const Scattering scattering = asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, {}};
+      bool touched = !watch;
+      if (watch)
+        for_light_samples(lights, point, offset, options.light_samples, scattering, random,
+                          [&](const LightSample&, float, const Ray& ray) { touched = touched || watch->touching(ray, 1) != 0; });
+      if (!touched) continue;
+      point.direct = direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
+      ++count;
+    }
+    sampled += count;
+  });
+  return sampled;
 }
 
 ClearanceTest point_clearance(const Tracer& tracer) {

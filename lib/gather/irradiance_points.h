@@ -11,13 +11,15 @@
 #include "lib/gather/point_density.h"
 #include "lib/irradcache/points.h"
 #include "lib/light/lights.h"
+#include "lib/trace/mover_watch.h"
 #include "lib/trace/trace.h"
 
 namespace tempolux {
 
 struct PointOptions {
   std::uint64_t seed = 0;
-  std::uint32_t count = 20000;  ///< per side of all surfaces together; every surface gets at least one
+  std::uint32_t count = 20000;  ///< per side of all static surfaces together (if there are none, of all); what moves gets as
+                                ///< many per area, and every surface at least one
   int neighbours = 50;          ///< k of the density estimates
   float max_radius = 0;         ///< m; 0: from the photons' spacing
   int light_samples = 4;        ///< shadow rays per point for direct light
@@ -31,8 +33,9 @@ struct PlacedPoints {
 };
 
 /// Points uniform by area on both sides of every surface that has a Lambert lobe, without irradiance yet. The
-/// points of a surface depend on that surface, the seed and the spacing alone: those of static surfaces are
-/// the same at every frame of a segment, those of moving ones ride on their triangles.
+/// points of a surface depend on that surface, the seed and the spacing alone, and the spacing on the static area. Those of
+/// static surfaces come first: they have the same places and numbers at every frame of a segment; those of
+/// moving ones ride on their triangles.
 PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options);
 
 /// Fills in the irradiance of all points:
@@ -43,6 +46,16 @@ PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options);
 /// threads.
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,
                      Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points);
+
+/// The same for the points of these numbers alone; each is what it would be among all.
+void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons, Vec3d photon_shift,
+                     const PointOptions& options, std::span<const std::uint32_t> which, std::vector<IrradiancePoint>& points);
+/// Samples direct light anew, as estimate_points does, where one of a point's shadow rays meets a box of `watch`; nullptr: at all
+/// points. The others keep what they have: the same samples meet the same there. Returns how many were sampled.
+std::size_t update_direct(const Tracer& tracer, const Lights& lights, const MoverWatch* watch, const PointOptions& options,
+                          std::vector<IrradiancePoint>& points);
+/// What estimate_points asks of densities.
+DensityOptions density_of(const PointOptions& options, const SceneFrame& frame);
 
 /// What PointLookup asks for, on this scene (Reach::clearance); the tracer must outlive it.
 ClearanceTest point_clearance(const Tracer& tracer);

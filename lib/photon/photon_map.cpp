@@ -55,6 +55,7 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
         emitted += item.batch.emitted;
         escaped += item.batch.escaped;
         absorbed += item.batch.absorbed;
+        result.touched.insert(result.touched.end(), item.batch.touched.begin(), item.batch.touched.end());
         if (progress) progress(double(i + 1) / double(tracer.batch_count()));
       });
   result.totals.emitted_flux = to_array(emitted);

@@ -165,13 +165,40 @@ PhotonBatch PhotonTracer::trace(std::size_t number) const {
   batch.block.group = std::uint32_t(group);
   const std::uint64_t last = std::min(members_, (piece + 1) * kBatch);
   batch.block.photons.reserve(std::size_t(3 * (last - piece * kBatch)));
+  std::uint64_t numbers[kWave];
   if (!lights_.empty())
-    for (std::uint64_t q = piece * kBatch; q < last; q += kWave)
-      follow(group + q * group_count_, std::size_t(std::min(last - q, kWave)), batch);
+    for (std::uint64_t q = piece * kBatch; q < last; q += kWave) {
+      const auto count = std::size_t(std::min(last - q, kWave));
+      for (std::size_t i = 0; i < count; ++i) numbers[i] = group + (q + i) * group_count_;
+      follow({numbers, count}, 0, batch);
+    }
   if (!lights_.aim().empty())
     for (const formats::Photon& photon : batch.block.photons)
       batch.seen_count += lights_.aim().holds({photon.position[0], photon.position[1], photon.position[2]});
   return batch;
+}
+
+PhotonBatch PhotonTracer::trace_paths(std::span<const std::uint64_t> paths) const {
+  PhotonBatch batch;
+  batch.by_path = true;
+  if (paths.empty() || lights_.empty()) return batch;
+  batch.block.group = std::uint32_t(paths[0] % group_count_);
+  for (std::size_t first = 0; first < paths.size(); first += kWave)
+    follow(paths.subspan(first, std::min<std::size_t>(kWave, paths.size() - first)), std::uint32_t(first), batch);
+  return batch;
+}
+
+void PhotonTracer::watch(const MoverWatch* watch) {
+  watch_ = watch;
+  slot_moves_.clear();
+  if (!watch) return;
+  const SceneFrame& frame = tracer_.frame();
+  for (const EmissionSlot& slot : lights_.slots()) {
+    const bool surface_moves = slot.surface != kNone && slot.surface >= frame.static_count;
+    const bool light_moves = slot.light != kNone && frame.lights[slot.light].node < frame.segment.node_moves.size() &&
+                             frame.segment.node_moves[frame.lights[slot.light].node];
+    slot_moves_.push_back(surface_moves || light_moves);
+  }
 }
 
 /// Random numbers of a scattering event.
@@ -192,23 +219,27 @@ struct PhotonTracer::Path {
 
 /// Step by step for all photons of a wave: what one computes does not wait for another's result, so that the processor
 /// works on several at a time.
-void PhotonTracer::follow(std::uint64_t first, std::size_t count, PhotonBatch& batch) const {
+void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint32_t first_path, PhotonBatch& batch) const {
+  const std::size_t started = path_numbers.size();
   Path paths[kWave];
   std::array<double, 4> emission_numbers[kWave];
   PhotonEmission emissions[kWave];
-  for (std::size_t i = 0; i < count; ++i) emission_numbers[i] = halton_.point(first + i * group_count_);
-  lights_.emit({emission_numbers, count}, {emissions, count});
+  for (std::size_t i = 0; i < started; ++i) emission_numbers[i] = halton_.point(path_numbers[i]);
+  lights_.emit({emission_numbers, started}, {emissions, started});
   std::uint32_t alive[kWave];   // indices of paths
   const float share = float(1.0 / double(photon_count()));
-  for (std::size_t i = 0; i < count; ++i) {
+  std::size_t count = 0;
+  std::uint64_t touched[kWave];   // bits by interval, while movers are watched
+  for (std::size_t i = 0; i < started; ++i) {
     const PhotonEmission& e = emissions[i];
-    paths[i].random = PathRandom(options_.seed, first + i * group_count_);
+    if (watch_) touched[i] = slot_moves_[e.slot] ? watch_->all() : 0;
+    paths[i].random = PathRandom(options_.seed, path_numbers[i]);
     paths[i].flux = e.flux * share;
     paths[i].ray = {e.origin + e.normal * e.origin_offset, e.travel, 0, INFINITY};
     batch.emitted += Rgbd(paths[i].flux);
-    alive[i] = std::uint32_t(i);
+    if (!is_black(paths[i].flux)) alive[count++] = std::uint32_t(i);   // lamps that are off send none
   }
-  batch.path_count += count;
+  batch.path_count += started;
 
   Hit hits[kWave];
   SurfacePoint points[kWave];
@@ -219,27 +250,35 @@ void PhotonTracer::follow(std::uint64_t first, std::size_t count, PhotonBatch& b
     std::size_t arrived = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const Path& path = paths[alive[i]];
-      if (tracer_.intersect(path.ray, hits[arrived])) alive[arrived++] = alive[i];
+      const bool meets = tracer_.intersect(path.ray, hits[arrived]);
+      if (watch_) [[unlikely]] touched[alive[i]] |= watch_->touching(path.ray, meets ? hits[arrived].t : INFINITY);
+      if (meets) alive[arrived++] = alive[i];
       else batch.escaped += Rgbd(path.flux);
     }
     tracer_.surface_points({hits, arrived}, points);
-    if (bounce == 0 && has_point_lights_) arrived = leave_planes_of_lights(emissions, arrived, paths, alive, hits, points, batch);
+    if (bounce == 0 && has_point_lights_) arrived = leave_planes_of_lights(emissions, arrived, paths, alive, hits, points, touched, batch);
     for (std::size_t i = 0; i < arrived; ++i) numbers[i] = paths[alive[i]].random.get2(bounce, Purpose::scatter);
     sample_hemisphere_cos({numbers, arrived}, directions);
     count = 0;
     for (std::size_t i = 0; i < arrived; ++i) {
       const Draw draw{bounce, numbers[i], directions[i]};
-      alive[count] = alive[i];
-      count += scatter(paths[alive[i]], points[i], hits[i].t, draw, batch);
+      const std::uint32_t number = alive[i];
+      alive[count] = number;
+      count += scatter(paths[number], points[i], hits[i].t, draw, batch);
+      if (batch.by_path) [[unlikely]] batch.path_of.resize(batch.block.photons.size(), first_path + number);
     }
   }
+  if (watch_)
+    for (std::size_t i = 0; i < started; ++i)
+      if (touched[i]) batch.touched.push_back({path_numbers[i], touched[i]});
 }
 
 /// A surface gets nothing from a point light in its plane, the cosine is 0: light sampling has it so, and rounding, which starts
 /// half of the photons behind it, must not give it half of the flux in one place. They go on as if it were not there. Returns
 /// how many still arrive.
 std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths, std::uint32_t* alive,
-                                                 Hit* hits, SurfacePoint* points, PhotonBatch& batch) const {
+                                                 Hit* hits, SurfacePoint* points, std::uint64_t* touched,
+                                                 PhotonBatch& batch) const {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < arrived; ++i) {
     const PhotonEmission& e = emissions[alive[i]];
@@ -252,6 +291,7 @@ std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions
       path.ray = spawn_ray(points[i], path.ray.direction);
       ++batch.ray_count;
       meets = tracer_.intersect(path.ray, hits[i]);
+      if (watch_) touched[alive[i]] |= watch_->touching(path.ray, meets ? hits[i].t : INFINITY);
       if (meets) points[i] = tracer_.surface_point(hits[i]);
       else batch.escaped += Rgbd(path.flux);
     }

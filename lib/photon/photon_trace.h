@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "formats/paths/paths.h"
 #include "formats/photons/photons.h"
 #include "lib/core/halton.h"
 #include "lib/light/lights.h"
 #include "lib/material/bsdf.h"
+#include "lib/trace/mover_watch.h"
 #include "lib/trace/trace.h"
 
 namespace tempolux {
@@ -36,6 +38,9 @@ struct PhotonBatch {
   std::uint64_t ray_count = 0, path_count = 0;
   std::uint64_t specular_ray_count = 0;      ///< of the rays: those that an event S sent
   std::uint64_t seen_count = 0;              ///< photons stored in the spheres of Lights::aim()
+  std::vector<formats::TouchedPath> touched; ///< if movers are watched: those that they can touch, in order
+  bool by_path = false;                      ///< fill in:
+  std::vector<std::uint32_t> path_of;        ///< by photon: number of its path in the list given to trace_paths
 };
 
 /// Traces photons through one frame. Photon i starts at point i of a scrambled Halton sequence and draws all
@@ -63,6 +68,12 @@ class PhotonTracer {
   std::size_t batch_count() const { return std::size_t(group_count_) * batches_per_group_; }
   /// Traces batch number b < batch_count(). Thread-safe.
   PhotonBatch trace(std::size_t batch) const;
+  /// Traces these paths, all of one group. Thread-safe.
+  PhotonBatch trace_paths(std::span<const std::uint64_t> paths) const;
+
+  /// From now on trace() finds the paths that movers can touch: those of which a way meets their boxes, and those of
+  /// lights that move or change. `watch` must outlive this; nullptr: none.
+  void watch(const MoverWatch* watch);
 
   /// A block of 40 kB in the file: what is in flight stays in the processor's cache, and memory is the same for
   /// 10^6 photons as for 10^9.
@@ -75,10 +86,10 @@ class PhotonTracer {
   static constexpr std::uint64_t kWave = 64;
   static_assert(kWave <= Lights::kMostEmitted);
 
-  /// Photons first, first + group_count, ... to their ends; count <= kWave.
-  void follow(std::uint64_t first, std::size_t count, PhotonBatch& batch) const;
+  /// Photons of these numbers to their ends; at most kWave. first_path: the number of the first in the caller's list.
+  void follow(std::span<const std::uint64_t> numbers, std::uint32_t first_path, PhotonBatch& batch) const;
   std::size_t leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths, std::uint32_t* alive,
-                                     Hit* hits, SurfacePoint* points, PhotonBatch& batch) const;
+                                     Hit* hits, SurfacePoint* points, std::uint64_t* touched, PhotonBatch& batch) const;
   bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
   bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
                   const std::optional<Vec3>& seen, const Draw& draw, PhotonBatch& batch) const;
@@ -93,6 +104,8 @@ class PhotonTracer {
   std::vector<std::array<Bsdf, 2>> bsdfs_;   ///< by material: seen from the back, from the front
   std::vector<std::uint8_t> varies_;         ///< by material: textures decide at each hit
   std::uint64_t group_count_, members_, batches_per_group_;
+  const MoverWatch* watch_ = nullptr;
+  std::vector<char> slot_moves_;             ///< by slot of the emission table, while movers are watched
 };
 
 }  // namespace tempolux

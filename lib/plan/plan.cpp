@@ -12,6 +12,7 @@
 #include "lib/light/lights.h"
 #include "lib/material/surface_material.h"
 #include "lib/scene/animate.h"
+#include "lib/scene/standing.h"
 
 namespace tempolux {
 namespace {
@@ -119,6 +120,13 @@ std::vector<std::pair<Segment, std::set<int>>> by_segment(const Scene& scene, co
   return groups;
 }
 
+std::string standing_hash(const SceneFrame& frame) {
+  const SceneHashes hashes = standing_scene(frame).hashes;
+  Hasher hasher;
+  for (const std::string& hash : {hashes.static_geometry, hashes.materials, hashes.lights}) hasher.add(std::string_view(hash));
+  return hasher.hex();
+}
+
 PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const std::set<int>& asked,
                             int camera_node, const TimeOptions& options) {
   const SegmentScene stage(scene, segment, options);
@@ -127,6 +135,7 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const st
   planned.first = segment.first;
   planned.last = segment.last;
   planned.static_geometry = begin.hashes.static_geometry;
+  planned.standing = standing_hash(begin);
   planned.frozen = emission_hash(build_emission_table(scene, segment, options), segment);
   planned.moves = moving_nodes(scene, segment);
   const bool light_moves = light_transport_moves(planned.moves);

@@ -35,6 +35,7 @@ struct PlannedSegment {
   int first = 0, last = 0;
   std::string static_geometry;      ///< hash, as in SceneHashes
   std::string materials;            ///< the same; if an animation changes materials, of all frames' hashes
+  std::string standing;             ///< hash of what neither moves nor changes: geometry, materials, lights (standing_scene)
   std::string frozen;               ///< hash of what is frozen: emission table, bounds, origin
   bool camera_moves = false;        ///< the camera differs between two of the frames asked for
   std::vector<MovingNode> moves;

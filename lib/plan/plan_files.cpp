@@ -32,6 +32,7 @@ Json segment_json(const PlannedSegment& segment, bool photons) {
     json["moves"].push_back({{"node", node.name}, {"carries", node.carries}, {"why", node.why}});
   json["hashes"] = {{"static_geometry", segment.static_geometry},
                     {"materials", segment.materials},
+                    {"standing", segment.standing},
                     {"frozen", segment.frozen}};
   json["frames"] = Json::array();
   for (const PlannedFrame& frame : segment.frames) json["frames"].push_back(frame_json(frame, photons));
@@ -124,6 +125,7 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   for (const PlannedSegment& segment : plan.segments) {
     const std::string first = frame_digits(segment.first);
     text += "\n# frames " + std::to_string(segment.first) + " to " + std::to_string(segment.last) + "\n";
+    std::string previous;   // frame asked for, of this segment
     for (const PlannedFrame& frame : segment.frames) {
       const std::string digits = frame_digits(frame.frame);
       text += "light_" + digits + " := $(addprefix " + folder + "/state/,static." + first +
@@ -132,6 +134,9 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
       text += "camera_" + digits + " := " + folder + "/state/camera." + digits + "\n";
       text += "picture_" + digits + " := " + frame_digits(frame.picture) + "\n";
       if (photons) text += "photons_" + digits + " := " + frame_digits(frame.lit_frame) + "\n";
+      text += "segment_" + digits + " := " + first + "\n";
+      text += "previous_" + digits + " :=" + previous + "\n";
+      previous = " " + digits;
     }
   }
   if (photons) text += "\n# photon maps, and the pictures they light\n";
@@ -151,6 +156,7 @@ std::vector<PlanFile> state_files(const Plan& plan) {
   for (const PlannedSegment& segment : plan.segments) {
     add("static", segment.first, segment.static_geometry);
     add("materials", segment.first, segment.materials);
+    add("standing", segment.first, segment.standing);
     add("frozen", segment.first, segment.frozen);
     for (const PlannedFrame& frame : segment.frames) {
       add("moving", frame.frame, frame.moving_geometry);

@@ -26,7 +26,8 @@ struct PropertyChange {
 struct Segment {
   int first = 0, last = 0;
   std::vector<std::uint8_t> node_moves;     ///< per node: its evaluated state differs between two frames: its
-                                            ///< world transform, or the morph weights and joints of its mesh
+                                            ///< world transform, the morph weights and joints of its mesh, its
+                                            ///< materials or its light
   std::vector<std::string> why_moves;       ///< per node: "" or what differs, e.g. "translation of MovingBox"
   std::vector<PropertyChange> changes;      ///< materials, lights and cameras that differ between two frames
   Vec3d origin{};                           ///< world position of scene space's origin: 0 unless the scene

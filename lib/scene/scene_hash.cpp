@@ -10,11 +10,12 @@ namespace tempolux {
 namespace {
 
 /// Material index of the scene -> its number by first use in node order; kNone: not used.
-std::vector<std::uint32_t> material_numbers(const Scene& scene) {
+std::vector<std::uint32_t> material_numbers(const Scene& scene, LeftOut left_out) {
   std::vector<std::uint32_t> numbers(scene.materials.size(), kNone);
   std::uint32_t next = 0;
-  for (const Node& node : scene.nodes) {
-    if (node.mesh < 0) continue;
+  for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+    const Node& node = scene.nodes[n];
+    if (node.mesh < 0 || (n < left_out.size() && left_out[n])) continue;
     for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)
       if (numbers[primitive.material] == kNone) numbers[primitive.material] = next++;
   }
@@ -92,8 +93,8 @@ void add_optional_parts(Hasher& hasher, const Scene& scene, const Material& mate
 
 }  // namespace
 
-std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surface> surfaces) {
-  const std::vector<std::uint32_t> numbers = material_numbers(scene);
+std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surface> surfaces, LeftOut left_out) {
+  const std::vector<std::uint32_t> numbers = material_numbers(scene, left_out);
   Hasher hasher;
   hasher.add(std::string_view("geometry 1"));
   std::map<const Primitive*, std::string> digests;
@@ -114,8 +115,8 @@ std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surf
   return hasher.hex();
 }
 
-std::string materials_hash(const Scene& scene, std::span<const Material> materials) {
-  const std::vector<std::uint32_t> numbers = material_numbers(scene);
+std::string materials_hash(const Scene& scene, std::span<const Material> materials, LeftOut left_out) {
+  const std::vector<std::uint32_t> numbers = material_numbers(scene, left_out);
   std::vector<const Material*> ordered(materials.size(), nullptr);
   for (std::size_t m = 0; m < numbers.size(); ++m)
     if (numbers[m] != kNone) ordered[numbers[m]] = &materials[m];

@@ -115,6 +115,23 @@ void set_changes(const Scene& scene, const Animator& animator, double fps, Segme
   }
 }
 
+/// A node moves, too, whose material or light an animation changes: its light is another then, though it stays.
+void add_changed_nodes(const Scene& scene, const Animator& animator, double fps, Segment& segment) {
+  for (const AnimationTrack* track : animator.property_tracks()) {
+    const std::string_view kind = kind_of(track->path);
+    if (kind == "camera" || !differs_in(*track, segment, fps)) continue;
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+      const Node& node = scene.nodes[n];
+      const bool has = kind == "light" ? node.light == int(track->target)
+                                       : node.mesh >= 0 && std::ranges::any_of(scene.meshes[std::size_t(node.mesh)].primitives,
+                                                                               [&](const Primitive& p) { return int(p.material) == int(track->target); });
+      if (!has || segment.node_moves[n]) continue;
+      segment.node_moves[n] = 1;
+      segment.why_moves[n] = std::string(path_word(track->path)) + " of its " + std::string(kind);
+    }
+  }
+}
+
 Box3d local_box(const Mesh& mesh) {
   Box3d box;
   for (const Primitive& primitive : mesh.primitives)
@@ -207,6 +224,7 @@ Segment segment_of(const Scene& scene, int frame, const TimeOptions& options) {
   }
   for (std::size_t n = 0; n < count; ++n)
     if (segment.node_moves[n]) segment.why_moves[n] = reason(scene, animator, segment, n, options.fps);
+  add_changed_nodes(scene, animator, options.fps, segment);
   add_static_bounds(scene, animator, first, segment.first / options.fps, segment);
   add_moving_bounds(scene, animator, options.fps, segment);
   if (!is_finite(segment.world_bounds.lower) || !is_finite(segment.world_bounds.upper))

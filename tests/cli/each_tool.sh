@@ -13,14 +13,21 @@ irradcache-build "$mirror" -q --photons in/p.photons --point-count 1k --rays 50 
   -o in/c.irradcache &&
 frame-render "$mirror" -q --size 96x54 --irradcache in/c.irradcache --points in/p.irradpoints --photons in/p.photons --spp 1 \
   --channels RGBA,layers,Z,id -o in/x.exr --stats in/x.json &&
+photon-trace "$scene" -q --photons 20k --map static -o in/s.photons --paths in/s.paths &&
+photon-trace "$scene" -q --frame 10 --map dynamic --static in/s.paths -o in/d.photons &&
+irradcache-build points "$scene" -q --map static --photons in/s.photons --point-count 1k -o in/s.irradpoints &&
 frame-render "$mirror" -q --size 96x54 --integrator path --spp 2 --halves --channels RGBA,layers,id -o in/r.exr &&
 aqm-compare in/x.exr --reference-halves in/r_a.exr in/r_b.exr -q --json in/e.json || exit 1
 each_tool() {
   "$1" scene-plan scene-plan "$scene" --frames 0-5 -o plan
   "$1" photon-trace photon-trace "$mirror" --photons 100k -o a.photons
+  "$1" photon-trace-static photon-trace "$scene" --photons 20k --map static -o a.photons --paths a.paths
+  "$1" photon-trace-dynamic photon-trace "$scene" --frame 10 --map dynamic --static "$in/s.paths" -o a.photons
   "$1" photonmap-split photonmap-split "$in/p.irradpoints" --low a.irradpoints --high b.irradpoints
   "$1" photonmap-split-photons photonmap-split "$in/p.photons" --energy 2 --low a.photons --high b.photons
   "$1" photonmap-split-kinds photonmap-split "$in/p.photons" --kind caustic -o a.photons --rest b.photons
+  "$1" irradcache-build-update irradcache-build points "$scene" --frame 10 --point-count 1k --photons "$in/s.photons" \
+    --update "$in/s.irradpoints" --dynamic "$in/d.photons" -o a.irradpoints
   "$1" irradcache-build irradcache-build "$mirror" --photons "$in/p.photons" --point-count 1k --rays 50 --size 64x36 \
     --keep-points a.irradpoints -o a.irradcache
   "$1" irradcache-build-records irradcache-build records "$mirror" --points "$in/p.irradpoints" --records "$in/c.irradcache" \

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Make {irradpoints,irradcache}/{accept,refuse} in a folder: small files, each named for what is right or wrong with it.
+"""Make {irradpoints,irradcache,paths}/{accept,refuse} in a folder: small files, each named for what is right or wrong with it.
 
     make_irrad_files.py FOLDER          FOLDER is tests/formats
 
@@ -14,6 +14,7 @@ import zlib
 import containers
 import read_irradcache as cache
 import read_irradpoints as points
+import read_paths as paths
 from read_irradcache import Irradcache, Record
 from read_irradpoints import Irradpoints, Point
 
@@ -28,7 +29,7 @@ class Maker:
     def __init__(self, name, encode, good):
         self.name, self.encode, self.good = name, encode, good
         self.bytes = encode(good)
-        self.mark = cache.MARK if name == "irradcache" else points.MARK
+        self.mark = {"irradcache": cache, "irradpoints": points, "paths": paths}[name].MARK
 
     def save(self, where, data):
         data = data if isinstance(data, bytes) else self.encode(data)
@@ -80,7 +81,7 @@ class Maker:
         no_identity = copy.deepcopy(self.good)
         for key in containers.IDENTITY:
             no_identity.header.pop(key, None)
-        self.save("accept/no-identity", no_identity)
+        self.save("refuse/no-identity" if self.name == "paths" else "accept/no-identity", no_identity)
         no_history = copy.deepcopy(self.good)
         no_history.history = []
         self.save("accept/no-history", no_history)
@@ -126,7 +127,7 @@ class Maker:
         self.save("refuse/ends-inside-end-block", self.bytes[:-1])
         self.save("refuse/bytes-after-end", self.bytes + b"\0")
         self.save("refuse/two-files-in-one", self.bytes + self.bytes)
-        self.save("refuse/end-count", self.with_end(4, struct.pack("<Q", 3)))
+        self.save("refuse/end-count", self.with_end(4, struct.pack("<Q", 99)))
         self.save("refuse/end-sum", self.with_end(12, struct.pack("<d", 0.1)))
         self.save("refuse/end-sum-nan", self.with_end(12, struct.pack("<d", NAN)))
         self.save("refuse/end-checksum", self.bytes[:-1] + bytes([self.bytes[-1] ^ 1]))
@@ -249,6 +250,27 @@ def make_cache():
     m.save("refuse/update-nan", m.with_block(12 + 124, struct.pack("<f", NAN), data))
 
 
+def make_paths():
+    good = paths.Paths({"kinds": "direct,indirect", "origin": "0 0 0", "groups": "2", "emitted": "8", "seed": "3",
+                        "movers": "a1 b2 c3", "emission": "d4"} | IDENTITY, ["example"], [(4, 1), (1, 6), (7, 4)])
+    m = Maker("paths", paths.encode_paths, good)
+    m.common()
+    m.save("accept/worked-example", good)
+    empty = copy.deepcopy(good)
+    empty.paths = []
+    m.save("accept/no-paths", empty)
+    wide = m.with_header(movers=" ".join(f"m{i}" for i in range(64)), frames="0 63", emitted=str(2**64 - 1))
+    wide.paths = [(0, 2**63), (2**64 - 4, 2**64 - 1), (1, 1)]
+    m.save("accept/64-intervals", wide)
+    m.headers({"kinds-in-other-order": {"kinds": "indirect,direct"}, "groups-zero": {"groups": "0"},
+               "groups-above-limit": {"groups": "16777217"}, "seed-negative": {"seed": "-1"}, "movers-empty": {"movers": ""},
+               "movers-two-spaces": {"movers": "a1  b2"}, "movers-65": {"movers": " ".join(["a"] * 65), "frames": "0 99"},
+               "movers-more-than-frames": {"frames": "0 1"}, "emission-empty": {"emission": ""}})
+    m.records({"path-not-below-emitted": ("path", "<Q", 9), "path-of-an-earlier-group": ("path", "<Q", 6),
+               "path-twice": ("path", "<Q", 1), "intervals-none": ("intervals", "<Q", 0),
+               "intervals-beyond-movers": ("intervals", "<Q", 8)}, {"path": 32, "intervals": 40})
+
+
 def dataclass_with(record, **values):
     record = copy.deepcopy(record)
     for key, value in values.items():
@@ -258,3 +280,4 @@ def dataclass_with(record, **values):
 
 make_points()
 make_cache()
+make_paths()

@@ -67,5 +67,5 @@ END
 
 # The files in the repository are those that make_irrad_files.py makes.
 python3 "$here/make_irrad_files.py" "$folder/made" || fail "make_irrad_files.py"
-diff -r "$folder/made/$format" "$here/$format" || fail "make_irrad_files.py makes other files"
+diff -r "$folder/made/$format" "$here/$format" && diff -r "$folder/made/paths" "$here/paths" || fail "make_irrad_files.py makes other files"
 exit $bad

@@ -1,5 +1,6 @@
 #include "tools/common/gather_input.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "formats/error.h"
@@ -50,12 +51,14 @@ GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& 
           in.header.history, in.header.emitted_count};
 }
 
-formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed) {
+formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
+                                const std::string& wanted) {
   tool.depends_on(file);
   formats::PhotonMap map = formats::load_photons(file);
-  if (map.header.map != "global")
-    throw InputError(file + ": a " + map.header.map +
-                     " map is a part of the scene's light; give a global one, as photon-trace writes it");
+  if (map.header.map != wanted)
+    throw InputError(file + ": a " + map.header.map + " map" +
+                     (map.header.map == "global" ? "" : " is a part of the scene's light") + "; give a " + wanted +
+                     " one, as photon-trace writes it with --map " + wanted);
   refuse_part(file, map.header.part);
   check_identity(tool, file, map.header.identity, frame);
   const std::vector<std::string> kinds = needed == LightNeeded::all ? std::vector<std::string>{"indirect", "caustic"}
@@ -77,10 +80,44 @@ GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer
   return result;
 }
 
-void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output) {
+void update_points(Tool& tool, const formats::PhotonMap& fixed, const formats::PhotonMap& moved, const Tracer& whole,
+                   const Tracer& standing, const Lights& lights, const PointOptions& options, GatherPoints& points,
+                   PointUpdateCounts& counts) {
+  const SceneFrame& frame = whole.frame();
+  std::vector<bool> moves;   // by object
+  for (std::size_t i = frame.static_count; i < frame.surfaces.size(); ++i) {
+    const std::size_t object = frame.surfaces[i].object;
+    if (object >= moves.size()) moves.resize(object + 1);
+    moves[object] = true;
+  }
+  const auto on_mover = [&moves](std::uint32_t object) { return object < moves.size() && moves[object]; };
+  const PlacedPoints placed = place_points(frame, options);
+  const auto own_points = std::find_if(placed.points.begin(), placed.points.end(), [&](const auto& p) { return on_mover(p.object); });
+  const auto standing_count = std::size_t(own_points - placed.points.begin());
+  if (standing_count != points.points.size() || placed.spacing != points.spacing)
+    throw InputError("--update: its points are not those of --point-count " + std::to_string(options.count) + " (" +
+                     std::to_string(points.points.size()) + ", not " + std::to_string(standing_count) +
+                     "); give the options they were made with");
+  const Vec3d static_shift = shift_of(fixed.header.origin, frame), dynamic_shift = shift_of(moved.header.origin, frame);
+  counts = tempolux::update_points({whole, standing, lights, fixed.photons, moved.photons, static_shift, dynamic_shift}, options,
+                                   points.points);
+  // What moves has its photons in the dynamic map alone.
+  std::vector<formats::Photon> on_movers;
+  for (const formats::Photon& photon : moved.photons)
+    if (on_mover(photon.object)) on_movers.push_back(photon);
+  points.points.insert(points.points.end(), own_points, placed.points.end());
+  std::vector<std::uint32_t> own;
+  for (std::size_t i = standing_count; i < points.points.size(); ++i) own.push_back(std::uint32_t(i));
+  estimate_points(whole, lights, on_movers, dynamic_shift, options, own, points.points);
+  tool.stats().count("points", double(points.points.size()));
+}
+
+void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output,
+                  std::optional<std::array<int, 2>> frames) {
   formats::IrradpointsHeader header;
   header.history = points.history + tool.history_line(frame.frame);
   header.identity = identity_of(frame);
+  if (frames) header.identity.first_frame = (*frames)[0], header.identity.last_frame = (*frames)[1];
   header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
   header.spacing = double(points.spacing);
   header.emitted_count = points.emitted_count;

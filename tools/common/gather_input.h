@@ -1,11 +1,14 @@
 // tools/common/gather_input.h -- irradiance points and records for the tools that gather: read, made, written.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/photons/photons.h"
 #include "lib/gather/irradiance_points.h"
+#include "lib/gather/update_points.h"
 #include "lib/irradcache/records.h"
 #include "tools/common/scene_input.h"
 
@@ -14,10 +17,12 @@ namespace tempolux::tools {
 /// What a reader of photons or points takes from them.
 enum class LightNeeded { all, caustic };
 
-/// Reads the photons of a whole map made for this state of the scene (InputError otherwise, see check_identity). It
+/// Reads the photons of a whole map (or of that part of the scene's light that `map` names: of a static map `frame` is the
+/// standing scene) made for this state of the scene (InputError otherwise, see check_identity). It
 /// must hold the kinds that the scene's surfaces call for: without indirect light it is refused, without caustic light
 /// there is a warning.
-formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed);
+formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
+                                const std::string& map = "global");
 
 /// Points and what they came from.
 struct GatherPoints {
@@ -33,8 +38,13 @@ GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& 
 /// Makes points from the photons of a whole map with all kinds of light (read_photons).
 GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
                          const PointOptions& options);
-/// Writes them; counts go to the statistics.
-void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output);
+/// Of a frame: from `points` of the standing scene, to which the points on what moves are added (update_points).
+void update_points(Tool& tool, const formats::PhotonMap& fixed, const formats::PhotonMap& moved, const Tracer& whole,
+                   const Tracer& standing, const Lights& lights, const PointOptions& options, GatherPoints& points,
+                   PointUpdateCounts& counts);
+/// Writes them, valid for the frame or for these frames, first and last; counts go to the statistics.
+void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output,
+                  std::optional<std::array<int, 2>> frames = {});
 
 /// Adds the records of a .irradcache file to a store; returns the file's history.
 std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame,

@@ -91,6 +91,7 @@ FileType file_type(const std::string& path) {
   const std::string head = head_of(path);
   const std::size_t size = head.size();
   if (head.starts_with("\x89TPHOT")) return FileType::photons;
+  if (head.starts_with("\x89TPATH")) return FileType::paths;
   if (head.starts_with("\x89TIRPT")) return FileType::irradpoints;
   if (head.starts_with("\x89TIRRC")) return FileType::irradcache;
   if (path == "-") return FileType::photons;   // whose reader says what is wrong
@@ -106,6 +107,8 @@ Facts facts_of(const std::string& path, bool allow_nan) {
   switch (file_type(path)) {
     case FileType::photons:
       return photon_facts(path);
+    case FileType::paths:
+      return paths_facts(path);
     case FileType::irradpoints:
       return irradpoints_facts(path);
     case FileType::irradcache:
@@ -126,6 +129,8 @@ Facts difference_of(const std::string& a, const std::string& b) {
   switch (type) {
     case FileType::photons:
       return photon_difference(a, b);
+    case FileType::paths:
+      return paths_difference(a, b);
     case FileType::irradpoints:
       return irradpoints_difference(a, b);
     case FileType::irradcache:
@@ -146,6 +151,7 @@ void export_points(const std::string& path, const std::string& format, Output& o
       return export_irradpoints(path, format, output);
     case FileType::irradcache:
       return export_irradcache(path, format, output);
+    case FileType::paths:
     case FileType::image:
     case FileType::json:
       break;

@@ -15,7 +15,7 @@ namespace tempolux::tools {
 
 using Facts = nlohmann::ordered_json;
 
-enum class FileType { photons, irradpoints, irradcache, image, json };
+enum class FileType { photons, paths, irradpoints, irradcache, image, json };
 /// By the first bytes, not by the name; "-" is a .photons stream. Throws InputError.
 FileType file_type(const std::string& path);
 
@@ -26,6 +26,7 @@ Facts identity_facts(const formats::Identity& identity);
 
 /// Reads the whole file, so every one of these is also a check. Throws InputError naming the place.
 Facts photon_facts(const std::string& path);
+Facts paths_facts(const std::string& path);
 Facts irradpoints_facts(const std::string& path);
 Facts irradcache_facts(const std::string& path);
 Facts image_facts(const std::string& path, bool allow_nan);
@@ -37,6 +38,7 @@ std::string digest_of_file(const std::string& path);
 /// How two files of one type differ. "equal" is true if their digests are: history and identity are compared
 /// and reported, but do not count.
 Facts photon_difference(const std::string& a, const std::string& b);
+Facts paths_difference(const std::string& a, const std::string& b);
 Facts irradpoints_difference(const std::string& a, const std::string& b);
 Facts irradcache_difference(const std::string& a, const std::string& b);
 Facts image_difference(const std::string& a, const std::string& b);

@@ -20,13 +20,21 @@ constexpr ManualText kTexts[] = {
     {"photon-trace",
      "Starts photon paths at the lights of a scene and records where they arrive, with flux, normal, object and kind "
      "of "
-     "path. All that leaves the lights is stored, absorbed or escaped, and the file's end says how much of each.",
-     ".photons: photons in blocks with checksums (formats/photons/photons.md)",
+     "path. All that leaves the lights is stored, absorbed or escaped, and the file's end says how much of each.\n"
+     "\n"
+     "--map static traces the scene without what moves in the frame's segment, once for all its frames; --map dynamic then "
+     "traces what movers change at a frame, with sign, of the paths they touch alone. Static and dynamic map together are "
+     "the global one, photon by photon (docs/methods/dynamic.md).",
+     ".photons: photons in blocks with checksums (formats/photons/photons.md)\n"
+     ".paths: which paths movers can touch, and when (formats/paths/paths.md)",
      "photon-trace room.glb --frame 12 --photons 200k --kinds caustic,indirect -o 12.photons\n"
      "# A map for each frame of a range; the scene is read once.\n"
      "photon-trace room.glb --frames 0-47 -o map.####.photons\n"
      "# A house in a wide land: sun and sky where the cameras of the plan look.\n"
-     "photon-trace house.glb --frame 0 --importance plan/state/view.0000 -o 0.photons",
+     "photon-trace house.glb --frame 0 --importance plan/state/view.0000 -o 0.photons\n"
+     "# The light of a segment without what moves, and what that changes at each frame.\n"
+     "photon-trace room.glb --frame 0 --map static -o s.photons --paths s.paths\n"
+     "photon-trace room.glb --frames 0-23 --map dynamic --static s.paths -o d.####.photons",
      "scene-plan irradcache-build tempolux-info"},
     {"photonmap-split",
      "Divides the light of photons or irradiance points in two files that add up to the whole to the last bit. By "

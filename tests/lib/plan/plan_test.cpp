@@ -201,10 +201,11 @@ TEST(Plan, MovingTheCameraChangesStatesOfTheCameraOnly) {
             (Names{"state/camera.0000", "state/camera.0001"}));
 }
 
-TEST(Plan, ChangingAMaterialChangesMaterialsOnly) {
+TEST(Plan, ChangingAMaterialChangesMaterialsAndWhatStands) {
   Scene darker = still_room();
   darker.materials[0].base_color = Rgb(0.25f);
-  EXPECT_EQ(changed(plan_of(still_room(), {0}), plan_of(darker, {0})), Names{"state/materials.0000"});
+  EXPECT_EQ(changed(plan_of(still_room(), {0}), plan_of(darker, {0})),
+            (Names{"state/materials.0000", "state/standing.0000"}));
 }
 
 TEST(Plan, CausticPhotonsAreTracedOnlyWhereSomethingMirrors) {
@@ -265,6 +266,8 @@ TEST(PlanMakefile, SaysWhichPhotonsHoldForAFrameAndWhatTheyDependOn) {
             "camera_0002 := out/plan/state/camera.0002\n"
             "picture_0002 := 0002\n"
             "photons_0002 := 0001\n"
+            "segment_0002 := 0000\n"
+            "previous_0002 :=\n"
             "light_0003 := $(addprefix out/plan/state/,"
             "static.0000 materials.0000 frozen.0000 moving.0003 lights.0003)\n"
             "\n# photon maps, and the pictures they light\n"

@@ -1,0 +1,186 @@
+#include "lib/gather/update_points.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <optional>
+#include <unordered_map>
+
+#include "formats/octahedral.h"
+#include "lib/core/parallel.h"
+#include "lib/core/random.h"
+#include "lib/core/sampling.h"
+#include "lib/gather/reachable_area.h"
+
+namespace tempolux {
+namespace {
+
+using formats::PathKind;
+using formats::Photon;
+
+Vec3 placed(const Photon& photon, Vec3d shift) {
+  return Vec3(Vec3d{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])} + shift);
+}
+
+bool is_negative(const Photon& photon) { return photon.flux[0] < 0 || photon.flux[1] < 0 || photon.flux[2] < 0; }
+
+struct PhotonHash {
+  std::size_t operator()(const Photon& photon) const {
+    std::array<std::uint64_t, sizeof(Photon) / 8> words;
+    std::memcpy(words.data(), &photon, sizeof photon);
+    std::uint64_t hash = 0;
+    for (const std::uint64_t word : words) hash = mix64(hash ^ word) + 0x9e3779b97f4a7c15ull;
+    return hash;
+  }
+};
+
+/// Photons of the whole scene, moved into scene space, of those that `wanted` (of place and photon) takes: static ones but those
+/// that a negative one cancels, and positive ones.
+template <class Wanted>
+std::vector<Photon> global_photons(const PointUpdateInput& in, const Wanted& wanted) {
+  std::unordered_map<Photon, int, PhotonHash> gone;
+  std::vector<Photon> photons;
+  const auto take = [&](Photon photon, Vec3 place) {
+    photon.position = {place.x, place.y, place.z};
+    photons.push_back(photon);
+  };
+  for (Photon photon : in.dynamic_photons) {
+    const Vec3 place = placed(photon, in.dynamic_shift);
+    if (!wanted(place, photon)) continue;
+    if (!is_negative(photon)) {
+      take(photon, place);
+      continue;
+    }
+    for (float& flux : photon.flux) flux = 0 - flux;
+    ++gone[photon];
+  }
+  for (const Photon& photon : in.static_photons) {
+    const Vec3 place = placed(photon, in.static_shift);
+    if (!wanted(place, photon)) continue;
+    if (const auto found = gone.find(photon); found != gone.end() && found->second > 0) --found->second;
+    else take(photon, place);
+  }
+  return photons;
+}
+
+bool inside(const Box3& box, Vec3 p, float margin) {
+  for (int a = 0; a < 3; ++a)
+    if (!(p[a] >= box.lower[a] - margin && p[a] <= box.upper[a] + margin)) return false;
+  return !box.empty();
+}
+
+bool near_any(const MovingBoxes& boxes, Vec3 p, float margin) {
+  return inside(boxes.all, p, margin) &&
+         std::any_of(boxes.surfaces.begin(), boxes.surfaces.end(), [&](const Box3& box) { return inside(box, p, margin); });
+}
+
+/// Do lights move or change, so that what they give is another everywhere?
+bool lights_change(const SceneFrame& frame) {
+  for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s)
+    if (frame.materials[frame.surfaces[s].material].emissive()) return true;
+  for (const PlacedLight& placed : frame.lights)
+    if (placed.node < frame.segment.node_moves.size() && frame.segment.node_moves[placed.node]) return true;
+  return false;
+}
+
+/// The change of irradiance by dynamic photons in a disc of the standing scene: PointDensity::estimate with its radius given.
+class SignedDensity {
+ public:
+  SignedDensity(const PointUpdateInput& in, const DensityOptions& options)
+      : options_(options), area_(in.standing), index_(in.dynamic_photons, kind_bit(PathKind::indirect), in.dynamic_shift) {}
+
+  /// Nothing if no photon is in the disc.
+  std::optional<Rgbd> change(const IrradiancePoint& point, const PathRandom& random) const {
+    thread_local NeighbourList found;
+    const float radius = point.radius > 0 ? point.radius : options_.max_radius;
+    const PhotonQuery query{point.position, point.normal, radius, kMinCos, kFlattening, kAllKinds};
+    index_.find_within(query, found);
+    if (found.count() == 0) return std::nullopt;
+    const bool whole = area_.whole(point.position, point.normal, radius, random.get1(2, Purpose::points));
+    Rgbd flux{0.0};
+    for (std::size_t i = 0; i < found.count(); ++i) {
+      if (!(found.distance2()[i] < radius * radius)) continue;   // the static estimate leaves out the one that it touches
+      const std::uint32_t photon = found.photons()[i];
+      const Vec3 place = index_.position(photon);
+      const bool flat = whole && std::abs(dot(place - point.position, point.normal)) < 4 * area_.offset();
+      if (flat || area_.reach()(point.position, point.normal, place, index_.normal(photon))) flux += Rgbd(index_.flux(photon));
+    }
+    const double inverse =
+        whole || !(radius > 4 * area_.offset())
+            ? 1 / (double(kPi) * double(radius) * double(radius))
+            : area_.inverse(point.position, point.normal, radius, options_.area_probes, ReachableArea::Kernel::flat, random);
+    return flux * inverse;
+  }
+
+ private:
+  DensityOptions options_;
+  ReachableArea area_;
+  PhotonIndex index_;
+};
+
+Rgb not_negative(const Rgbd& sum) { return Rgb(Rgbd{std::max(0.0, sum.r), std::max(0.0, sum.g), std::max(0.0, sum.b)}); }
+
+}  // namespace
+
+PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& options, std::vector<IrradiancePoint>& points) {
+  PointUpdateCounts counts;
+  const SceneFrame& frame = in.whole.frame();
+  const DensityOptions density = density_of(options, frame);
+  const MovingBoxes boxes = moving_boxes(frame);
+  const MoverWatch watch({boxes});
+  counts.direct = update_direct(in.whole, in.lights, lights_change(frame) ? nullptr : &watch, options, points);
+
+  std::vector<std::uint32_t> anew, others;
+  float widest = 0;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const float radius = points[i].radius > 0 ? points[i].radius : density.max_radius;
+    if (near_any(boxes, points[i].position, radius)) {
+      anew.push_back(i);
+      widest = std::max(widest, radius);
+    } else {
+      others.push_back(i);
+    }
+  }
+  counts.anew = anew.size();
+  const SignedDensity change(in, density);
+  std::atomic<std::size_t> changed = 0;
+  parallel_chunks(others.size(), 256, [&](std::size_t first, std::size_t last) {
+    std::size_t count = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      IrradiancePoint& point = points[others[i]];
+      const std::optional<Rgbd> sum = change.change(point, PathRandom(options.seed ^ 0x706f696e74ull, others[i]));
+      if (!sum) continue;
+      point.indirect = not_negative(Rgbd(point.indirect) + *sum);
+      ++count;
+    }
+    changed += count;
+  });
+  counts.changed = changed;
+
+  // Beside what moves: all photons that an estimate there may ask for.
+  const std::vector<Photon> near = anew.empty() ? std::vector<Photon>{} : global_photons(in, [&](Vec3 place, const Photon&) {
+    return near_any(boxes, place, widest + density.max_radius);
+  });
+  std::vector<Rgb> caustic;
+  for (const IrradiancePoint& point : points) caustic.push_back(point.caustic);
+  if (!anew.empty()) estimate_points(in.whole, in.lights, near, {}, options, anew, points);
+
+  // Caustic light has footprints instead of discs: all of it anew if any is another.
+  const bool caustics_change = std::any_of(in.dynamic_photons.begin(), in.dynamic_photons.end(),
+                                           [](const Photon& photon) { return photon.kind == PathKind::caustic; });
+  if (caustics_change) {
+    const std::vector<Photon> all = global_photons(in, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
+    const FootprintDensity footprints(in.whole, all, {density.neighbours, density.max_radius, 0}, kind_bit(PathKind::caustic), {});
+    parallel_chunks(points.size(), 256, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        float unused;
+        points[i].caustic = footprints.estimate(points[i].position, points[i].normal, unused);
+      }
+    });
+  } else {
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].caustic = caustic[i];
+  }
+  return counts;
+}
+
+}  // namespace tempolux

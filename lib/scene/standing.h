@@ -1,0 +1,31 @@
+// lib/scene/standing.h -- the scene without what moves: what a segment's frames have in common.
+#pragma once
+
+#include <vector>
+
+#include "lib/core/vec.h"
+#include "lib/scene/at_frame.h"
+
+namespace tempolux {
+
+/// The scene of a segment as it stands: static surfaces, and the lights that neither move nor change. `frame` is any frame of
+/// the segment. Surfaces that move stay in the list, shrunk to a point, so that indices and the slots of the emission table
+/// are those of every frame: no ray meets them and they emit nothing. Lights of moving nodes have intensity 0. Bounds, origin and
+/// segment are those of the frame. The hashes are those that the same file has with the moving nodes' meshes and
+/// lights taken out, but for the origin where that would lie elsewhere.
+SceneFrame standing_scene(SceneFrame frame);
+
+/// Does anything move that light meets or comes from?
+bool light_moves(const SceneFrame& frame);
+
+/// Where what moves is: boxes, scene space, m, a little larger than what is in them.
+struct MovingBoxes {
+  std::vector<Box3> surfaces;   ///< one for each that moves
+  Box3 all;                     ///< empty if nothing moves
+
+  /// Widens each box by those of another frame of the segment.
+  void add(const MovingBoxes& other);
+};
+MovingBoxes moving_boxes(const SceneFrame& frame);
+
+}  // namespace tempolux

@@ -1,0 +1,46 @@
+#include "lib/trace/mover_watch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tempolux {
+namespace {
+
+/// A ray as boxes are asked about it.
+struct Slabs {
+  Vec3 origin, inverse;
+  float leave;
+
+  /// False only if the ray does not come near. 0 x infinity (a ray in a face's plane) is NaN, which min and max drop as
+  /// their second argument. Boxes are 2^-18 larger than their content and `leave` a few roundings longer than the way.
+  bool meet(const Box3& box) const {
+    if (box.empty()) return false;
+    float first = 0, last = leave;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float a = (box.lower[axis] - origin[axis]) * inverse[axis], b = (box.upper[axis] - origin[axis]) * inverse[axis];
+      first = std::max(first, inverse[axis] < 0 ? b : a);
+      last = std::min(last, inverse[axis] < 0 ? a : b);
+    }
+    return first <= last;
+  }
+};
+
+}  // namespace
+
+MoverWatch::MoverWatch(std::vector<MovingBoxes> intervals) : intervals_(std::move(intervals)) {
+  for (const MovingBoxes& boxes : intervals_) whole_.add(boxes.all);
+}
+
+std::uint64_t MoverWatch::touching(const Ray& ray, float t) const {
+  const Slabs slabs{ray.origin, {1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z}, t * (1 + 0x1p-20f)};
+  if (!slabs.meet(whole_)) return 0;
+  std::uint64_t found = 0;
+  for (std::size_t i = 0; i < intervals_.size(); ++i) {
+    const MovingBoxes& boxes = intervals_[i];
+    if (slabs.meet(boxes.all) && std::ranges::any_of(boxes.surfaces, [&](const Box3& box) { return slabs.meet(box); }))
+      found |= std::uint64_t(1) << i;
+  }
+  return found;
+}
+
+}  // namespace tempolux

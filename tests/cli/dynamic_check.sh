@@ -1,0 +1,96 @@
+# Static and dynamic maps: together the global map, photon by photon, as a second reader sees them; what is refused.
+failed=0
+bad() { echo "$*"; failed=1; }
+refuses() {
+  words=$1; shift
+  "$@" >out.txt 2>errors.txt
+  code=$?
+  [ $code = 2 ] || bad "exit $code, not 2: $*"
+  grep -q -- "$words" errors.txt && [ "$(wc -l <errors.txt)" = 1 ] || bad "does not say '$words': $(cat errors.txt)"
+  [ -e refused ] && bad "left an output: $*" && rm -f refused
+}
+cat >sums.py <<'EOF'
+import sys
+from collections import Counter
+from fractions import Fraction
+from read_photons import FLUX, NORMAL, RECORD, read_photons
+def load(name):
+    photons, flux = Counter(), [Fraction(0)] * 3
+    for block in read_photons(name).blocks:
+        for v in RECORD.iter_unpack(block.records):
+            f = v[FLUX:NORMAL]
+            photons[block.group, v[:FLUX], tuple(map(abs, f)), v[NORMAL:]] += -1 if min(f) < 0 else 1
+            flux = [a + Fraction(b) for a, b in zip(flux, f)]
+    return photons, flux
+(whole, flux), (fixed, flux_s), (changed, flux_d) = map(load, sys.argv[1:4])
+fixed.update(changed)
+assert {k: n for k, n in fixed.items() if n} == dict(whole), "photons"
+assert [a + b for a, b in zip(flux_s, flux_d)] == flux, "flux"
+print(len(changed))
+EOF
+sum() { PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$HERE/../formats "${PYTHON:-python3}" sums.py "$@"; }
+trace() { photon-trace -q "$@"; }
+scene=$HERE/../../pipelines/scenes/S2_cornell_moving.glb
+edit() { "${PYTHON:-python3}" -B "$HERE/../pipelines/edit_gltf.py" "$@"; }
+
+# A box that moves, all kinds of light; a mirror in the room; a lamp that moves beside one that stands.
+edit "$scene" mirror.glb mirror && edit "$scene" lamp.glb lamp && edit "$scene" other.glb lamp 4 || bad edit
+for name in box mirror lamp; do
+  case $name in box) file=$scene;; *) file=$name.glb;; esac
+  trace "$file" --photons 6k --map static -o $name.s.photons --paths $name.paths || bad "$name static"
+  trace "$file" --frame 4 --map dynamic --static $name.paths -o $name.d.photons || bad "$name dynamic"
+  trace "$file" --frame 4 --photons 6k -o $name.g.photons || bad "$name global"
+  [ "$(sum $name.g.photons $name.s.photons $name.d.photons)" -gt 0 ] || bad "$name: static + dynamic is not global"
+done
+tempolux-info --check box.* >out.txt || bad "$(cat out.txt)"
+tempolux-info box.paths | grep -q touched_paths || bad 'info of .paths'
+
+# The static map is that of any frame of the segment. Nothing moves: it is the global map, and no path is touched.
+trace "$scene" --frame 9 --photons 6k --map static -o again.photons --paths again.paths
+tempolux-info --diff again.photons box.s.photons >/dev/null && tempolux-info --diff again.paths box.paths >/dev/null || bad 'static map of another frame'
+edit "$scene" still.glb still
+trace still.glb --photons 6k --map static -o still.s.photons --paths still.paths
+trace still.glb --photons 6k -o still.g.photons
+trace still.glb --map dynamic --static still.paths -o still.d.photons
+tempolux-info --json still.s.photons still.g.photons still.d.photons still.paths >still.json
+"${PYTHON:-python3}" - <<'EOF' || bad 'nothing moves'
+import json
+s, g, d, p = json.load(open("still.json"))
+assert s["stored_flux_W"] == g["stored_flux_W"] and s["photons"] == g["photons"], (s, g)
+assert d["photons"] == 0 and p["touched_paths"] == 0
+EOF
+
+# Points: direct light to the bit as made afresh, indirect light in the mean; the same for any number of threads.
+points() { irradcache-build points "$scene" -q --frame 4 --point-count 2k "$@"; }
+points --photons box.g.photons -o fresh.irradpoints || bad 'points'
+points --map static --photons box.s.photons -o stands.irradpoints || bad 'points of what stands'
+for threads in 1 3; do
+  points --update stands.irradpoints --photons box.s.photons --dynamic box.d.photons -o updated.$threads.irradpoints --threads $threads || bad update
+done
+cmp updated.1.irradpoints updated.3.irradpoints || bad 'updated points differ with 3 threads'
+PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$HERE/../formats "${PYTHON:-python3}" - <<'EOF' || bad 'updated points'
+from read_irradpoints import read_irradpoints
+fresh, updated = read_irradpoints("fresh.irradpoints"), read_irradpoints("updated.1.irradpoints")
+assert [p.position for p in fresh.points] == [p.position for p in updated.points]
+assert [p.irradiance["direct"] for p in fresh.points] == [p.irradiance["direct"] for p in updated.points]
+a, b = (sum(p.irradiance["indirect"][1] for p in file.points) for file in (fresh, updated))
+assert abs(a - b) < 0.02 * a, (a, b)      # 6000 paths: the estimates' own noise in the mean of 2000 points
+sets = [p.set for p in updated.points]
+assert sets == sorted(sets) and 0 < sum(sets) < len(sets), "points of what stands come first"
+EOF
+refuses 'give the options they were made with' irradcache-build points "$scene" --frame 4 --point-count 1k --update stands.irradpoints --photons box.s.photons --dynamic box.d.photons -o refused
+refuses 'go together' points --update stands.irradpoints --photons box.s.photons -o refused
+refuses 'give a static one' points --update stands.irradpoints --photons box.g.photons --dynamic box.d.photons -o refused
+refuses 'give a global one' points --photons box.d.photons -o refused
+refuses '--update' irradcache-build records "$scene" --points fresh.irradpoints --update stands.irradpoints -o refused
+
+refuses 'what moves differ at frame 4' trace other.glb --frame 4 --map dynamic --static lamp.paths -o refused
+trace other.glb --frame 3 --map dynamic --static lamp.paths -o fine.photons || bad 'a frame whose movers are the same'
+refuses 'frame 30 lies in 24 to 47' trace "$scene" --frame 30 --map dynamic --static box.paths -o refused
+refuses 'made for another state' trace mirror.glb --map dynamic --static box.paths -o refused
+refuses 'needs --static' trace "$scene" --map dynamic -o refused
+refuses 'the static map has it' trace "$scene" --map dynamic --static box.paths --photons 10 -o refused
+refuses 'only with --map dynamic' trace "$scene" --static box.paths -o refused
+refuses 'only with --map static' trace "$scene" --paths p.paths -o refused
+refuses 'is a part of the scene' irradcache-build points "$scene" --photons box.s.photons -o refused
+exit $failed

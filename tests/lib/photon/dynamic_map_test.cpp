@@ -1,0 +1,197 @@
+// Static and dynamic maps: together the global map, photon by photon; which paths movers can touch.
+#include "lib/photon/dynamic_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <vector>
+
+#include "formats/exact_sum.h"
+#include "lib/photon/photon_map.h"
+#include "tests/support/photons.h"
+#include "tests/support/scenes.h"
+
+namespace tempolux {
+namespace {
+
+using formats::Photon;
+
+/// A room with a lamp on the ceiling, and a box, which moves, above its floor.
+struct Room {
+  test::HandMadeScene scene;
+  SceneFrame frame, standing;
+  EmissionTable table;
+
+  /// lamp_moves: the lamp is among what moves.
+  explicit Room(Material box, bool lamp_moves = false, Vec3 at = {0.3f, 0.2f, 0.3f}) {
+    scene.add_room({0, 0, 0}, {1, 1, 1}, test::matte({0.6f, 0.5f, 0.4f}));
+    scene.add_quad({0.4f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.6f}, {0.4f, 0.99f, 0.6f},
+                   test::matte(Rgb(0.0f), Rgb(5.0f)), lamp_moves);
+    const Vec3 u = at + Vec3{0.2f, 0.2f, 0.2f};
+    scene.add({{at.x, at.y, at.z}, {u.x, at.y, at.z}, {u.x, u.y, at.z}, {at.x, u.y, at.z},
+               {at.x, at.y, u.z}, {u.x, at.y, u.z}, {u.x, u.y, u.z}, {at.x, u.y, u.z}},
+              {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
+               {3, 6, 2}, {3, 7, 6}, {0, 7, 3}, {0, 4, 7}, {1, 2, 6}, {1, 6, 5}}, box, true);
+    frame = scene.frame();
+    standing = standing_scene(frame);
+    table = build_emission_table(std::span(&frame, 1));
+  }
+};
+
+PhotonOptions options_of(std::uint64_t count) {
+  PhotonOptions options;
+  options.photon_count = count;
+  options.group_count = 7;
+  return options;
+}
+
+/// A photon as bytes, so that it can be a key; flux made positive, so that one with negative flux cancels its like.
+using Key = std::array<unsigned char, sizeof(Photon)>;
+Key key_of(Photon photon) {
+  for (float& f : photon.flux) f = std::abs(f);
+  Key key;
+  std::memcpy(key.data(), &photon, sizeof photon);
+  return key;
+}
+
+/// Adds photons, +1 each and -1 for those of negative flux.
+void add(std::map<Key, int>& counts, const std::vector<Photon>& photons, int sign = 1) {
+  for (const Photon& photon : photons) {
+    const bool negative = photon.flux[0] < 0 || photon.flux[1] < 0 || photon.flux[2] < 0;
+    counts[key_of(photon)] += negative ? -sign : sign;
+  }
+}
+
+struct Maps {
+  std::vector<Photon> global, fixed, dynamic;
+  std::vector<formats::TouchedPath> touched;
+  std::uint64_t path_count = 0;
+  PhotonMapResult difference;
+};
+
+/// Bytes of a map read back through a file in memory are the writer's business; here the photons count.
+std::vector<Photon> photons_in(const std::string& bytes) {
+  std::vector<Photon> photons;
+  for (std::size_t at = bytes.find("PHOT", 16); at != std::string::npos && bytes.compare(at, 4, "PHOT") == 0;) {
+    std::uint32_t count;
+    std::memcpy(&count, bytes.data() + at + 8, 4);
+    const std::size_t first = photons.size();
+    photons.resize(first + count);
+    std::memcpy(static_cast<void*>(photons.data() + first), bytes.data() + at + 16, count * sizeof(Photon));
+    at += 16 + count * sizeof(Photon);
+  }
+  return photons;
+}
+
+Maps maps_of(const Room& room, std::uint64_t count, bool all_paths = false) {
+  const PhotonOptions options = options_of(count);
+  const Tracer whole(room.frame), without(room.standing);
+  const Lights lights(room.frame, room.table), standing_lights(room.standing, room.table);
+  const PhotonTracer global(whole, lights, options);
+  PhotonTracer fixed(without, standing_lights, options);
+  const MoverWatch watch({moving_boxes(room.frame)});
+  fixed.watch(&watch);
+  Maps maps;
+  maps.path_count = global.photon_count();
+  maps.global = test::photons_of(global);
+  for (std::size_t b = 0; b < fixed.batch_count(); ++b) {
+    const PhotonBatch batch = fixed.trace(b);
+    maps.fixed.insert(maps.fixed.end(), batch.block.photons.begin(), batch.block.photons.end());
+    maps.touched.insert(maps.touched.end(), batch.touched.begin(), batch.touched.end());
+  }
+  std::vector<std::uint64_t> paths;
+  if (all_paths)
+    for (std::uint64_t g = 0; g < 7; ++g)
+      for (std::uint64_t p = g; p < maps.path_count; p += 7) paths.push_back(p);
+  else
+    for (const formats::TouchedPath& path : maps.touched) paths.push_back(path.path);
+  formats::PhotonHeader header;
+  header.map = "dynamic";
+  std::string bytes;
+  maps.difference = write_dynamic_map(fixed, global, paths, options, header, [&](const void* data, std::size_t size) {
+    bytes.append(static_cast<const char*>(data), size);
+  }, {});
+  maps.dynamic = photons_in(bytes);
+  return maps;
+}
+
+void expect_sum(const Maps& maps) {
+  std::map<Key, int> counts;
+  add(counts, maps.fixed);
+  add(counts, maps.dynamic);
+  add(counts, maps.global, -1);
+  int left = 0;
+  for (const auto& [key, count] : counts) left += std::abs(count);
+  EXPECT_EQ(left, 0) << "photons of static + dynamic that are not those of global";
+  formats::ExactRgbSum sum, global;
+  for (const auto* photons : {&maps.fixed, &maps.dynamic})
+    for (const Photon& photon : *photons) sum.add(photon.flux);
+  for (const Photon& photon : maps.global) global.add(photon.flux);
+  EXPECT_EQ(sum.rounded(), global.rounded());
+}
+
+TEST(DynamicMap, StaticAndDynamicAreGlobalPhotonByPhoton) {
+  Material glossy = test::matte(Rgb(0.5f));
+  glossy.metallic = 1, glossy.roughness = 0.1f;
+  for (const Material& box : {test::matte(Rgb(0.5f)), glossy}) {
+    const Room room(box);
+    const Maps maps = maps_of(room, 20000);
+    expect_sum(maps);
+    EXPECT_FALSE(maps.dynamic.empty());
+    EXPECT_LT(maps.touched.size(), maps.path_count / 2);
+  }
+}
+
+TEST(DynamicMap, NoPathThatDiffersIsMissed) {
+  const Room room(test::matte(Rgb(0.5f)));
+  const Maps found = maps_of(room, 10000), all = maps_of(room, 10000, true);
+  EXPECT_EQ(found.dynamic, all.dynamic);
+}
+
+TEST(DynamicMap, AMovingLampsPhotonsAreAllDynamic) {
+  const Room room(test::matte(Rgb(0.5f)), true);
+  const Maps maps = maps_of(room, 5000);
+  EXPECT_TRUE(maps.fixed.empty());
+  EXPECT_EQ(maps.touched.size(), maps.path_count);
+  expect_sum(maps);
+  EXPECT_EQ(maps.dynamic.size(), maps.global.size());
+}
+
+TEST(DynamicMap, WhereNothingIsMetThereIsNothing) {
+  const Room room(test::matte(Rgb(0.5f)), false, {5, 5, 5});   // outside the room
+  const Maps maps = maps_of(room, 5000);
+  EXPECT_TRUE(maps.touched.empty());
+  EXPECT_TRUE(maps.dynamic.empty());
+  EXPECT_EQ(maps.global, maps.fixed);
+}
+
+TEST(DynamicMap, FluxThatIsGoneIsFluxThatIsElsewhere) {
+  // emitted = escaped + absorbed in both scenes, so in the difference: and a standing lamp emits the same in both.
+  const Room room(test::matte(Rgb(0.5f)));
+  const PhotonMapResult r = maps_of(room, 5000).difference;
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(r.totals.emitted_flux[c], 0);
+    EXPECT_NEAR(r.totals.escaped_flux[c] + r.totals.absorbed_flux[c], 0, 1e-9);
+  }
+}
+
+TEST(MoverWatch, BitsAreTheIntervalsWhoseBoxesAreMet) {
+  std::vector<MovingBoxes> intervals(64);
+  intervals[0].surfaces = {{{0, 0, 0}, {1, 1, 1}}}, intervals[0].all = intervals[0].surfaces[0];
+  intervals[63].surfaces = {{{0, 0, 0}, {1, 1, 1}}, {{9, 0, 0}, {10, 1, 1}}};
+  for (const Box3& box : intervals[63].surfaces) intervals[63].all.add(box);
+  const MoverWatch watch(intervals);
+  EXPECT_EQ(watch.all(), ~std::uint64_t(0));
+  const Ray up{{0.5f, -5, 0.5f}, {0, 1, 0}, 0, INFINITY}, far{{9.5f, -5, 0.5f}, {0, 1, 0}, 0, INFINITY},
+      between{{5, -5, 0.5f}, {0, 1, 0}, 0, INFINITY};
+  EXPECT_EQ(watch.touching(up, INFINITY), 1 | std::uint64_t(1) << 63);
+  EXPECT_EQ(watch.touching(far, INFINITY), std::uint64_t(1) << 63);
+  EXPECT_EQ(watch.touching(between, INFINITY), 0u);   // the interval's box of all is met, none of its surfaces'
+  EXPECT_EQ(watch.touching(up, 4.9f), 0u);
+  EXPECT_NE(watch.touching(up, 5.1f), 0u);
+}
+
+}  // namespace
+}  // namespace tempolux

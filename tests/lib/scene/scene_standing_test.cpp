@@ -1,0 +1,100 @@
+// The scene without what moves: hashes of the file with the mover taken out, surfaces that no ray meets, lights that are off.
+#include "lib/scene/standing.h"
+
+#include "lib/scene/scene_hash.h"
+#include "tests/lib/scene/gltf_maker.h"
+
+namespace tempolux {
+namespace {
+
+/// A triangle that stands, one that moves if it is `there`, and a lamp that moves.
+Scene scene_with(bool there, bool lamp_moves = false) {
+  GltfMaker maker;
+  const int mesh = maker.add_triangle();
+  maker.json["materials"] = {{{"name", "first"}}, {{"name", "second"}, {"emissiveFactor", {1, 1, 1}}}};
+  maker.json["meshes"][std::size_t(mesh)]["primitives"][0]["material"] = 0;
+  const int other = maker.add_triangle();
+  maker.json["meshes"][std::size_t(other)]["primitives"][0]["material"] = 1;
+  maker.json["extensionsUsed"] = {"KHR_lights_punctual"};
+  maker.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"intensity", 2}}};
+  if (there) maker.add_node({{"mesh", other}});
+  else maker.add_node({{"name", "nothing"}});
+  maker.add_node({{"mesh", mesh}});
+  maker.add_node({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+  if (there) maker.animate(0, "translation", {0, 1}, {0, 0, 0, 1, 0, 0});
+  if (lamp_moves) maker.animate(2, "translation", {0, 1}, {0, 0, 0, 1, 0, 0});
+  return maker.load();
+}
+
+SceneFrame frame_of(const Scene& scene, int frame) { return scene_at_frame(scene, segment_of(scene, frame, {}), frame, {}); }
+
+TEST(Standing, HashesAreThoseOfTheFileWithoutTheMover) {
+  const Scene with = scene_with(true), without = scene_with(false);
+  const SceneFrame moving = frame_of(with, 5), standing = standing_scene(moving);
+  const SceneFrame other = frame_of(without, 0), still = standing_scene(other);
+  ASSERT_EQ(moving.surfaces.size(), 2u);
+  EXPECT_EQ(moving.static_count, 1u);
+  EXPECT_EQ(standing.hashes.materials, still.hashes.materials);
+  EXPECT_EQ(standing.hashes.lights, still.hashes.lights);
+  EXPECT_EQ(still.hashes.lights, other.hashes.lights);
+  EXPECT_EQ(still.hashes.materials, other.hashes.materials);
+  EXPECT_EQ(standing.hashes.moving_geometry, still.hashes.moving_geometry);
+  EXPECT_NE(standing.hashes.lights, moving.hashes.lights);   // the mover emits
+  // Every frame of the segment has the same.
+  const SceneFrame later = standing_scene(frame_of(with, 9));
+  EXPECT_EQ(later.hashes.static_geometry, standing.hashes.static_geometry);
+  EXPECT_EQ(later.hashes.lights, standing.hashes.lights);
+}
+
+TEST(Standing, MoversAreThereAndHaveNoArea) {
+  const Scene scene = scene_with(true);
+  const SceneFrame standing = standing_scene(frame_of(scene, 5));
+  ASSERT_EQ(standing.surfaces.size(), 2u);
+  for (const Vec3& p : standing.surfaces[1].positions) EXPECT_EQ(p, Vec3{});
+  EXPECT_GT(length(standing.surfaces[0].position(1) - standing.surfaces[0].position(0)), 0);
+  EXPECT_TRUE(light_moves(frame_of(scene, 5)));
+  EXPECT_FALSE(light_moves(frame_of(scene_with(false), 5)));
+}
+
+TEST(Standing, MovingLampsAreOff) {
+  const Scene scene = scene_with(false, true);
+  const SceneFrame moving = frame_of(scene, 5), standing = standing_scene(moving);
+  ASSERT_EQ(standing.lights.size(), 1u);
+  EXPECT_EQ(standing.lights[0].light.intensity, Rgb(0.0f));
+  EXPECT_NE(moving.lights[0].light.intensity, Rgb(0.0f));
+  EXPECT_TRUE(light_moves(moving));
+}
+
+TEST(Standing, WhatHasAnAnimatedMaterialMoves) {
+  GltfMaker maker;
+  const int mesh = maker.add_triangle();
+  maker.json["materials"] = {{{"name", "first"}}};
+  maker.json["meshes"][std::size_t(mesh)]["primitives"][0]["material"] = 0;
+  maker.add_node({{"mesh", mesh}});
+  maker.json["extensionsUsed"] = {"KHR_animation_pointer"};
+  maker.json["animations"] = {{{"samplers", {{{"input", maker.add_scalars({0, 1})}, {"output", maker.add_scalars({0, 1})}}}},
+                               {"channels",
+                                {{{"sampler", 0},
+                                  {"target",
+                                   {{"path", "pointer"},
+                                    {"extensions",
+                                     {{"KHR_animation_pointer", {{"pointer", "/materials/0/pbrMetallicRoughness/roughnessFactor"}}}}}}}}}}}};
+  const Scene scene = maker.load();
+  const Segment segment = segment_of(scene, 0, {});
+  EXPECT_EQ(segment.node_moves[0], 1);
+  EXPECT_EQ(segment.why_moves[0], "roughness of its material");
+  EXPECT_EQ(frame_of(scene, 3).static_count, 0u);
+}
+
+TEST(Standing, BoxesHoldWhatMoves) {
+  const Scene scene = scene_with(true);
+  MovingBoxes boxes = moving_boxes(frame_of(scene, 0));
+  ASSERT_EQ(boxes.surfaces.size(), 1u);
+  const float first = boxes.all.upper.x;
+  boxes.add(moving_boxes(frame_of(scene, 12)));
+  EXPECT_NEAR(boxes.all.upper.x, first + 0.5f, 1e-4f);
+  EXPECT_TRUE(moving_boxes(frame_of(scene_with(false), 0)).all.empty());
+}
+
+}  // namespace
+}  // namespace tempolux
