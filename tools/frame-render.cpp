@@ -20,6 +20,7 @@
 #include "tools/common/base_frame.h"
 #include "tools/common/frame_output.h"
 #include "tools/common/indirect_light.h"
+#include "tools/common/localised_cache.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
@@ -142,6 +143,7 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--integrator cache: name the cache with --irradcache FILE");
   if (options.integrator == "path" && !options.traces_paths())
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
+  tools::check_influence(options.light.influence);
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
@@ -188,6 +190,7 @@ void add_light_options(tools::Tool& tool, Options& options) {
   app.add_option("--caustic-radius", options.light.photon_light.caustic_radius,
                  "farthest caustic photon used, m; 0: from the photons' spacing")
       ->capture_default_str()->check(tools::number_between(0));
+  tools::influence_options(tool, options.light.influence);
 }
 
 void add_options(tools::Tool& tool, Options& options) {

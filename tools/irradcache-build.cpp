@@ -20,6 +20,7 @@
 #include "lib/render/known_light.h"
 #include "lib/scene/standing.h"
 #include "tools/common/gather_input.h"
+#include "tools/common/localised_cache.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 
@@ -31,12 +32,14 @@ constexpr std::uint64_t kMaxPoints = 1 << 28;   ///< per side of all surfaces
 
 struct Options {
   std::vector<std::string> inputs;  // [points|records] SCENE
-  std::string photons, points, records, mask, output, keep_points, radii = "ward", map = "global", update, dynamic;
+  std::string photons, points, records, mask, output, keep_points, radii = "ward", map = "global", update;
+  std::vector<std::string> dynamic;   // the frame's own first
   std::uint64_t point_count = PointOptions{}.count;
   int width = 640, height = 360;
   PointOptions point;
   GatherOptions gather;
   PlacementOptions placement;
+  InfluenceThresholds influence;
   bool free_radii = false;
 
   std::string mode() const { return inputs.size() == 2 ? inputs[0] : "both"; }
@@ -84,10 +87,10 @@ void build_updated_points(tools::Tool& tool, tools::SceneInput& input, const Opt
   tool.stats().phase("read photons");
   const formats::PhotonMap fixed = tools::read_photons(tool, tools::frame_name(options.photons, number), standing,
                                                        tools::LightNeeded::all, "static");
-  const formats::PhotonMap moved = tools::read_photons(tool, tools::frame_name(options.dynamic, number), frame,
+  const formats::PhotonMap moved = tools::read_photons(tool, tools::frame_name(options.dynamic.front(), number), frame,
                                                        tools::LightNeeded::all, "dynamic");
   if (moved.header.emitted_count != fixed.header.emitted_count || moved.header.group_count != fixed.header.group_count)
-    throw InputError(options.dynamic + ": of " + std::to_string(moved.header.emitted_count) + " paths, and the static map of " +
+    throw InputError(options.dynamic.front() + ": of " + std::to_string(moved.header.emitted_count) + " paths, and the static map of " +
                      std::to_string(fixed.header.emitted_count) + "; trace it with the .paths file of that map");
   tool.stats().phase("points", true);
   PointUpdateCounts counts;
@@ -116,7 +119,7 @@ void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& op
 
 /// Header of a cache placed for these frames.
 formats::IrradcacheHeader cache_header(const Options& options, const SceneFrame& frame, const std::vector<int>& frames,
-                                       const RecordStore& store) {
+                                       std::span<const IrradianceRecord> records, float least_cosine) {
   formats::IrradcacheHeader header;
   header.identity = tools::identity_of(frame);
   header.identity.first_frame = *std::min_element(frames.begin(), frames.end());
@@ -125,8 +128,8 @@ formats::IrradcacheHeader cache_header(const Options& options, const SceneFrame&
   header.columns = formats::column_clearance;
   header.rays = std::uint32_t(options.gather.rays);
   header.error_bound = double(options.placement.error_bound);
-  header.least_cosine = double(store.least_cosine());
-  for (const IrradianceRecord& record : store.records()) {
+  header.least_cosine = double(least_cosine);
+  for (const IrradianceRecord& record : records) {
     header.min_radius =
         header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
     header.max_radius = std::max(header.max_radius, double(record.radius));
@@ -160,7 +163,9 @@ std::vector<std::uint8_t> wanted_pixels(tools::Tool& tool, const Options& option
 void build_records(tools::Tool& tool, tools::SceneInput& input, Options options, const std::vector<int>& frames) {
   tools::Output output(options.output, tool.common().no_clobber);
   tool.stats().phase("evaluate");
-  const SceneFrame first = input.at(frames.front());
+  const bool standing = options.map == "static";
+  const auto state = [&](int number) { return standing ? standing_scene(input.at(number)) : input.at(number); };
+  const SceneFrame first = state(frames.front());
   tool.stats().phase("build");
   const Tracer tracer(first);
   const Lights lights(first, input.emission(first.frame));
@@ -184,7 +189,7 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   GatherCounts counts;
   const int camera = input.scene().camera_node(tool.common().camera);
   for (int number : frames) {
-    const SceneFrame frame = input.at(number);
+    const SceneFrame frame = state(number);
     if (!formats::stale_concerns(tools::identity_of(frame), tools::identity_of(first)).empty())
       throw InputError(options.scene() + ": frame " + std::to_string(number) +
                        " is lit or built differently from frame " + std::to_string(first.frame) +
@@ -203,7 +208,8 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
     tool.stats().set("records_added." + std::to_string(number), double(added));
   }
   tool.stats().phase("write");
-  formats::IrradcacheHeader header = cache_header(options, first, frames, store);
+  formats::IrradcacheHeader header = cache_header(options, first, frames, store.records(), store.least_cosine());
+  if (standing) header.identity.first_frame = first.segment.first, header.identity.last_frame = first.segment.last;
   header.history = history + tool.history_line();
   formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
   writer.write(to_file(store.records(), first));
@@ -211,6 +217,84 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   output.commit();
   tool.stats().end_phase();
   tool.stats().count("records", double(store.records().size()));
+  tool.stats().count("gather_rays", double(counts.rays));
+  tool.stats().count("near_hits", double(counts.near_hits));
+  tool.stats().count("points_read", double(counts.points_read));
+  tool.stats().count("unanswered", double(counts.unanswered));
+}
+
+/// Dynamic maps of a frame, its own first, as densities over the standing scene.
+std::vector<SignedDensity> read_changes(tools::Tool& tool, const Options& options, const Tracer& standing, const SceneFrame& frame) {
+  std::vector<SignedDensity> maps;
+  const DensityOptions density = density_of(options.point, frame);
+  for (const std::string& name : options.dynamic) {
+    const std::string file = tools::frame_name(name, frame.frame);
+    const bool own = maps.empty();
+    const formats::PhotonMap map = own ? tools::read_photons(tool, file, frame, tools::LightNeeded::all, "dynamic")
+                                       : tools::read_earlier_change(tool, file, frame);
+    const std::array<double, 3>& origin = map.header.origin;
+    maps.emplace_back(standing, map.photons, density, Vec3d{origin[0], origin[1], origin[2]} - frame.origin);
+  }
+  return maps;
+}
+
+/// Records of a frame by localised gathering: those of what stands, updated, and new ones where movers matter.
+void build_updated_records(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& tree) {
+  tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
+  tool.stats().phase("evaluate");
+  const SceneFrame frame = input.at(number), standing = standing_scene(frame);
+  tool.stats().phase("build");
+  const Tracer tracer(frame, tree), without(standing, tree);
+  const Lights lights(frame, input.emission(frame.frame));
+  tool.stats().phase("read points");
+  const tools::GatherPoints points = tools::read_points(tool, tools::frame_name(options.points, number), frame);
+  tool.stats().phase("read photons");
+  const std::vector<SignedDensity> maps = read_changes(tool, options, without, frame);
+  tool.stats().phase("prepare records");
+  const std::string name = tools::frame_name(options.update, number);
+  tool.depends_on(name);
+  const formats::IrradcacheFile file = formats::load_irradcache(name);
+  RecordStore fixed({.least_cosine = 0, .only_read = true});
+  tools::LocalisedRecords cache;
+  cache.history = tools::add_records(tool, name, file, standing, fixed) + points.history;
+  cache.standing.assign(fixed.records().begin(), fixed.records().end());
+  const PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
+  const FinalGather gather(tracer, lights, lookup, options.gather);
+
+  tool.stats().phase("records", true);
+  cache.changes = record_changes(cache.standing, maps, lookup, options.gather.seed);
+  std::vector<float> influences;
+  for (const RecordChange& change : cache.changes) influences.push_back(change.influence);
+  const InfluenceField field(cache.standing, influences, options.influence);
+  const std::vector<bool> moves = tools::moving_objects(frame);
+  const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width, options.height);
+  const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+    seen_through(tracer, view, looks, seen);
+    for (std::optional<SeenPoint>& point : seen.first(looks.size())) {
+      if (!point || (point->surface.object < moves.size() && moves[point->surface.object])) continue;
+      if (!(field.at(point->surface.position, point->normal) > options.influence.low)) point.reset();
+    }
+  };
+  GatherCounts counts;
+  RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
+  place_records(gather, views, options.width, options.height, options.placement, store, counts,
+                [&](double done) { tool.progress(done); });
+  cache.gathered.assign(store.records().begin(), store.records().end());
+
+  tool.stats().phase("write");
+  std::vector<IrradianceRecord> all = cache.standing;
+  all.insert(all.end(), cache.gathered.begin(), cache.gathered.end());
+  formats::IrradcacheHeader header =
+      cache_header(options, frame, {number}, all, std::max(store.least_cosine(), fixed.least_cosine()));
+  header.columns |= formats::column_influence | formats::column_update;
+  header.history = cache.history + tool.history_line(number);
+  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  writer.write(tools::to_file(cache, frame));
+  writer.finish();
+  output.commit();
+  tool.stats().end_phase();
+  tool.stats().count("records", double(cache.gathered.size()));
+  tool.stats().count("records_updated", double(cache.standing.size()));
   tool.stats().count("gather_rays", double(counts.rays));
   tool.stats().count("near_hits", double(counts.near_hits));
   tool.stats().count("points_read", double(counts.points_read));
@@ -231,13 +315,18 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (mode == "records" && options.points.empty()) throw InputError("records: name the points with --points FILE");
   if (mode == "both" && options.photons.empty() == options.points.empty())
     throw InputError("name either the photon map, --photons FILE, or the points made from it, --points FILE");
-  if (mode != "points") refuse_unread(app, mode == "both" ? "a run without a step" : mode, {"--map", "--update", "--dynamic"});
+  if (mode == "both") refuse_unread(app, "a run without a step", {"--map", "--update", "--dynamic"});
+  if (mode == "records" && !options.update.empty()) refuse_unread(app, "records --update", {"--records"});
+  if (mode == "points" && options.dynamic.size() > 1) throw InputError("--dynamic: points take one map, that of their frame");
+  if (mode == "records" && options.update.empty() == false && frames.size() > 1 && !tools::has_frame_pattern(options.output))
+    throw InputError("--output: several frames need a pattern, for example f.####.irradcache");
+  tools::check_influence(options.influence);
   if (options.update.empty() != options.dynamic.empty())
     throw InputError("--update and --dynamic go together: points of what stands, and what movers change");
   if (!options.update.empty() && options.map == "static")
     throw InputError("--update: makes points of the whole scene; leave out --map static");
   if (mode == "points")
-    refuse_unread(app, "points", {"--points", "--records", "--rays", "--error-bound", "--radii", "--free-radii",
+    refuse_unread(app, "points", {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--records", "--rays", "--error-bound", "--radii", "--free-radii",
                                   "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points",
@@ -259,14 +348,19 @@ void add_options(tools::Tool& tool, Options& options) {
       ->type_name("FILE");
   app.add_option("--records", options.records, ".irradcache file to extend: its records are kept")->type_name("FILE");
   tool.count_option("--point-count", options.point_count, "irradiance points per side of all surfaces that stand; what moves gets as many per area");
-  app.add_option("--map", options.map, "of points: global, or static: without what moves in the frame's segment, from its static map")
+  app.add_option("--map", options.map,
+                 "global, or static: points and records of the scene without what moves in the frame's segment, from its static "
+                 "map and points")
       ->capture_default_str()->check(CLI::IsMember({"global", "static"}));
   app.add_option("--update", options.update,
-                 "of points: .irradpoints file made with --map static; with --photons (that static map) and --dynamic, points of "
-                 "this frame follow from it")
+                 "file of --map static: .irradpoints, from which with --photons (that static map) and --dynamic points of this "
+                 "frame follow; .irradcache, from which with --points and --dynamic records of this frame follow")
       ->type_name("FILE");
-  app.add_option("--dynamic", options.dynamic, "of --update: .photons file of this frame, photon-trace --map dynamic")
-      ->type_name("FILE");
+  app.add_option("--dynamic", options.dynamic,
+                 "of --update: .photons file of this frame, photon-trace --map dynamic; records take those of the frames before "
+                 "after it, where they mattered records are made anew, too")
+      ->type_name("FILE...");
+  tools::influence_options(tool, options.influence);
   app.add_option("--neighbours", options.point.neighbours, "photons per density estimate")
       ->capture_default_str()->check(tools::number_between(2, kMaxNeighbours));
   app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
@@ -328,6 +422,8 @@ int main(int argc, char** argv) {
         if (options.map == "static") build_standing_points(tool, input, options, frame);
         else if (!options.update.empty()) build_updated_points(tool, input, options, frame, standing);
         else build_points(tool, input, options, frame, standing);
+    else if (!options.update.empty())
+      for (int frame : frames) build_updated_records(tool, input, options, frame, standing);
     else
       build_records(tool, input, options, frames);
     return tools::exit_ok;

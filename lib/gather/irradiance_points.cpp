@@ -162,11 +162,25 @@ std::vector<std::uint32_t> in_space(const std::vector<IrradiancePoint>& points, 
   return order;
 }
 
-PathRandom random_of(const PointOptions& options, std::uint32_t point) {
-  return PathRandom(options.seed ^ 0x706f696e74ull, point);
+/// Where all lights are, scene space; nothing if some are infinitely far.
+std::optional<Box3> box_of_lights(const SceneFrame& frame) {
+  if (frame.environment) return std::nullopt;
+  Box3 box;
+  for (const PlacedLight& placed : frame.lights) {
+    if (placed.light.kind == PunctualLight::Kind::directional) return std::nullopt;
+    box.add(placed.position);
+  }
+  for (const Surface& surface : frame.surfaces)
+    if (frame.materials[surface.material].emissive())
+      for (std::uint32_t v = 0; v < surface.primitive->positions.size(); ++v) box.add(surface.position(v));
+  return box;
 }
 
 }  // namespace
+
+PathRandom point_random(const PointOptions& options, std::uint32_t point) {
+  return PathRandom(options.seed ^ 0x706f696e74ull, point);
+}
 
 PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) {
   std::vector<std::optional<Areas>> areas(frame.surfaces.size());  // of those that store light
@@ -212,7 +226,7 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
   parallel_chunks(order.size(), 256, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[order[i]];
-      const PathRandom random = random_of(options, order[i]);
+      const PathRandom random = point_random(options, order[i]);
       point.direct = lights.empty()
                          ? Rgb(0.0f)
                          : direct_light(tracer, lights, point, offset, options.light_samples,
@@ -232,12 +246,14 @@ std::size_t update_direct(const Tracer& tracer, const Lights& lights, const Move
   std::vector<std::uint32_t> all(points.size());
   std::iota(all.begin(), all.end(), 0u);
   const std::vector<std::uint32_t> order = in_space(points, all);
+  const std::optional<Box3> box = box_of_lights(tracer.frame());
   std::atomic<std::size_t> sampled = 0;
   parallel_chunks(order.size(), 256, [&](std::size_t first, std::size_t last) {
     std::size_t count = 0;
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[order[i]];
-      const PathRandom random = random_of(options, order[i]);
+      if (watch && box && !watch->between(point.position, *box)) continue;
+      const PathRandom random = point_random(options, order[i]);
       const Scattering scattering = asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, {}};
       bool touched = !watch;
       if (watch)

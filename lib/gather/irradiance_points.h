@@ -54,6 +54,8 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
 /// points. The others keep what they have: the same samples meet the same there. Returns how many were sampled.
 std::size_t update_direct(const Tracer& tracer, const Lights& lights, const MoverWatch* watch, const PointOptions& options,
                           std::vector<IrradiancePoint>& points);
+/// Random numbers of a point, by its number.
+PathRandom point_random(const PointOptions& options, std::uint32_t point);
 /// What estimate_points asks of densities.
 DensityOptions density_of(const PointOptions& options, const SceneFrame& frame);
 

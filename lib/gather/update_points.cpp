@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
-#include <optional>
 #include <unordered_map>
 
 #include "formats/octahedral.h"
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
-#include "lib/core/sampling.h"
-#include "lib/gather/reachable_area.h"
+#include "lib/gather/signed_density.h"
 
 namespace tempolux {
 namespace {
@@ -83,41 +81,6 @@ bool lights_change(const SceneFrame& frame) {
   return false;
 }
 
-/// The change of irradiance by dynamic photons in a disc of the standing scene: PointDensity::estimate with its radius given.
-class SignedDensity {
- public:
-  SignedDensity(const PointUpdateInput& in, const DensityOptions& options)
-      : options_(options), area_(in.standing), index_(in.dynamic_photons, kind_bit(PathKind::indirect), in.dynamic_shift) {}
-
-  /// Nothing if no photon is in the disc.
-  std::optional<Rgbd> change(const IrradiancePoint& point, const PathRandom& random) const {
-    thread_local NeighbourList found;
-    const float radius = point.radius > 0 ? point.radius : options_.max_radius;
-    const PhotonQuery query{point.position, point.normal, radius, kMinCos, kFlattening, kAllKinds};
-    index_.find_within(query, found);
-    if (found.count() == 0) return std::nullopt;
-    const bool whole = area_.whole(point.position, point.normal, radius, random.get1(2, Purpose::points));
-    Rgbd flux{0.0};
-    for (std::size_t i = 0; i < found.count(); ++i) {
-      if (!(found.distance2()[i] < radius * radius)) continue;   // the static estimate leaves out the one that it touches
-      const std::uint32_t photon = found.photons()[i];
-      const Vec3 place = index_.position(photon);
-      const bool flat = whole && std::abs(dot(place - point.position, point.normal)) < 4 * area_.offset();
-      if (flat || area_.reach()(point.position, point.normal, place, index_.normal(photon))) flux += Rgbd(index_.flux(photon));
-    }
-    const double inverse =
-        whole || !(radius > 4 * area_.offset())
-            ? 1 / (double(kPi) * double(radius) * double(radius))
-            : area_.inverse(point.position, point.normal, radius, options_.area_probes, ReachableArea::Kernel::flat, random);
-    return flux * inverse;
-  }
-
- private:
-  DensityOptions options_;
-  ReachableArea area_;
-  PhotonIndex index_;
-};
-
 Rgb not_negative(const Rgbd& sum) { return Rgb(Rgbd{std::max(0.0, sum.r), std::max(0.0, sum.g), std::max(0.0, sum.b)}); }
 
 }  // namespace
@@ -142,15 +105,15 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
     }
   }
   counts.anew = anew.size();
-  const SignedDensity change(in, density);
+  const SignedDensity density_of_change(in.standing, in.dynamic_photons, density, in.dynamic_shift);
   std::atomic<std::size_t> changed = 0;
   parallel_chunks(others.size(), 256, [&](std::size_t first, std::size_t last) {
     std::size_t count = 0;
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[others[i]];
-      const std::optional<Rgbd> sum = change.change(point, PathRandom(options.seed ^ 0x706f696e74ull, others[i]));
-      if (!sum) continue;
-      point.indirect = not_negative(Rgbd(point.indirect) + *sum);
+      const auto change = density_of_change.at(point.position, point.normal, point.radius, point_random(options, others[i]));
+      if (!change) continue;
+      point.indirect = not_negative(Rgbd(point.indirect) + change->irradiance);
       ++count;
     }
     changed += count;

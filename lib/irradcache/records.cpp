@@ -221,6 +221,12 @@ bool RecordStore::covers(Vec3 position, Vec3 normal, float weight, float least_r
   return least_reach > 0 && options_.least_cosine > kWideCosine && covered(kWideCosine, least_reach);
 }
 
+std::optional<Rgb> RecordStore::irradiance(Vec3 position, Vec3 normal, bool relaxed) const {
+  Interpolated found = interpolate(position, normal);
+  if (!(found.weight > 0) && relaxed) found = interpolate_relaxed(position, normal);
+  return found.weight > 0 ? std::optional(found.irradiance) : std::nullopt;
+}
+
 RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {
   Interpolated result;
   Rgb sum{0.0f};

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -97,6 +98,9 @@ class RecordStore {
   /// The same with every record's radius kRelaxed times as large: for the few points, fractions of a pixel beyond
   /// an edge, that no record quite reaches. Looks at all records: slow.
   Interpolated interpolate_relaxed(Vec3 position, Vec3 normal) const;
+  /// Irradiance by interpolate(), or where no record counts and `relaxed` is asked for by interpolate_relaxed(); none if there
+  /// is none so either.
+  std::optional<Rgb> irradiance(Vec3 position, Vec3 normal, bool relaxed) const;
 
   static constexpr float kRelaxed = 4;
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "lib/render/localised_light.h"
 #include "lib/render/shading.h"
 
 namespace tempolux {
@@ -12,10 +13,9 @@ constexpr std::uint32_t kMirrorsInARow = 16;
 }  // namespace
 
 std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const {
-  if (!records) return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric)) : std::nullopt;
-  RecordStore::Interpolated found = records->interpolate(surface.position, shading);
-  if (!(found.weight > 0) && direct_view) found = records->interpolate_relaxed(surface.position, shading);
-  return found.weight > 0 ? std::optional(found.irradiance) : std::nullopt;
+  if (localised) return localised->at(surface, shading, direct_view);
+  if (records) return records->irradiance(surface.position, shading, direct_view);
+  return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric)) : std::nullopt;
 }
 
 std::optional<Rgb> KnownLight::all(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {

@@ -11,11 +11,14 @@
 
 namespace tempolux {
 
+class LocalisedLight;
+
 /// Irradiance [W/m^2] told by records, points and photons. Each part may be missing: the path then finds that light itself.
 /// All must outlive it. Thread-safe.
 class KnownLight {
  public:
   const RecordStore* records = nullptr;   ///< kind indirect where the eye looks
+  const LocalisedLight* localised = nullptr;   ///< in place of records: of what stands, and of what movers change
   const PointLookup* points = nullptr;    ///< all kinds where a ray from a matte surface ends
   const PhotonLight* photons = nullptr;   ///< kind caustic; indirect, too, if it has it and there are no records
   /// Do eye paths fork at the first Lambert lobe under a gloss, to follow both? A gloss reflects 4 % as a rule: one ray in 25 that

@@ -27,6 +27,34 @@ struct Slabs {
 
 }  // namespace
 
+namespace {
+
+/// Can a segment from `from` to a place in `target` meet `box`? Axis by axis, where along the segment may it be within the
+/// box's slab: at t it lies between from + t low and from + t high.
+bool shaft_meets(Vec3 from, const Box3& target, const Box3& box) {
+  if (box.empty()) return false;
+  float first = 0, last = 1;
+  const auto at_least = [&](float slope, float value) {   // slope t >= value
+    if (slope > 0) first = std::max(first, value / slope);
+    else if (slope < 0) last = std::min(last, value / slope);
+    else if (value > 0) last = -1;
+  };
+  for (int axis = 0; axis < 3; ++axis) {
+    at_least(target.upper[axis] - from[axis], box.lower[axis] - from[axis]);
+    at_least(from[axis] - target.lower[axis], from[axis] - box.upper[axis]);
+  }
+  return first <= last * (1 + 0x1p-18f);
+}
+
+}  // namespace
+
+bool MoverWatch::between(Vec3 from, const Box3& target) const {
+  if (!shaft_meets(from, target, whole_)) return false;
+  return std::ranges::any_of(intervals_, [&](const MovingBoxes& boxes) {
+    return std::ranges::any_of(boxes.surfaces, [&](const Box3& box) { return shaft_meets(from, target, box); });
+  });
+}
+
 MoverWatch::MoverWatch(std::vector<MovingBoxes> intervals) : intervals_(std::move(intervals)) {
   for (const MovingBoxes& boxes : intervals_) whole_.add(boxes.all);
 }

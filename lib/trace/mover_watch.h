@@ -20,6 +20,8 @@ class MoverWatch {
   std::uint64_t all() const { return ~std::uint64_t(0) >> (64 - intervals_.size()); }
   /// Bit i: the ray, up to `t` of its lengths (infinity: it left the scene), meets a box of interval i.
   std::uint64_t touching(const Ray& ray, float t) const;
+  /// False only if no segment from `from` to a place in `target` comes near a box of any interval.
+  bool between(Vec3 from, const Box3& target) const;
 
  private:
   std::vector<MovingBoxes> intervals_;

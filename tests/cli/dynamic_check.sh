@@ -82,7 +82,28 @@ refuses 'give the options they were made with' irradcache-build points "$scene" 
 refuses 'go together' points --update stands.irradpoints --photons box.s.photons -o refused
 refuses 'give a static one' points --update stands.irradpoints --photons box.g.photons --dynamic box.d.photons -o refused
 refuses 'give a global one' points --photons box.d.photons -o refused
-refuses '--update' irradcache-build records "$scene" --points fresh.irradpoints --update stands.irradpoints -o refused
+
+# Records: those of what stands once, then a frame's; the frame is that of records all gathered for it, within their noise.
+size='--size 64x36 --rays 64'
+irradcache-build records "$scene" -q --map static --points stands.irradpoints $size -o stands.irradcache || bad 'records of what stands'
+for threads in 1 3; do
+  irradcache-build records "$scene" -q --frame 4 --update stands.irradcache --points updated.1.irradpoints --dynamic box.d.photons $size \
+    -o updated.$threads.irradcache --threads $threads || bad 'records updated'
+done
+cmp updated.1.irradcache updated.3.irradcache || bad 'updated records differ with 3 threads'
+irradcache-build records "$scene" -q --frame 4 --points fresh.irradpoints $size -o fresh.irradcache || bad 'fresh records'
+for name in updated.1 fresh; do
+  frame-render "$scene" -q --frame 4 --size 64x36 --spp 2 --pixel-error 0 --irradcache $name.irradcache --points fresh.irradpoints --channels layers -o $name.exr || bad "frame of $name"
+done
+aqm-compare updated.1.exr fresh.exr --layer indirect --json compared.json -q >/dev/null
+"${PYTHON:-python3}" - <<'EOF' || bad 'localised gathering is not gathering'
+import json
+c = json.load(open("compared.json"))
+total = c["total"]
+assert abs(total["bias"]) < 0.05, total       # 6000 paths and 64 rays a record
+EOF
+refuses 'records that stand beside' irradcache-build records "$scene" --frame 4 --points fresh.irradpoints --records updated.1.irradcache -o refused
+refuses 'must be below' frame-render "$scene" --irradcache fresh.irradcache --influence-low 1 -o refused
 
 refuses 'what moves differ at frame 4' trace other.glb --frame 4 --map dynamic --static lamp.paths -o refused
 trace other.glb --frame 3 --map dynamic --static lamp.paths -o fine.photons || bad 'a frame whose movers are the same'

@@ -67,6 +67,16 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
   return map;
 }
 
+formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, const SceneFrame& frame) {
+  tool.depends_on(file);
+  formats::PhotonMap map = formats::load_photons(file);
+  if (map.header.map != "dynamic") throw InputError(file + ": a " + map.header.map + " map; give a dynamic one");
+  formats::Identity identity = map.header.identity;
+  identity.moving_geometry.clear(), identity.lights.clear(), identity.materials.clear();
+  check_identity(tool, file, identity, frame);
+  return map;
+}
+
 GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
                          const PointOptions& options) {
   const SceneFrame& frame = tracer.frame();
@@ -128,14 +138,20 @@ void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& fram
   output.commit();
 }
 
+std::string add_records(Tool& tool, const std::string& name, const formats::IrradcacheFile& file, const SceneFrame& frame,
+                        RecordStore& store) {
+  if (file.header.columns & (formats::column_influence | formats::column_update))
+    throw InputError(name + ": holds records that stand beside those of a frame (--update); give one without these columns");
+  check_identity(tool, name, file.header.identity, frame);
+  store.narrow(float(file.header.least_cosine));
+  store.add(from_file(file.records, shift_of(file.header.origin, frame)));
+  return file.header.history;
+}
+
 std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame,
                          RecordStore& store) {
   tool.depends_on(file, role);
-  const formats::IrradcacheFile in = formats::load_irradcache(file);
-  check_identity(tool, file, in.header.identity, frame);
-  store.narrow(float(in.header.least_cosine));
-  store.add(from_file(in.records, shift_of(in.header.origin, frame)));
-  return in.header.history;
+  return add_records(tool, file, formats::load_irradcache(file), frame, store);
 }
 
 }  // namespace tempolux::tools

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/irradcache/irradcache.h"
 #include "formats/photons/photons.h"
 #include "lib/gather/irradiance_points.h"
 #include "lib/gather/update_points.h"
@@ -23,6 +24,9 @@ enum class LightNeeded { all, caustic };
 /// there is a warning.
 formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
                                 const std::string& map = "global");
+
+/// The dynamic map of another frame of the same segment: what stands must be the same, what moves not.
+formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, const SceneFrame& frame);
 
 /// Points and what they came from.
 struct GatherPoints {
@@ -46,6 +50,10 @@ void update_points(Tool& tool, const formats::PhotonMap& fixed, const formats::P
 void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output,
                   std::optional<std::array<int, 2>> frames = {});
 
+/// Adds the records of a file that was read, made for this state of the scene; returns its history. InputError for one of
+/// localised gathering, whose records are not of one kind.
+std::string add_records(Tool& tool, const std::string& name, const formats::IrradcacheFile& file, const SceneFrame& frame,
+                        RecordStore& store);
 /// Adds the records of a .irradcache file to a store; returns the file's history.
 std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame,
                          RecordStore& store);

@@ -1,5 +1,7 @@
 #include "tools/common/indirect_light.h"
 
+#include "tools/common/localised_cache.h"
+
 namespace tempolux::tools {
 
 IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number) {
@@ -26,10 +28,25 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
   }
   if (!options.irradcache.empty()) {
     tool.stats().phase("read cache");
-    records_ = std::make_unique<RecordStore>(InterpolationOptions{.least_cosine = 0, .only_read = true});
-    history_ = read_records(tool, frame_name(options.irradcache, number), InputRole::file, frame, *records_);
-    known_.records = records_.get();
+    read_cache(tool, frame_name(options.irradcache, number), frame, options.influence);
   }
+}
+
+void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds) {
+  tool.depends_on(name);
+  const formats::IrradcacheFile file = formats::load_irradcache(name);
+  if (is_localised(file)) {
+    check_identity(tool, name, file.header.identity, frame);
+    LocalisedRecords records = localised_records(file, frame);
+    history_ = records.history;
+    localised_ = std::make_unique<LocalisedLight>(records.standing, records.changes, records.gathered, records.least_cosine, thresholds,
+                                                  moving_objects(frame));
+    known_.localised = localised_.get();
+    return;
+  }
+  records_ = std::make_unique<RecordStore>(InterpolationOptions{.least_cosine = 0, .only_read = true});
+  history_ = add_records(tool, name, file, frame, *records_);
+  known_.records = records_.get();
 }
 
 }  // namespace tempolux::tools

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "lib/render/known_light.h"
+#include "lib/render/localised_light.h"
 #include "tools/common/gather_input.h"
 
 namespace tempolux::tools {
@@ -12,6 +13,7 @@ namespace tempolux::tools {
 struct IndirectLightOptions {
   std::string photons, irradcache, points;   ///< files, or patterns; "": none
   PhotonLightOptions photon_light;
+  InfluenceThresholds influence;             ///< of a localised cache
 };
 
 /// Opens what the options name, checked against the frame's identity, and owns it while the frame is rendered.
@@ -24,11 +26,14 @@ class IndirectLight {
   const std::string& history() const { return history_; }
 
  private:
+  void read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds);
+
   std::string history_;
   std::unique_ptr<PhotonLight> photons_;
   std::unique_ptr<RecordStore> records_;
   GatherPoints points_;
   std::unique_ptr<PointLookup> lookup_;
+  std::unique_ptr<LocalisedLight> localised_;
   KnownLight known_;
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "formats/exact_sum.h"
+#include "lib/core/random.h"
 #include "lib/photon/photon_map.h"
 #include "tests/support/photons.h"
 #include "tests/support/scenes.h"
@@ -191,6 +192,29 @@ TEST(MoverWatch, BitsAreTheIntervalsWhoseBoxesAreMet) {
   EXPECT_EQ(watch.touching(between, INFINITY), 0u);   // the interval's box of all is met, none of its surfaces'
   EXPECT_EQ(watch.touching(up, 4.9f), 0u);
   EXPECT_NE(watch.touching(up, 5.1f), 0u);
+}
+
+TEST(MoverWatch, WhatLiesBetweenAPointAndABoxOfLightsIsNotMissed) {
+  MovingBoxes boxes;
+  boxes.surfaces = {{{-0.2f, 0.4f, -0.2f}, {0.2f, 0.6f, 0.2f}}};
+  boxes.all = boxes.surfaces[0];
+  const MoverWatch watch({boxes});
+  const Box3 lights{{-0.5f, 2, -0.5f}, {0.5f, 2.1f, 0.5f}};
+  const PathRandom random{1, 1};
+  int met = 0, clear = 0;
+  for (std::uint32_t i = 0; i < 20000; ++i) {
+    const Vec2 a = random.get2(i, Purpose::test), b = random.get2(i, Purpose::test, 1);
+    const Vec3 from{4 * a.x - 2, 0, 4 * a.y - 2}, to{b.x - 0.5f, 2.05f, b.y - 0.5f};
+    const bool meets = watch.touching({from, to - from, 0, INFINITY}, 1) != 0;
+    if (meets) {
+      ASSERT_TRUE(watch.between(from, lights));
+    }
+    met += meets;
+    clear += !watch.between(from, lights);
+  }
+  EXPECT_GT(met, 300);
+  EXPECT_GT(clear, 10000);   // points from which no way to the lights leads by the box
+  EXPECT_FALSE(watch.between({5, 0, 0}, {{5, 2, 0}, {5, 2, 0}}));
 }
 
 }  // namespace

@@ -1,0 +1,88 @@
+#include "lib/gather/localised.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include "lib/core/parallel.h"
+
+namespace tempolux {
+namespace {
+
+constexpr float kLeastShare = 0.01f;   ///< of the mean irradiance: what is darker is not told apart from black
+
+/// Influence is asked for in a disc this much wider than the one that 50 static photons fill: at the lower threshold, 6 % of the
+/// static light, it then holds 50 x 1.63^2 x .06 = 8 dynamic photons; of fewer it would be noise, which rises above the
+/// threshold where nothing matters.
+constexpr float kInfluenceReach = 1.63f;
+
+PathRandom random_at(Vec3 p, std::uint64_t seed) {
+  std::uint64_t key = seed;
+  for (const float x : {p.x, p.y, p.z}) key = mix64(key ^ std::bit_cast<std::uint32_t>(x));
+  return PathRandom(seed, key);
+}
+
+}  // namespace
+
+float InfluenceThresholds::gathered_share(float influence) const {
+  if (!(influence > low)) return 0;
+  if (!(influence < high)) return 1;
+  const float t = (influence - low) / (high - low);
+  return t * t * (3 - 2 * t);
+}
+
+std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> records, std::span<const SignedDensity> maps,
+                                         const PointLookup& points, std::uint64_t seed) {
+  std::vector<RecordChange> changes(records.size());
+  parallel_chunks(records.size(), 256, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const IrradianceRecord& record = records[i];
+      changes[i].update = record.irradiance;
+      const PointLookup::Light* point = points.find(record.position, record.normal);
+      const float radius = point ? points.point(*point).radius : 0;
+      const PathRandom random = random_at(record.position, seed);
+      SignedDensity::Area wide;
+      for (std::size_t m = 0; m < maps.size(); ++m) {
+        const auto around = maps[m].at(record.position, record.normal, kInfluenceReach * radius, random, wide);
+        if (!around) continue;   // then there is none in the narrower disc either
+        changes[i].influence = std::max(changes[i].influence, float(around->influence));
+        if (m > 0) continue;
+        if (const auto change = maps[m].at(record.position, record.normal, radius, random))
+          changes[i].update = Rgb(Rgbd(record.irradiance) + change->irradiance);
+      }
+    }
+  });
+  return changes;
+}
+
+InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
+                               const InfluenceThresholds& thresholds)
+    : store_({.least_cosine = 0, .only_read = true}), thresholds_(thresholds) {
+  std::vector<IrradianceRecord> pairs;
+  double sum = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    IrradianceRecord pair;
+    pair.position = records[i].position;
+    pair.normal = records[i].normal;
+    pair.radius = records[i].radius;
+    pair.radius_unclamped = records[i].radius_unclamped;
+    pair.object = records[i].object;
+    pair.clearance = records[i].clearance;
+    pair.irradiance = {influences[i], max_component(records[i].irradiance), 0};
+    sum += double(pair.irradiance.g);
+    pairs.push_back(pair);
+  }
+  if (!records.empty()) least_ = kLeastShare * float(sum / double(records.size()));
+  store_.add(pairs);
+}
+
+float InfluenceField::at(Vec3 position, Vec3 normal) const {
+  const std::optional<Rgb> found = store_.irradiance(position, normal, true);
+  if (!found) return INFINITY;
+  const float influence = found->r;
+  if (thresholds_.absolute || !(influence > 0)) return influence;
+  return influence / std::max({found->g, least_, 1e-30f});
+}
+
+}  // namespace tempolux

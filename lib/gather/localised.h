@@ -1,0 +1,55 @@
+// lib/gather/localised.h -- final gathering only where movers matter [Tawara, Myszkowski, Seidel 2002] (docs/methods/dynamic.md).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lib/gather/signed_density.h"
+#include "lib/irradcache/points.h"
+#include "lib/irradcache/records.h"
+
+namespace tempolux {
+
+/// Where what movers change is taken from: below `low` from the static records and the dynamic photons (E_t), above `high` from
+/// records gathered for the frame (E_y), in between from both.
+struct InfluenceThresholds {
+  float low = 0.06f, high = 0.15f;   ///< shares of the static irradiance, or W/m^2 if absolute
+  bool absolute = false;
+
+  /// Share of E_y: 0 up to low, 1 from high on, t^2 (3 - 2 t) with t = (I - low) / (high - low) in between.
+  float gathered_share(float influence) const;
+};
+
+/// What the dynamic photons of a frame do to a static record.
+struct RecordChange {
+  Rgb update{0.0f};       ///< W/m^2: E_t = irradiance + change, not cut at 0
+  float influence = 0;    ///< W/m^2
+};
+
+/// E_t of each record from the first of `maps`, its influence the largest over all of them (the frame's own and those before it: the
+/// region grows at once and shrinks over frames). The disc is that of the irradiance point nearest to the record, which k
+/// static photons fill.
+std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> records, std::span<const SignedDensity> maps,
+                                         const PointLookup& points, std::uint64_t seed);
+
+/// Influence between static records, interpolated as their irradiance is. Thread-safe.
+class InfluenceField {
+ public:
+  /// influences[i] of records[i], which carry their static irradiance.
+  InfluenceField(std::span<const IrradianceRecord> records, std::span<const float> influences,
+                 const InfluenceThresholds& thresholds);
+
+  /// In the thresholds' terms: divided by the largest channel of the static irradiance there (at least a hundredth of the
+  /// records' mean) unless they are absolute. Infinity where no record is near.
+  float at(Vec3 position, Vec3 normal) const;
+  /// Share of E_y there.
+  float gathered_share(Vec3 position, Vec3 normal) const { return thresholds_.gathered_share(at(position, normal)); }
+  const InfluenceThresholds& thresholds() const { return thresholds_; }
+
+ private:
+  RecordStore store_;   ///< of influence (r) and static irradiance (g) as if they were irradiance
+  InfluenceThresholds thresholds_;
+  float least_ = 0;     ///< W/m^2
+};
+
+}  // namespace tempolux

@@ -1,0 +1,43 @@
+#include "lib/gather/signed_density.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/sampling.h"
+
+namespace tempolux {
+
+SignedDensity::SignedDensity(const Tracer& standing, std::span<const formats::Photon> photons, const DensityOptions& options,
+                             Vec3d shift)
+    : options_(options), area_(standing), index_(photons, kind_bit(formats::PathKind::indirect), shift) {}
+
+std::optional<SignedDensity::Change> SignedDensity::at(Vec3 position, Vec3 normal, float radius, const PathRandom& random,
+                                                       Area& area) const {
+  thread_local NeighbourList found;
+  if (!(radius > 0 && std::isfinite(radius))) radius = options_.max_radius;
+  index_.find_within({position, normal, radius, kMinCos, kFlattening, kAllKinds}, found);
+  if (found.count() == 0) return std::nullopt;
+  if (!area.known) {
+    area.known = true;
+    area.whole = area_.whole(position, normal, radius, random.get1(2, Purpose::points));
+    area.inverse = area.whole || !(radius > 4 * area_.offset())
+                       ? 1 / (double(kPi) * double(radius) * double(radius))
+                       : area_.inverse(position, normal, radius, options_.area_probes, ReachableArea::Kernel::flat, random);
+  }
+  Change change;
+  for (std::size_t i = 0; i < found.count(); ++i) {
+    if (!(found.distance2()[i] < radius * radius)) continue;   // the static estimate leaves out the one that it touches
+    const std::uint32_t photon = found.photons()[i];
+    const Vec3 place = index_.position(photon);
+    const bool flat = area.whole && std::abs(dot(place - position, normal)) < 4 * area_.offset();
+    if (!flat && !area_.reach()(position, normal, place, index_.normal(photon))) continue;
+    const Rgb flux = index_.flux(photon);
+    change.irradiance += Rgbd(flux);
+    change.influence += double(std::max({std::abs(flux.r), std::abs(flux.g), std::abs(flux.b)}));
+  }
+  change.irradiance *= area.inverse;
+  change.influence *= area.inverse;
+  return change;
+}
+
+}  // namespace tempolux

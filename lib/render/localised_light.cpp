@@ -1,0 +1,56 @@
+#include "lib/render/localised_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tempolux {
+namespace {
+
+constexpr InterpolationOptions kReadOnly{.least_cosine = 0, .only_read = true};
+
+std::vector<float> influences_of(std::span<const RecordChange> changes) {
+  std::vector<float> influences;
+  for (const RecordChange& change : changes) influences.push_back(change.influence);
+  return influences;
+}
+
+}  // namespace
+
+LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> standing, std::span<const RecordChange> changes,
+                               std::span<const IrradianceRecord> gathered, float least_cosine,
+                               const InfluenceThresholds& thresholds, std::vector<bool> moves)
+    : influence_(standing, influences_of(changes), thresholds), updated_(kReadOnly), gathered_(kReadOnly), moves_(std::move(moves)) {
+  std::vector<IrradianceRecord> updated(standing.begin(), standing.end());
+  for (std::size_t i = 0; i < updated.size(); ++i)
+    for (int c = 0; c < 3; ++c) updated[i].irradiance[c] = std::max(0.0f, changes[i].update[c]);
+  updated_.narrow(least_cosine);
+  updated_.add(updated);
+  gathered_.narrow(least_cosine);
+  gathered_.add(gathered);
+}
+
+std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading, bool direct_view) const {
+  const float share = gathered_share(surface, shading);
+  Rgb sum{0.0f};
+  if (share < 1) {
+    const std::optional<Rgb> updated = updated_.irradiance(surface.position, shading, direct_view);
+    if (!updated) return std::nullopt;
+    sum = *updated * (1 - share);
+  }
+  if (share > 0) {
+    const std::optional<Rgb> gathered = gathered_.irradiance(surface.position, shading, direct_view);
+    if (!gathered) return std::nullopt;
+    sum += *gathered * share;
+  }
+  return sum;
+}
+
+float LocalisedLight::gathered_share(const SurfacePoint& surface, Vec3 shading) const {
+  return influence_.thresholds().gathered_share(influence(surface, shading));
+}
+
+float LocalisedLight::influence(const SurfacePoint& surface, Vec3 shading) const {
+  return moves(surface) ? INFINITY : influence_.at(surface.position, shading);
+}
+
+}  // namespace tempolux

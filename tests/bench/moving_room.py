@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""A furnished room of 8 x 6 x 3 m, 200 000 triangles, a lamp under its ceiling, in which a ball of 0.5 m moves for 48 frames.
+
+    python3 tests/bench/moving_room.py room.glb [triangles]
+
+What stands: floor, ceiling and four walls, three tables, two cupboards, six bumpy cushions. The ball glides over the floor past a table.
+"""
+import json
+import math
+import struct
+import sys
+from array import array
+from pathlib import Path
+
+from wavy import Mesh, unit
+
+SIZE = (8.0, 3.0, 6.0)                       # m; x along, y up, z across
+LAST_S = 47 / 24                             # the ball's last key
+GREY, WOOD, CLOTH = (0.7, 0.68, 0.64), (0.5, 0.33, 0.2), (0.3, 0.4, 0.55)
+
+
+def face(corner, u, v, cells, mesh):
+    """A rectangle from `corner` along u and v, its front towards u x v."""
+    n = unit((u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]))
+    mesh.grid(cells, cells, lambda s, t: ([c + s * a + t * b for c, a, b in zip(corner, u, v)], n))
+
+
+def box(low, high, cells, inwards=False):
+    mesh = Mesh()
+    (x, y, z), (a, b, c) = low, (high[i] - low[i] for i in range(3))
+    for corner, u, v in (((x, y, z), (0, b, 0), (a, 0, 0)), ((x, y, z + c), (a, 0, 0), (0, b, 0)), ((x, y, z), (0, 0, c), (0, b, 0)),
+                         ((x + a, y, z), (0, b, 0), (0, 0, c)), ((x, y, z), (a, 0, 0), (0, 0, c)), ((x, y + b, z), (0, 0, c), (a, 0, 0))):
+        face(corner, *((v, u) if inwards else (u, v)), cells, mesh)
+    return mesh
+
+
+def ball(centre, radius, rows, bumps=0.0):
+    """Longitude s, latitude t; rows begin a little off the poles, where triangles would have no area."""
+    def point(s, t):
+        a, b = 2 * math.pi * s, math.pi * (t * 0.998 + 0.001) - math.pi / 2
+        r = radius * (1 + bumps * math.sin(8 * a) * math.cos(b) ** 2)
+        direction = (math.cos(b) * math.cos(a), math.sin(b), -math.cos(b) * math.sin(a))
+        return [c + r * d for c, d in zip(centre, direction)], direction
+    mesh = Mesh()
+    mesh.grid(2 * rows, rows, point)
+    return mesh
+
+
+def furniture(triangles):
+    """(name, colour, mesh) of what stands: a quarter of the triangles flat, the rest in cushions."""
+    cells = max(1, round(math.sqrt(triangles / 4 / (12 * 18))))
+    yield "Room", GREY, box((0, 0, 0), SIZE, cells, inwards=True)
+    for i, (x, z) in enumerate(((1.0, 1.0), (5.4, 0.8), (3.2, 4.2))):
+        yield f"Table{i}", WOOD, box((x, 0.72, z), (x + 1.6, 0.76, z + 0.9), cells)
+        for leg, (dx, dz) in enumerate(((0.02, 0.02), (1.52, 0.02), (0.02, 0.82), (1.52, 0.82))):
+            yield f"Leg{i}{leg}", WOOD, box((x + dx, 0, z + dz), (x + dx + 0.06, 0.72, z + dz + 0.06), cells)
+    for i, x in enumerate((0.02, 6.9)):
+        yield f"Cupboard{i}", CLOTH, box((x, 0, 4.4), (x + 1.06, 2.0, 5.9), cells)
+    rows = max(4, round(math.sqrt(triangles * 0.75 / 6 / 4)))
+    for i, (x, y, z) in enumerate(((1.5, 0.97, 1.4), (2.2, 0.97, 1.5), (5.9, 0.97, 1.2), (3.8, 0.97, 4.6), (7.2, 0.21, 2.6), (0.6, 0.21, 3.0))):
+        yield f"Cushion{i}", CLOTH, ball((x, y, z), 0.2, rows, 0.08)
+
+
+def make(path, triangles=200_000):
+    """Writes the room as .glb; the number of triangles it has."""
+    gltf = {"asset": {"version": "2.0"}, "scene": 0, "nodes": [], "meshes": [], "materials": [], "accessors": [],
+            "bufferViews": [], "extensionsUsed": ["KHR_materials_specular", "KHR_materials_emissive_strength"]}
+    binary, count = bytearray(), 0
+
+    def accessor(data, kind, component, **more):
+        gltf["bufferViews"].append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(data) * data.itemsize})
+        binary.extend(data.tobytes())
+        gltf["accessors"].append({"bufferView": len(gltf["bufferViews"]) - 1, "componentType": component, "type": kind,
+                                  "count": len(data) // {"VEC3": 3, "SCALAR": 1}[kind], **more})
+        return len(gltf["accessors"]) - 1
+
+    def add(name, mesh, material):
+        bounds = {f: [g(mesh.positions[i::3]) for i in range(3)] for f, g in (("min", min), ("max", max))}
+        attributes = {"POSITION": accessor(mesh.positions, "VEC3", 5126, **bounds), "NORMAL": accessor(mesh.normals, "VEC3", 5126)}
+        gltf["materials"].append({"name": name, **material})
+        gltf["meshes"].append({"name": name, "primitives": [{"attributes": attributes, "material": len(gltf["materials"]) - 1,
+                                                             "indices": accessor(mesh.indices, "SCALAR", 5125)}]})
+        gltf["nodes"].append({"name": name, "mesh": len(gltf["meshes"]) - 1})
+        return len(mesh.indices) // 3
+
+    matte = {"KHR_materials_specular": {"specularFactor": 0}}
+    things = list(furniture(triangles)) + [("Ball", (0.7, 0.5, 0.2), ball((0, 0, 0), 0.25, 24))]
+    for name, colour, mesh in things:
+        count += add(name, mesh, {"extensions": matte, "pbrMetallicRoughness": {"baseColorFactor": [*colour, 1], "metallicFactor": 0}})
+    mover = len(gltf["nodes"]) - 1
+    begin, end = [2.6, 0.26, 3.0], [5.4, 0.26, 3.6]
+    gltf["nodes"][mover]["translation"] = begin
+    times, places = array("f", [0, LAST_S]), array("f", begin + end)
+    gltf["animations"] = [{"samplers": [{"input": accessor(times, "SCALAR", 5126, min=[0], max=[LAST_S]),
+                                         "output": accessor(places, "VEC3", 5126)}],
+                           "channels": [{"sampler": 0, "target": {"node": mover, "path": "translation"}}]}]
+    lamp = Mesh()
+    face((3.4, 2.95, 2.6), (1.2, 0, 0), (0, 0, 0.8), 1, lamp)
+    count += add("Lamp", lamp, {"emissiveFactor": [1, 0.95, 0.85],
+                                "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0},
+                                "extensions": matte | {"KHR_materials_emissive_strength": {"emissiveStrength": 12}}})
+    gltf["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.95, "znear": 0.01}}]
+    gltf["nodes"].append({"name": "Camera", "camera": 0, "translation": [0.3, 1.7, 3.9], "rotation": [-0.084, -0.4826, -0.0466, 0.871]})
+    gltf["scenes"] = [{"nodes": list(range(len(gltf["nodes"])))}]
+    gltf["buffers"] = [{"byteLength": len(binary)}]
+    text = json.dumps(gltf).encode()
+    text += b" " * (-len(text) % 4)
+    header = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary)) + struct.pack("<I4s", len(text), b"JSON")
+    Path(path).write_bytes(header + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
+    return count
+
+
+if __name__ == "__main__":
+    print(make(sys.argv[1], *map(int, sys.argv[2:])))

@@ -1,0 +1,143 @@
+// Localised gathering: signed density and influence of dynamic photons, thresholds, the field between records.
+#include "lib/gather/localised.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lib/core/sampling.h"
+#include "lib/gather/irradiance_points.h"
+#include "tests/support/scenes.h"
+
+namespace tempolux {
+namespace {
+
+using formats::Photon;
+
+/// A floor of 4 x 4 m, facing up, and photons on it.
+struct Floor {
+  test::HandMadeScene scene;
+  std::vector<Photon> photons;
+
+  Floor() {
+    scene.add_quad({0, 0, 0}, {0, 0, 4}, {4, 0, 4}, {4, 0, 0}, test::matte(Rgb(0.5f)));
+    scene.frame();
+  }
+  /// `count` photons spread evenly, of this flux in the green channel.
+  void spread(int count, float flux, std::uint64_t seed) {
+    const PathRandom random(seed, 0);
+    for (int i = 0; i < count; ++i) {
+      const Vec2 u = random.get2(std::uint32_t(i), Purpose::test);
+      Photon photon;
+      photon.position = {4 * u.x, 0, 4 * u.y};
+      photon.flux = {flux / 2, flux, 0};
+      photon.normal = formats::encode_normal({0, 1, 0});
+      photon.kind = formats::PathKind::indirect;
+      photons.push_back(photon);
+    }
+  }
+  SignedDensity density() {
+    tracer = std::make_unique<Tracer>(scene.frame());
+    return SignedDensity(*tracer, photons, {50, 0.5f, 32}, {});
+  }
+  std::unique_ptr<Tracer> tracer;
+};
+
+const Vec3 kMiddle{2, 0, 2}, kUp{0, 1, 0};
+
+TEST(SignedDensity, WhatComesAndGoesCancelsInIrradianceAndNotInInfluence) {
+  Floor floor;
+  floor.spread(4000, 1, 1);
+  floor.spread(4000, -1, 2);
+  const auto change = floor.density().at(kMiddle, kUp, 0.5f, PathRandom(1, 1));
+  ASSERT_TRUE(change);
+  // 250 photons per m^2 and sign; pi / 4 m^2 hold 196 of each, which scatter by 14: of a difference sqrt(2) of that.
+  const double area = double(kPi) / 4;
+  EXPECT_NEAR(change->irradiance.g, 0, 4 * std::sqrt(2 * 196.0) / area);
+  EXPECT_NEAR(change->influence, 500, 4 * std::sqrt(2 * 196.0) / area);
+  EXPECT_NEAR(change->irradiance.r, change->irradiance.g / 2, 1e-9);
+}
+
+TEST(SignedDensity, InfluenceDoesNotKnowSigns) {
+  Floor one, other;
+  one.spread(500, 3, 1);
+  other.spread(500, -3, 1);
+  const auto a = one.density().at(kMiddle, kUp, 0.4f, PathRandom(1, 1));
+  const auto b = other.density().at(kMiddle, kUp, 0.4f, PathRandom(1, 1));
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(a->influence, b->influence);
+  EXPECT_EQ(a->irradiance.g, -b->irradiance.g);
+}
+
+TEST(SignedDensity, AtAnEdgeTheAreaThatIsThereCounts) {
+  // On the floor's rim half of the disc is floor: the density is that of the middle, not half of it.
+  Floor floor;
+  floor.spread(40000, 1, 1);
+  const auto change = floor.density().at({2, 0, 0.001f}, kUp, 0.5f, PathRandom(1, 1));
+  ASSERT_TRUE(change);
+  // 982 photons: 3.2 %; area by 32 probes that arrive of about 64: 1 / sqrt(64) of the mean; 4 of both together.
+  EXPECT_NEAR(change->irradiance.g, 2500, 2500 * 0.55);
+  EXPECT_GT(change->irradiance.g, 2500 * 0.6);
+}
+
+TEST(SignedDensity, NothingNearIsNothing) {
+  Floor floor;
+  floor.spread(100, 1, 1);
+  const SignedDensity density = floor.density();
+  EXPECT_FALSE(density.at({2, 1, 2}, kUp, 0.05f, PathRandom(1, 1)));
+  EXPECT_FALSE(density.at(kMiddle, -kUp, 0.5f, PathRandom(1, 1)));
+}
+
+TEST(Influence, ShareIsContinuousAtBothThresholds) {
+  const InfluenceThresholds t;
+  EXPECT_EQ(t.gathered_share(0), 0);
+  EXPECT_EQ(t.gathered_share(t.low), 0);
+  EXPECT_EQ(t.gathered_share(t.high), 1);
+  EXPECT_EQ(t.gathered_share(INFINITY), 1);
+  EXPECT_LT(t.gathered_share(t.low + 1e-5f), 1e-6f);
+  EXPECT_GT(t.gathered_share(t.high - 1e-5f), 1 - 1e-6f);
+  EXPECT_FLOAT_EQ(t.gathered_share((t.low + t.high) / 2), 0.5f);
+  for (float i = 0; i < 0.3f; i += 0.001f) EXPECT_LE(t.gathered_share(i), t.gathered_share(i + 0.001f));
+}
+
+IrradianceRecord record(Vec3 position, float irradiance) {
+  IrradianceRecord r;
+  r.position = position;
+  r.normal = kUp;
+  r.irradiance = Rgb(irradiance);
+  r.radius = r.radius_unclamped = 1;
+  return r;
+}
+
+TEST(Influence, FieldIsRelativeUnlessAskedOtherwise) {
+  const std::vector<IrradianceRecord> records{record(kMiddle, 5), record({0.2f, 0, 0.2f}, 5)};
+  const std::vector<float> influences{0.5f, 0};
+  const InfluenceField relative(records, influences, {}), absolute(records, influences, {.absolute = true});
+  EXPECT_NEAR(relative.at(kMiddle, kUp), 0.1f, 1e-6f);
+  EXPECT_NEAR(absolute.at(kMiddle, kUp), 0.5f, 1e-6f);
+  EXPECT_EQ(relative.at({0.2f, 0, 0.2f}, kUp), 0);
+  EXPECT_TRUE(std::isinf(relative.at(kMiddle, -kUp)));   // nothing is known there
+  EXPECT_EQ(relative.gathered_share({0.2f, 0, 0.2f}, kUp), 0);
+}
+
+TEST(Influence, RecordsTakeTheirUpdateFromTheFrameAndInfluenceFromAllMaps) {
+  Floor now, before;
+  now.spread(400, -0.1f, 1);
+  before.spread(4000, 0.1f, 2);
+  std::vector<SignedDensity> maps;
+  maps.push_back(now.density());
+  maps.push_back(before.density());
+  const std::vector<IrradianceRecord> records{record(kMiddle, 10)};
+  std::vector<IrradiancePoint> points(1);
+  points[0].position = kMiddle;
+  points[0].normal = kUp;
+  points[0].radius = 0.5f;
+  const PointLookup lookup(points, 0.2f);
+  const RecordChange change = record_changes(records, maps, lookup, 0)[0];
+  EXPECT_LT(change.update.g, 10);
+  EXPECT_NEAR(change.update.g, 10 - 2.5f, 4 * 2.5f / std::sqrt(19.6f));
+  EXPECT_NEAR(change.influence, 25, 4 * 25 / std::sqrt(196.0f));
+}
+
+}  // namespace
+}  // namespace tempolux
