@@ -209,15 +209,9 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
   estimate_points(tracer, lights, photons, photon_shift, options, all, points);
 }
 
-DensityOptions density_of(const PointOptions& options, const SceneFrame& frame) {
-  DensityOptions density{options.neighbours, options.max_radius, options.area_probes};
-  if (!(density.max_radius > 0)) density.max_radius = 0.05f * frame.bounds.diagonal();
-  return density;
-}
-
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons, Vec3d photon_shift,
                      const PointOptions& options, std::span<const std::uint32_t> which, std::vector<IrradiancePoint>& points) {
-  const DensityOptions density = density_of(options, tracer.frame());
+  const DensityOptions density{options.neighbours, options.max_radius, options.area_probes};
   const FootprintDensity caustic(tracer, photons, {density.neighbours, density.max_radius, 0}, kind_bit(formats::PathKind::caustic), photon_shift);
   const PointDensity indirect(tracer, photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
   const float offset = Reach(tracer).offset();

@@ -56,8 +56,6 @@ std::size_t update_direct(const Tracer& tracer, const Lights& lights, const Move
                           std::vector<IrradiancePoint>& points);
 /// Random numbers of a point, by its number.
 PathRandom point_random(const PointOptions& options, std::uint32_t point);
-/// What estimate_points asks of densities.
-DensityOptions density_of(const PointOptions& options, const SceneFrame& frame);
 
 /// What PointLookup asks for, on this scene (Reach::clearance); the tracer must outlive it.
 ClearanceTest point_clearance(const Tracer& tracer);

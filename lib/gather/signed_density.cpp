@@ -4,12 +4,16 @@
 #include <cmath>
 
 #include "lib/core/sampling.h"
+#include "lib/density/photon_reach.h"
 
 namespace tempolux {
 
 SignedDensity::SignedDensity(const Tracer& standing, std::span<const formats::Photon> photons, const DensityOptions& options,
                              Vec3d shift)
-    : options_(options), area_(standing), index_(photons, kind_bit(formats::PathKind::indirect), shift) {}
+    : options_(options), area_(standing), index_(photons, kind_bit(formats::PathKind::indirect), shift) {
+  if (!(options_.max_radius > 0) && index_.size() > 0)
+    options_.max_radius = PointDensity::kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening);
+}
 
 std::optional<SignedDensity::Change> SignedDensity::at(Vec3 position, Vec3 normal, float radius, const PathRandom& random,
                                                        Area& area) const {

@@ -25,7 +25,9 @@ class SignedDensity {
     Rgbd irradiance{0.0};   ///< W/m^2: sum of flux with its sign / area
     double influence = 0;   ///< W/m^2: sum of the largest channel of |flux| / area; what comes and what goes do not cancel
   };
-  /// Of the photons nearer than `radius` (m; 0: the options' largest) in the ellipsoid 1 : 1 / kFlattening. Nothing if there
+  /// m: largest radius of a disc; if the options have none, PointDensity::kSparser times the photons' own reach.
+  float max_radius() const { return options_.max_radius; }
+  /// Of the photons nearer than `radius` (m; 0: the largest) in the ellipsoid 1 : 1 / kFlattening. Nothing if there
   /// are none. `random`: as for PointDensity::estimate of the same place.
   std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random) const {
     Area area;

@@ -88,7 +88,12 @@ Rgb not_negative(const Rgbd& sum) { return Rgb(Rgbd{std::max(0.0, sum.r), std::m
 PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& options, std::vector<IrradiancePoint>& points) {
   PointUpdateCounts counts;
   const SceneFrame& frame = in.whole.frame();
-  const DensityOptions density = density_of(options, frame);
+  // Points that found fewer static photons than they wanted have the largest radius of all.
+  DensityOptions density{options.neighbours, options.max_radius, options.area_probes};
+  if (!(density.max_radius > 0))
+    for (const IrradiancePoint& point : points) density.max_radius = std::max(density.max_radius, point.radius);
+  const SignedDensity density_of_change(in.standing, in.dynamic_photons, density, in.dynamic_shift);
+  density.max_radius = density_of_change.max_radius();
   const MovingBoxes boxes = moving_boxes(frame);
   const MoverWatch watch({boxes});
   counts.direct = update_direct(in.whole, in.lights, lights_change(frame) ? nullptr : &watch, options, points);
@@ -105,7 +110,6 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
     }
   }
   counts.anew = anew.size();
-  const SignedDensity density_of_change(in.standing, in.dynamic_photons, density, in.dynamic_shift);
   std::atomic<std::size_t> changed = 0;
   parallel_chunks(others.size(), 256, [&](std::size_t first, std::size_t last) {
     std::size_t count = 0;
@@ -126,14 +130,16 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   });
   std::vector<Rgb> caustic;
   for (const IrradiancePoint& point : points) caustic.push_back(point.caustic);
-  if (!anew.empty()) estimate_points(in.whole, in.lights, near, {}, options, anew, points);
+  PointOptions limited = options;
+  limited.max_radius = density.max_radius;
+  if (!anew.empty()) estimate_points(in.whole, in.lights, near, {}, limited, anew, points);
 
   // Caustic light has footprints instead of discs: all of it anew if any is another.
   const bool caustics_change = std::any_of(in.dynamic_photons.begin(), in.dynamic_photons.end(),
                                            [](const Photon& photon) { return photon.kind == PathKind::caustic; });
   if (caustics_change) {
     const std::vector<Photon> all = global_photons(in, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
-    const FootprintDensity footprints(in.whole, all, {density.neighbours, density.max_radius, 0}, kind_bit(PathKind::caustic), {});
+    const FootprintDensity footprints(in.whole, all, {options.neighbours, options.max_radius, 0}, kind_bit(PathKind::caustic), {});
     parallel_chunks(points.size(), 256, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         float unused;

@@ -108,6 +108,11 @@ void update_points(Tool& tool, const formats::PhotonMap& fixed, const formats::P
     throw InputError("--update: its points are not those of --point-count " + std::to_string(options.count) + " (" +
                      std::to_string(points.points.size()) + ", not " + std::to_string(standing_count) +
                      "); give the options they were made with");
+  // As placed: a file rounds normals, and light sampled by a rounded one is another.
+  for (std::size_t i = 0; i < standing_count; ++i) {
+    points.points[i].position = placed.points[i].position;
+    points.points[i].normal = placed.points[i].normal;
+  }
   const Vec3d static_shift = shift_of(fixed.header.origin, frame), dynamic_shift = shift_of(moved.header.origin, frame);
   counts = tempolux::update_points({whole, standing, lights, fixed.photons, moved.photons, static_shift, dynamic_shift}, options,
                                    points.points);
