@@ -207,7 +207,7 @@ void check_paths(tools::Tool& tool, tools::SceneInput& input, const std::string&
                      std::to_string(segment.first) + " to " + std::to_string(segment.last) + "; trace the static map of that one");
   tools::check_identity(tool, file, paths.identity, standing);
   std::string stale;
-  if (!paths.identity.emission.empty() && paths.identity.emission != emission) stale = "emission";
+  if (!paths.identity.emission.empty() && paths.identity.emission != emission) stale = "emission (lights, or what --importance aims at)";
   const std::size_t interval = formats::interval_of(frame, segment.first, segment.last, paths.movers.size());
   if (movers_in(input, segment, interval, paths.movers.size()).hash != paths.movers[interval])
     stale += (stale.empty() ? "" : ", ") + std::string("what moves");

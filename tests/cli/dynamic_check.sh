@@ -42,6 +42,18 @@ for name in box mirror lamp; do
   trace "$file" --frame 4 --photons 6k -o $name.g.photons || bad "$name global"
   [ "$(sum $name.g.photons $name.s.photons $name.d.photons)" -gt 0 ] || bad "$name: static + dynamic is not global"
 done
+
+# Photons of the sky aimed at the box: the same mixture for all maps, and another one is refused.
+printf 'tempolux view 1.0\n0.3 0.3 0.3 0.5 1\n' >near.view
+printf 'tempolux view 1.0\n0.3 0.3 0.3 0.25 1\n' >nearer.view
+sky='--environment-color 1,1,1'
+trace "$scene" $sky --photons 6k --importance near.view --map static -o sky.s.photons --paths sky.paths 2>/dev/null || bad 'sky static'
+trace "$scene" $sky --frame 4 --importance near.view --map dynamic --static sky.paths -o sky.d.photons || bad 'sky dynamic'
+trace "$scene" $sky --frame 4 --photons 6k --importance near.view -o sky.g.photons 2>/dev/null || bad 'sky global'
+[ "$(sum sky.g.photons sky.s.photons sky.d.photons)" -gt 0 ] || bad 'sky: static + dynamic is not global'
+refuses 'what --importance aims at' trace "$scene" $sky --frame 4 --map dynamic --static sky.paths -o refused
+refuses 'what --importance aims at' trace "$scene" $sky --frame 4 --importance nearer.view --map dynamic --static sky.paths -o refused
+
 tempolux-info --check box.* >out.txt || bad "$(cat out.txt)"
 tempolux-info box.paths | grep -q touched_paths || bad 'info of .paths'
 

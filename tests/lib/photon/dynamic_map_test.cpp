@@ -26,9 +26,17 @@ struct Room {
   EmissionTable table;
 
   /// lamp_moves: the lamp is among what moves.
-  explicit Room(Material box, bool lamp_moves = false, Vec3 at = {0.3f, 0.2f, 0.3f}) {
-    scene.add_room({0, 0, 0}, {1, 1, 1}, test::matte({0.6f, 0.5f, 0.4f}));
-    scene.add_quad({0.4f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.6f}, {0.4f, 0.99f, 0.6f},
+  /// sunny: no ceiling and no lamp but a sun, and ground of 40 m around.
+  explicit Room(Material box, bool lamp_moves = false, Vec3 at = {0.3f, 0.2f, 0.3f}, bool sunny = false) {
+    const Material grey = test::matte({0.6f, 0.5f, 0.4f});
+    if (sunny) {
+      scene.add_quad({-20, 0, 20}, {20, 0, 20}, {20, 0, -20}, {-20, 0, -20}, grey);
+      scene.add_quad({0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, grey);
+      scene.add_quad({0, 0, 1}, {0, 0, 0}, {0, 1, 0}, {0, 1, 1}, grey);
+    } else {
+      scene.add_room({0, 0, 0}, {1, 1, 1}, grey);
+    }
+    if (!sunny) scene.add_quad({0.4f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.4f}, {0.6f, 0.99f, 0.6f}, {0.4f, 0.99f, 0.6f},
                    test::matte(Rgb(0.0f), Rgb(5.0f)), lamp_moves);
     const Vec3 u = at + Vec3{0.2f, 0.2f, 0.2f};
     scene.add({{at.x, at.y, at.z}, {u.x, at.y, at.z}, {u.x, u.y, at.z}, {at.x, u.y, at.z},
@@ -36,6 +44,13 @@ struct Room {
               {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
                {3, 6, 2}, {3, 7, 6}, {0, 7, 3}, {0, 4, 7}, {1, 2, 6}, {1, 6, 5}}, box, true);
     frame = scene.frame();
+    if (sunny) {
+      PlacedLight sun;
+      sun.light.kind = PunctualLight::Kind::directional;
+      sun.light.intensity = Rgb(10.0f);
+      sun.direction = normalize(Vec3{-0.1f, -0.8f, -0.3f});
+      frame.lights.push_back(sun);
+    }
     standing = standing_scene(frame);
     table = build_emission_table(std::span(&frame, 1));
   }
@@ -158,6 +173,21 @@ TEST(DynamicMap, AMovingLampsPhotonsAreAllDynamic) {
   EXPECT_EQ(maps.touched.size(), maps.path_count);
   expect_sum(maps);
   EXPECT_EQ(maps.dynamic.size(), maps.global.size());
+}
+
+TEST(DynamicMap, AimedPhotonsOfASunAreTheSamePhotonsInBothScenes) {
+  // Two walls and a box that moves stand in the sun on wide ground; photons are aimed at them. Were they aimed in one scene only, starts
+  // and fluxes would differ.
+  Room room(test::matte(Rgb(0.5f)), false, {0.3f, 0.2f, 0.3f}, true);
+  room.table.aim = {{{0.5, 0.5, 0.5}, 0.875, 0.75}, {{0.4, 0.3, 0.4}, 0.25, 0.25}};
+  const Maps maps = maps_of(room, 20000);
+  expect_sum(maps);
+  EXPECT_FALSE(maps.dynamic.empty());
+  EXPECT_LT(maps.touched.size(), maps.path_count);
+  const Maps all = maps_of(room, 20000, true);
+  EXPECT_EQ(maps.dynamic, all.dynamic);
+  Room uniform(test::matte(Rgb(0.5f)), false, {0.3f, 0.2f, 0.3f}, true);
+  EXPECT_LT(2 * maps_of(uniform, 20000).dynamic.size(), maps.dynamic.size());   // they do come where they are aimed
 }
 
 TEST(DynamicMap, WhereNothingIsMetThereIsNothing) {
