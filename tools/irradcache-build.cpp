@@ -226,7 +226,7 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
 /// Dynamic maps of a frame, its own first, as densities over the standing scene.
 std::vector<SignedDensity> read_changes(tools::Tool& tool, const Options& options, const Tracer& standing, const SceneFrame& frame) {
   std::vector<SignedDensity> maps;
-  const DensityOptions density{options.point.neighbours, options.point.max_radius, options.point.area_probes};
+  const DensityOptions density{options.point.neighbours, options.point.max_radius, kChangeProbes};
   for (const std::string& name : options.dynamic) {
     const std::string file = tools::frame_name(name, frame.frame);
     const bool own = maps.empty();

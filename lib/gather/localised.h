@@ -20,6 +20,10 @@ struct InfluenceThresholds {
   float gathered_share(float influence) const;
 };
 
+/// DensityOptions::area_probes of dynamic maps for record_changes(). Eight columns spread over a disc tell its area to some 15 %: of
+/// a change that is a hundredth of the light as a rule, .15 % of the light.
+inline constexpr int kChangeProbes = 8;
+
 /// What the dynamic photons of a frame do to a static record.
 struct RecordChange {
   Rgb update{0.0f};       ///< W/m^2: E_t = irradiance + change, not cut at 0
@@ -27,8 +31,8 @@ struct RecordChange {
 };
 
 /// E_t of each record from the first of `maps`, its influence the largest over all of them (the frame's own and those before it: the
-/// region grows at once and shrinks over frames). The disc is that of the irradiance point nearest to the record, which k
-/// static photons fill.
+/// region grows at once and shrinks over frames). The disc is as wide as the record is valid, but at least that of the irradiance
+/// point nearest to the record, which k static photons fill, and at most seven times that.
 std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> records, std::span<const SignedDensity> maps,
                                          const PointLookup& points, std::uint64_t seed);
 
