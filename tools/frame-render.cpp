@@ -139,6 +139,8 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--integrator photons reads no cache and no points; leave them out, or the integrator");
   if (options.integrator == "photons" && options.light.photons.empty())
     throw InputError("--integrator photons: name the photon map with --photons FILE");
+  if (!options.light.dynamic.empty() && options.light.photons.empty())
+    throw InputError("--dynamic: what movers change is nothing alone; name the segment's static map with --photons FILE");
   if (options.integrator == "cache" && options.light.irradcache.empty())
     throw InputError("--integrator cache: name the cache with --irradcache FILE");
   if (options.integrator == "path" && !options.traces_paths())
@@ -169,6 +171,9 @@ void add_light_options(tools::Tool& tool, Options& options) {
       ->check(CLI::IsMember({"auto", "path", "photons", "cache"}));
   app.add_option("--photons", options.light.photons,
                  ".photons file, or a pattern: indirect and caustic light; with --irradcache caustic light")
+      ->type_name("FILE");
+  app.add_option("--dynamic", options.light.dynamic,
+                 ".photons file of the frame, photon-trace --map dynamic, or a pattern: --photons is then the segment's static map")
       ->type_name("FILE");
   app.add_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light")
       ->type_name("FILE");

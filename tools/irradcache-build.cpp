@@ -159,6 +159,13 @@ std::vector<std::uint8_t> wanted_pixels(tools::Tool& tool, const Options& option
   return std::move(mask.pixels);
 }
 
+/// InputError unless all but the cameras is the same at two frames.
+void check_lit_alike(const Options& options, const SceneFrame& frame, const SceneFrame& first) {
+  if (!formats::stale_concerns(tools::identity_of(frame), tools::identity_of(first)).empty())
+    throw InputError(options.scene() + ": frame " + std::to_string(frame.frame) + " is lit or built differently from frame " +
+                     std::to_string(first.frame) + ": one cache cannot hold for both; make one for each");
+}
+
 /// Records for the cameras of all frames: one cache, valid while nothing but the camera changes.
 void build_records(tools::Tool& tool, tools::SceneInput& input, Options options, const std::vector<int>& frames) {
   tools::Output output(options.output, tool.common().no_clobber);
@@ -190,10 +197,7 @@ void build_records(tools::Tool& tool, tools::SceneInput& input, Options options,
   const int camera = input.scene().camera_node(tool.common().camera);
   for (int number : frames) {
     const SceneFrame frame = state(number);
-    if (!formats::stale_concerns(tools::identity_of(frame), tools::identity_of(first)).empty())
-      throw InputError(options.scene() + ": frame " + std::to_string(number) +
-                       " is lit or built differently from frame " + std::to_string(first.frame) +
-                       ": one cache cannot hold for both; make one for each");
+    check_lit_alike(options, frame, first);
     const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
     PlacementOptions placement = options.placement;
     if (number != frames.front()) placement.min_weight *= kLaterWeight;
@@ -238,8 +242,11 @@ std::vector<SignedDensity> read_changes(tools::Tool& tool, const Options& option
   return maps;
 }
 
-/// Records of a frame by localised gathering: those of what stands, updated, and new ones where movers matter.
-void build_updated_records(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& tree) {
+/// Records of a frame by localised gathering: those of what stands, updated, and new ones where movers matter to the cameras of
+/// `frames`, which are lit alike.
+void build_updated_records(tools::Tool& tool, tools::SceneInput& input, const Options& options, const std::vector<int>& frames,
+                           StandingTree& tree) {
+  const int number = frames.front();
   tools::Output output(tools::frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number), standing = standing_scene(frame);
@@ -267,27 +274,35 @@ void build_updated_records(tools::Tool& tool, tools::SceneInput& input, const Op
   for (const RecordChange& change : cache.changes) influences.push_back(change.influence);
   const InfluenceField field(cache.standing, influences, options.influence);
   const std::vector<bool> moves = tools::moving_objects(frame);
-  const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width, options.height);
-  const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-    seen_through(tracer, view, looks, seen);
-    for (std::optional<SeenPoint>& point : seen.first(looks.size())) {
-      if (!point || (point->surface.object < moves.size() && moves[point->surface.object])) continue;
-      if (!(field.at(point->surface.position, point->normal) > options.influence.low)) point.reset();
-    }
-  };
   GatherCounts counts;
   RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
-  place_records(gather, views, options.width, options.height, options.placement, store, counts,
-                [&](double done) { tool.progress(done); });
+  const int camera = input.scene().camera_node(tool.common().camera);
+  for (const int f : frames) {
+    const SceneFrame other = f == number ? frame : input.at(f);
+    check_lit_alike(options, other, frame);
+    const CameraView view(other.camera(camera), other.origin, options.width, options.height);
+    const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+      seen_through(tracer, view, looks, seen);
+      for (std::optional<SeenPoint>& point : seen.first(looks.size())) {
+        if (!point || (point->surface.object < moves.size() && moves[point->surface.object])) continue;
+        if (!(field.at(point->surface.position, point->normal) > options.influence.low)) point.reset();
+      }
+    };
+    PlacementOptions placement = options.placement;
+    if (f != number) placement.min_weight *= kLaterWeight;
+    const std::size_t added = place_records(gather, views, options.width, options.height, placement, store, counts,
+                                            [&](double done) { tool.progress(done); });
+    tool.stats().set("records_added." + std::to_string(f), double(added));
+  }
   cache.gathered.assign(store.records().begin(), store.records().end());
 
   tool.stats().phase("write");
   std::vector<IrradianceRecord> all = cache.standing;
   all.insert(all.end(), cache.gathered.begin(), cache.gathered.end());
   formats::IrradcacheHeader header =
-      cache_header(options, frame, {number}, all, std::max(store.least_cosine(), fixed.least_cosine()));
+      cache_header(options, frame, frames, all, std::max(store.least_cosine(), fixed.least_cosine()));
   header.columns |= formats::column_influence | formats::column_update;
-  header.history = cache.history + tool.history_line(number);
+  header.history = cache.history + (frames.size() == 1 ? tool.history_line(number) : tool.history_line());
   formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
   writer.write(tools::to_file(cache, frame));
   writer.finish();
@@ -318,8 +333,6 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (mode == "both") refuse_unread(app, "a run without a step", {"--map", "--update", "--dynamic"});
   if (mode == "records" && !options.update.empty()) refuse_unread(app, "records --update", {"--records"});
   if (mode == "points" && options.dynamic.size() > 1) throw InputError("--dynamic: points take one map, that of their frame");
-  if (mode == "records" && options.update.empty() == false && frames.size() > 1 && !tools::has_frame_pattern(options.output))
-    throw InputError("--output: several frames need a pattern, for example f.####.irradcache");
   tools::check_influence(options.influence);
   if (options.update.empty() != options.dynamic.empty())
     throw InputError("--update and --dynamic go together: points of what stands, and what movers change");
@@ -422,8 +435,10 @@ int main(int argc, char** argv) {
         if (options.map == "static") build_standing_points(tool, input, options, frame);
         else if (!options.update.empty()) build_updated_points(tool, input, options, frame, standing);
         else build_points(tool, input, options, frame, standing);
+    else if (!options.update.empty() && !tools::has_frame_pattern(options.output))
+      build_updated_records(tool, input, options, frames, standing);
     else if (!options.update.empty())
-      for (int frame : frames) build_updated_records(tool, input, options, frame, standing);
+      for (int frame : frames) build_updated_records(tool, input, options, {frame}, standing);
     else
       build_records(tool, input, options, frames);
     return tools::exit_ok;

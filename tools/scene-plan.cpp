@@ -20,6 +20,7 @@
 #include "lib/core/parallel.h"
 #include "lib/plan/plan_files.h"
 #include "lib/render/choose_indirect.h"
+#include "lib/render/choose_moving.h"
 #include "tools/common/option_words.h"
 #include "tools/common/pilot.h"
 #include "tools/common/plan_views.h"
@@ -48,7 +49,7 @@ bool write_if_changed(const std::string& path, const std::string& content) {
 }
 
 struct Options {
-  std::string scene, folder = "plan", tidy_folder, indirect = "auto";
+  std::string scene, folder = "plan", tidy_folder, indirect = "auto", moving = "auto";
   double tidy_hours = 24;
   bool estimate = false, json = false;
   int jobs = 1;
@@ -94,6 +95,26 @@ void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options&
   use_indirect(plan, kIndirectMethods[std::size_t(choice.method)], choice.because);
 }
 
+/// Decides what of a frame's light follows from that of what stands: as asked, or by a pilot. What it then costs is noted for the
+/// estimate.
+void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options, int camera, Plan& plan) {
+  const UpdatableLight light = updatable_light(plan);
+  if (plan.photon_kinds.empty()) return;
+  if (light.segments == 0)
+    return use_moving(plan, "anew", "no segment has " + std::to_string(kFewestStates) + " states of light");
+  if (options.moving == "anew") return use_moving(plan, "anew", "--moving anew");
+  tool.stats().phase("pilot of what moves", true);
+  const SceneFrame frame = input.at(light.frame);
+  const CameraView view(frame.camera(camera), frame.origin, options.run.width, options.run.height);
+  MovingChoice choice = choose_moving(pilot_moving(frame, input.emission(frame.frame), view, 0), light.segments, light.states);
+  if (options.moving != "auto") {
+    choice.because = "--moving " + options.moving;
+    choice.method = options.moving == "light" ? MovingMethod::light : MovingMethod::records;
+  }
+  options.run.moving_cost = choice.cost;
+  use_moving(plan, kMovingMethods[std::size_t(choice.method)], choice.because);
+}
+
 void plan_range(tools::Tool& tool, Options& options, bool write) {
   while (options.folder.size() > 1 && options.folder.back() == '/') options.folder.pop_back();
   std::optional<tools::Output> makefile;
@@ -110,6 +131,7 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
   const int camera = scene.camera_node(tool.common().camera);
   Plan plan = make_plan(scene, tool.common().frames, camera, input.time());
   decide_indirect(tool, input, options, camera, plan);
+  decide_moving(tool, input, options, camera, plan);
   for (const std::string& warning : plan.warnings) tool.warn(options.scene + ": " + warning);
   if (write && !plan.photon_kinds.empty()) {
     tool.stats().phase("views", true);
@@ -147,6 +169,11 @@ int main(int argc, char** argv) {
                  "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "records", "gather", "paths"}));
+  app.add_option("--moving", options.moving,
+                 "what of a frame's light follows from that of what stands, where something moves: anew (nothing), light (photons and "
+                 "points), records (they, too); auto: the cheapest by a pilot")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "anew", "light", "records"}));
   const auto add = [&](CLI::Option* option) {
     tool.leave_out_of_history(option);
     return option;

@@ -2,64 +2,17 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
-#include <unordered_map>
 
-#include "formats/octahedral.h"
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
 #include "lib/gather/signed_density.h"
+#include "lib/gather/whole_photons.h"
 
 namespace tempolux {
 namespace {
 
 using formats::PathKind;
 using formats::Photon;
-
-Vec3 placed(const Photon& photon, Vec3d shift) {
-  return Vec3(Vec3d{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])} + shift);
-}
-
-bool is_negative(const Photon& photon) { return photon.flux[0] < 0 || photon.flux[1] < 0 || photon.flux[2] < 0; }
-
-struct PhotonHash {
-  std::size_t operator()(const Photon& photon) const {
-    std::array<std::uint64_t, sizeof(Photon) / 8> words;
-    std::memcpy(words.data(), &photon, sizeof photon);
-    std::uint64_t hash = 0;
-    for (const std::uint64_t word : words) hash = mix64(hash ^ word) + 0x9e3779b97f4a7c15ull;
-    return hash;
-  }
-};
-
-/// Photons of the whole scene, moved into scene space, of those that `wanted` (of place and photon) takes: static ones but those
-/// that a negative one cancels, and positive ones.
-template <class Wanted>
-std::vector<Photon> global_photons(const PointUpdateInput& in, const Wanted& wanted) {
-  std::unordered_map<Photon, int, PhotonHash> gone;
-  std::vector<Photon> photons;
-  const auto take = [&](Photon photon, Vec3 place) {
-    photon.position = {place.x, place.y, place.z};
-    photons.push_back(photon);
-  };
-  for (Photon photon : in.dynamic_photons) {
-    const Vec3 place = placed(photon, in.dynamic_shift);
-    if (!wanted(place, photon)) continue;
-    if (!is_negative(photon)) {
-      take(photon, place);
-      continue;
-    }
-    for (float& flux : photon.flux) flux = 0 - flux;
-    ++gone[photon];
-  }
-  for (const Photon& photon : in.static_photons) {
-    const Vec3 place = placed(photon, in.static_shift);
-    if (!wanted(place, photon)) continue;
-    if (const auto found = gone.find(photon); found != gone.end() && found->second > 0) --found->second;
-    else take(photon, place);
-  }
-  return photons;
-}
 
 bool inside(const Box3& box, Vec3 p, float margin) {
   for (int a = 0; a < 3; ++a)
@@ -124,8 +77,9 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   });
   counts.changed = changed;
 
+  const PhotonMaps maps{in.static_photons, in.dynamic_photons, in.static_shift, in.dynamic_shift};
   // Beside what moves: all photons that an estimate there may ask for.
-  const std::vector<Photon> near = anew.empty() ? std::vector<Photon>{} : global_photons(in, [&](Vec3 place, const Photon&) {
+  const std::vector<Photon> near = anew.empty() ? std::vector<Photon>{} : whole_photons(maps, [&](Vec3 place, const Photon&) {
     return near_any(boxes, place, widest + density.max_radius);
   });
   std::vector<Rgb> caustic;
@@ -138,7 +92,7 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   const bool caustics_change = std::any_of(in.dynamic_photons.begin(), in.dynamic_photons.end(),
                                            [](const Photon& photon) { return photon.kind == PathKind::caustic; });
   if (caustics_change) {
-    const std::vector<Photon> all = global_photons(in, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
+    const std::vector<Photon> all = whole_photons(maps, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
     const FootprintDensity footprints(in.whole, all, {options.neighbours, options.max_radius, 0}, kind_bit(PathKind::caustic), {});
     parallel_chunks(points.size(), 256, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -246,6 +247,47 @@ void use_indirect(Plan& plan, const std::string& method, const std::string& beca
     if (records) stage.because += "; " + because;
     if (method == "paths" || (records && method == "gather")) stage = {stage.name, false, because};
   }
+}
+
+namespace {
+
+/// States of light among what is asked for, by the segment that the first frame of each lies in.
+std::map<std::size_t, std::set<int>> states_by_segment(const Plan& plan) {
+  std::map<int, std::size_t> segment_of_frame;
+  for (std::size_t i = 0; i < plan.segments.size(); ++i)
+    for (const PlannedFrame& frame : plan.segments[i].frames) segment_of_frame.try_emplace(frame.frame, i);
+  std::map<std::size_t, std::set<int>> states;
+  for (const PlannedSegment& segment : plan.segments)
+    for (const PlannedFrame& frame : segment.frames)
+      if (frame.asked) states[segment_of_frame.at(frame.lit_frame)].insert(frame.lit_frame);
+  std::erase_if(states, [](const auto& entry) { return entry.second.size() < kFewestStates; });
+  return states;
+}
+
+}  // namespace
+
+UpdatableLight updatable_light(const Plan& plan) {
+  UpdatableLight light;
+  std::size_t most = 0;
+  for (const auto& [segment, states] : states_by_segment(plan)) {
+    ++light.segments;
+    light.states += states.size();
+    if (states.size() <= most) continue;
+    most = states.size();
+    light.frame = *std::next(states.begin(), std::ptrdiff_t(most / 2));
+  }
+  return light;
+}
+
+void use_moving(Plan& plan, const std::string& method, const std::string& because) {
+  if (plan.photon_kinds.empty()) return;
+  const auto states = states_by_segment(plan);
+  const bool records = method == "records" && plan.indirect == "records";
+  plan.moving = method == "anew" || states.empty() ? "anew" : records ? "records" : "light";
+  const bool light = plan.moving != "anew";
+  for (const auto& entry : states) plan.segments[entry.first].updated = light;
+  plan.stages.insert(plan.stages.end() - 1, {{"photon-trace --map dynamic", light, because},
+                                             {"irradcache-build records --update", plan.moving == "records", because}});
 }
 
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options) {

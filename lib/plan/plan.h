@@ -37,6 +37,7 @@ struct PlannedSegment {
   std::string materials;            ///< the same; if an animation changes materials, of all frames' hashes
   std::string standing;             ///< hash of what neither moves nor changes: geometry, materials, lights (standing_scene)
   std::string frozen;               ///< hash of what is frozen: emission table, bounds, origin
+  bool updated = false;             ///< light of its frames follows from that of what stands (Plan::moving)
   bool camera_moves = false;        ///< the camera differs between two of the frames asked for
   std::vector<MovingNode> moves;
   std::vector<PlannedFrame> frames; ///< all of the segment, in order; those beyond the animation after them
@@ -74,6 +75,9 @@ struct Plan {
   std::string photon_kinds;         ///< what photon-trace has to record: "caustic,indirect"; "" if no photons
   /// How indirect light is found: "records", "gather" (in the pixel) or "paths". The last two leave out stages.
   std::string indirect = "records";
+  /// What of each state of light follows from that of what stands: "anew" (nothing), "light" (photons and points) or "records" (they,
+  /// too).
+  std::string moving = "anew";
   std::vector<PlannedView> views;   ///< empty: photons are not aimed. make_plan leaves it so, it traces no rays
   std::vector<std::string> warnings;
 };
@@ -81,6 +85,19 @@ struct Plan {
 /// Leaves out what another way of finding indirect light does not need: records, or photons and points as well.
 /// `because`: the fact that decides. A plan whose scene has no indirect light stays as it is.
 void use_indirect(Plan& plan, const std::string& method, const std::string& because);
+
+/// Segments of whose light something stands while something moves: those with kFewestStates states of light or more among what is
+/// asked for.
+struct UpdatableLight {
+  std::size_t segments = 0, states = 0;   ///< such segments, and the states of light in them
+  int frame = 0;                          ///< the middle state of the segment that has most
+};
+inline constexpr std::size_t kFewestStates = 3;
+UpdatableLight updatable_light(const Plan& plan);
+
+/// Has the light of such segments follow from that of what stands, as far as `method` says (Plan::moving). `because`: the fact that
+/// decides.
+void use_moving(Plan& plan, const std::string& method, const std::string& because);
 
 /// Evaluates the segments that hold `frames` and compares their states by content: hashes decide, neither
 /// file times nor what the file calls an animation. A frame beyond the animation shows its nearest end and is

@@ -66,6 +66,23 @@ std::string escaped_for_make(const std::string& name) {
   return text;
 }
 
+/// Of segments whose light follows from that of what stands: stands_FFFF for each state of light, state_SSSS for the segment.
+std::string standing_variables(const Plan& plan, const std::string& folder, const std::set<int>& photon_frames) {
+  std::string text;
+  for (const PlannedSegment& segment : plan.segments) {
+    if (!segment.updated) continue;
+    const std::string first = frame_digits(segment.first);
+    std::string states = "static." + first + " materials." + first + " standing." + first + " frozen." + first;
+    for (const PlannedFrame& frame : segment.frames) {
+      const std::string digits = frame_digits(frame.frame);
+      states += " moving." + digits + " lights." + digits;
+      if (photon_frames.contains(frame.frame)) text += "stands_" + digits + " := " + first + "\n";
+    }
+    text += "state_" + first + " := $(addprefix " + folder + "/state/," + states + ")\n";
+  }
+  return text.empty() ? text : "\n# what stands while others move\n" + text;
+}
+
 }  // namespace
 
 std::string frame_digits(int frame) {
@@ -87,7 +104,8 @@ std::string plan_json(const Plan& plan, const std::string& scene_name, const std
                {"light_units", plan.time.light_units},
                {"frames", plan.frames},
                {"photon_kinds", plan.photon_kinds},
-               {"indirect", photons ? plan.indirect : "paths"}};
+               {"indirect", photons ? plan.indirect : "paths"},
+               {"moving", photons ? plan.moving : "anew"}};
   if (!plan.environment.empty()) json["environment"] = std::filesystem::path(plan.environment).filename().string();
   json["stages"] = Json::array();
   for (const Stage& stage : plan.stages)
@@ -119,6 +137,7 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   text += variable("plan_frames", plan.frames) + variable("plan_pictures", pictures);
   text += variable("plan_photons", photon_frames) + "plan_kinds := " + plan.photon_kinds + "\n";
   text += "plan_indirect := " + (photons ? plan.indirect : "paths") + "\n";
+  text += "plan_moving := " + (photons ? plan.moving : "anew") + "\n";
   text += std::string("plan_method := ") + (plan.walkthrough ? "walkthrough" : "frames") + "\n";
   for (const std::string& file : scene_files)  // the empty rule: a file that is gone asks for a new plan
     text += folder + "/plan.mk: " + escaped_for_make(file) + "\n" + escaped_for_make(file) + ":\n";
@@ -141,6 +160,7 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   }
   if (photons) text += "\n# photon maps, and the pictures they light\n";
   for (const int light : photon_frames) text += variable("views_" + frame_digits(light), lit.at(light));
+  text += standing_variables(plan, folder, photon_frames);
   if (!plan.views.empty()) text += "\n# where the photons of sun and sky are aimed\n";
   for (const PlannedView& view : plan.views)
     for (const int light : view.photon_frames)

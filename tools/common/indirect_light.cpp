@@ -1,24 +1,14 @@
 #include "tools/common/indirect_light.h"
 
+#include "lib/gather/whole_photons.h"
+#include "lib/scene/standing.h"
 #include "tools/common/localised_cache.h"
 
 namespace tempolux::tools {
 
 IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number) {
   const SceneFrame& frame = tracer.frame();
-  const bool alone = options.irradcache.empty() && options.points.empty();   // photons tell indirect light, too
-  if (!options.photons.empty()) {
-    tool.stats().phase("read photons");
-    const formats::PhotonMap map =
-        read_photons(tool, frame_name(options.photons, number), frame, alone ? LightNeeded::all : LightNeeded::caustic);
-    history_ = map.header.history;
-    tool.stats().phase("index photons", true);
-    const Vec3d origin{map.header.origin[0], map.header.origin[1], map.header.origin[2]};
-    PhotonLightOptions photon_light = options.photon_light;
-    photon_light.caustic_only = !alone;
-    photons_ = std::make_unique<PhotonLight>(tracer, map.photons, origin - frame.origin, photon_light);
-    known_.photons = photons_.get();
-  }
+  if (!options.photons.empty()) read_maps(tool, options, tracer, number);
   if (!options.points.empty()) {
     tool.stats().phase("read points");
     points_ = read_points(tool, frame_name(options.points, number), frame);
@@ -30,6 +20,36 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
     tool.stats().phase("read cache");
     read_cache(tool, frame_name(options.irradcache, number), frame, options.influence);
   }
+}
+
+void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number) {
+  const SceneFrame& frame = tracer.frame();
+  const bool alone = options.irradcache.empty() && options.points.empty();   // photons tell indirect light, too
+  const LightNeeded needed = alone ? LightNeeded::all : LightNeeded::caustic;
+  const auto shift = [&](const formats::PhotonMap& map) {
+    return Vec3d{map.header.origin[0], map.header.origin[1], map.header.origin[2]} - frame.origin;
+  };
+  tool.stats().phase("read photons");
+  formats::PhotonMap map;
+  Vec3d moved{};
+  const std::string name = frame_name(options.photons, number);
+  if (options.dynamic.empty()) {
+    map = read_photons(tool, name, frame, needed);
+    moved = shift(map);
+  } else {
+    map = read_photons(tool, name, standing_scene(frame), needed, "static");
+    const formats::PhotonMap dynamic = read_photons(tool, frame_name(options.dynamic, number), frame, needed, "dynamic");
+    map.photons = whole_photons({map.photons, dynamic.photons, shift(map), shift(dynamic)}, [&](Vec3, const formats::Photon& photon) {
+      return alone || photon.kind == formats::PathKind::caustic;
+    });
+    map.header.history += dynamic.header.history;
+  }
+  history_ = map.header.history;
+  tool.stats().phase("index photons", true);
+  PhotonLightOptions photon_light = options.photon_light;
+  photon_light.caustic_only = !alone;
+  photons_ = std::make_unique<PhotonLight>(tracer, map.photons, moved, photon_light);
+  known_.photons = photons_.get();
 }
 
 void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds) {

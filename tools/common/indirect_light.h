@@ -12,6 +12,7 @@ namespace tempolux::tools {
 
 struct IndirectLightOptions {
   std::string photons, irradcache, points;   ///< files, or patterns; "": none
+  std::string dynamic;                       ///< the same: photons is then the segment's static map
   PhotonLightOptions photon_light;
   InfluenceThresholds influence;             ///< of a localised cache
 };
@@ -26,6 +27,7 @@ class IndirectLight {
   const std::string& history() const { return history_; }
 
  private:
+  void read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
   void read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds);
 
   std::string history_;

@@ -10,7 +10,9 @@ constexpr ManualText kTexts[] = {
      "which fact, which frames share their light, and what has changed since the last time: make includes its "
      "plan.mk.\n"
      "\n"
-     "State files are rewritten only when their content differs, so that moving the camera traces no photon again.",
+     "State files are rewritten only when their content differs, so that moving the camera traces no photon again. Pilots of some "
+     "tenths of a second decide how indirect light is found (--indirect), and where something moves how far a frame's light follows "
+     "from that of what stands (--moving).",
      "plan/plan.mk: make variables (formats/plan/plan.md)\n"
      "plan/plan.json: the same for people and scripts\n"
      "plan/state/*: one hash for each concern and frame",
@@ -68,6 +70,8 @@ constexpr ManualText kTexts[] = {
      "the hemisphere takes its place, which ends at the points if there are any. Points alone will do, too.",
      "frame .exr: colour, depth, normals, ids (formats/frames/frames.md)",
      "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints -o 12.exr\n"
+     "# Caustic light where something moves: of what stands, and what movers change.\n"
+     "frame-render room.glb --frame 12 --irradcache 12.irradcache --photons s.photons --dynamic d.0012.photons -o 12.exr\n"
      "# From points alone: nothing to be placed for a camera, more noise.\n"
      "frame-render room.glb --frame 12 --size 640x360 --points 12.irradpoints -o 12.exr\n"
      "# A reference in two independent halves, so that its noise is known.\n"

@@ -205,6 +205,8 @@ class Pilots {
     const Cost cost = run(folder_, "photon-trace", words, output);
     estimate_.stages.push_back(
         scaled("photon-trace", double(counts_.lights.size()), pilot_of(cost, {"trace", "commit"}, paths), wanted));
+    estimate_.stages.back().work_cpu_s *= options_.moving_cost.light;
+    estimate_.stages.back().bytes *= options_.moving_cost.photon_bytes;
   }
   void points() {
     Words words = common(options_.points, counts_.light);
@@ -214,6 +216,7 @@ class Pilots {
     const Cost cost = run(folder_, "irradcache-build", words, output);
     estimate_.stages.push_back(scaled("irradcache-build points", double(counts_.lights.size()),
                                       pilot_of(cost, {"read photons", "points", "write"}, 1), 1));
+    estimate_.stages.back().work_cpu_s *= options_.moving_cost.light;
   }
   /// Records for pictures of `width` pixels, of one view or two.
   Cost place(int width, int height, bool both, const std::string& output) {
@@ -243,7 +246,7 @@ class Pilots {
     const double wanted = first + others;
     estimate_.stages.push_back({"irradcache-build records", double(counts_.lights.size()),
                                 std::max(0.0, large.cpu_s - large.phases({"records"})),
-                                costs.a * wanted + costs.b * pixels() * counts_.views,
+                                (costs.a * wanted + costs.b * pixels() * counts_.views) * options_.moving_cost.records,
                                 large.bytes * wanted / std::max(1.0, n2)});
   }
   Cost render(int width, int height, const std::string& output) {

@@ -6,12 +6,14 @@
 
 #include "lib/plan/estimate.h"
 #include "lib/plan/plan.h"
+#include "lib/render/choose_moving.h"
 
 namespace tempolux::tools {
 
 /// How the stages will be run: options as on their command lines, without scene, inputs, frame and output.
 struct RunOptions {
   std::string photons, points, cache, frames;
+  MovingCost moving_cost;                 ///< of a state of light; 1 where all is computed anew
   int width = 640, height = 360;
   int threads = 1;
   std::function<void(double)> progress;  ///< called with [0, 1]; may be empty

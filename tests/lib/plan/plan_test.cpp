@@ -229,6 +229,45 @@ TEST(Plan, NoLambertSurfaceNoPhotons) {
   EXPECT_NE(plan_makefile(plan, "plan", {}).find("plan_photons :=\n"), std::string::npos);
 }
 
+TEST(Plan, LightFollowsFromWhatStandsWhereASegmentHasStatesEnough) {
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 1, 2, 3, 4, 5});
+  // Segments of four frames: 0 to 3 have four states, 4 and 5 two, and from 5 on the animation is over.
+  Plan plan = plan_of(scene, {0, 1, 2, 3, 4, 5}, 4);
+  const UpdatableLight light = updatable_light(plan);
+  EXPECT_EQ(light.segments, 1u);
+  EXPECT_EQ(light.states, 4u);
+  EXPECT_EQ(light.frame, 2);
+  use_moving(plan, "records", "a test");
+  EXPECT_EQ(plan.moving, "records");
+  EXPECT_TRUE(plan.segments[0].updated);
+  EXPECT_FALSE(plan.segments[1].updated);
+  const std::string text = plan_makefile(plan, "plan", {});
+  EXPECT_NE(text.find("plan_moving := records\n"), std::string::npos);
+  EXPECT_NE(text.find("stands_0003 := 0000\n"), std::string::npos);
+  EXPECT_EQ(text.find("stands_0004"), std::string::npos);
+  EXPECT_NE(text.find("state_0000 := $(addprefix plan/state/,static.0000 materials.0000 standing.0000 frozen.0000 moving.0000 lights.0000"),
+            std::string::npos);
+  EXPECT_NE(plan_json(plan, "room.glb", "", "").find("\"moving\": \"records\""), std::string::npos);
+}
+
+TEST(Plan, LightIsComputedAnewWhereNothingWouldBeSaved) {
+  Scene scene = still_room();
+  slide(scene, kCamera, {0, 1, 2, 3});
+  Plan still = plan_of(scene, {0, 1, 2, 3});
+  EXPECT_EQ(updatable_light(still).segments, 0u);
+  use_moving(still, "records", "a test");
+  EXPECT_EQ(still.moving, "anew");
+  slide(scene, kBox, {0, 1, 2, 3});
+  Plan moving = plan_of(scene, {0, 1, 2, 3});
+  use_indirect(moving, "gather", "a test");
+  use_moving(moving, "records", "a test");
+  EXPECT_EQ(moving.moving, "light") << "there are no records";
+  Plan asked = plan_of(scene, {0, 1, 2, 3});
+  use_moving(asked, "anew", "a test");
+  EXPECT_EQ(plan_makefile(asked, "plan", {}).find("stands_"), std::string::npos);
+}
+
 TEST(Plan, ASceneWithoutLightIsRefusedWithTheExportersBox) {
   Scene scene = still_room();
   scene.nodes[kLamp].light = -1;
@@ -251,6 +290,7 @@ TEST(PlanMakefile, SaysWhichPhotonsHoldForAFrameAndWhatTheyDependOn) {
             "plan_photons := 0001\n"
             "plan_kinds := indirect\n"
             "plan_indirect := records\n"
+            "plan_moving := anew\n"
             "plan_method := frames\n"
             "out/plan/plan.mk: room.glb\n"
             "room.glb:\n"

@@ -1,0 +1,127 @@
+#include "lib/render/choose_moving.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "lib/core/parallel.h"
+#include "lib/density/photon_index.h"
+#include "lib/gather/localised.h"
+#include "lib/photon/dynamic_map.h"
+#include "lib/render/places_seen.h"
+#include "lib/scene/standing.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kPlaces = 2048;
+constexpr std::uint64_t kPaths = 1 << 16;
+/// Static photons of a disc in which influence is looked for: at the threshold it holds .06 x 200 = 12 dynamic ones.
+constexpr int kNeighbours = 200;
+
+constexpr double kLeastLight = 0.2, kLightByTouched = 3;   ///< of a state's photons and points
+constexpr double kLeastRecords = 0.1;                      ///< of a state's records
+
+std::string per_cent(double share) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.0f %%", 100 * share);
+  return text;
+}
+
+float largest(Rgb flux) { return std::max({std::abs(flux.r), std::abs(flux.g), std::abs(flux.b)}); }
+
+/// Sum of the largest channel of |flux|, W.
+double sum(const PhotonIndex& index, const NeighbourList& found) {
+  double flux = 0;
+  for (const std::uint32_t photon : found.photons()) flux += double(largest(index.flux(photon)));
+  return flux;
+}
+
+struct PilotMaps {
+  std::vector<formats::Photon> fixed, dynamic;
+  std::size_t touched = 0;
+};
+
+PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& standing, const EmissionTable& emission, std::uint64_t seed) {
+  PhotonOptions options;
+  options.seed = seed;
+  options.photon_count = kPaths;
+  options.group_count = 1;
+  options.set_kinds("indirect");
+  const Tracer whole_tracer(frame), fixed_tracer(standing);
+  const Lights whole_lights(frame, emission), fixed_lights(standing, emission);
+  const PhotonTracer whole(whole_tracer, whole_lights, options);
+  PhotonTracer fixed(fixed_tracer, fixed_lights, options);
+  const MoverWatch watch({moving_boxes(frame)});
+  fixed.watch(&watch);
+  struct Piece {
+    PhotonBatch batch, change;
+  };
+  std::vector<Piece> pieces(fixed.batch_count());
+  parallel_chunks(pieces.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t b = first; b < last; ++b) {
+      Piece& piece = pieces[b];
+      piece.batch = fixed.trace(b);
+      std::vector<std::uint64_t> paths;
+      for (const formats::TouchedPath& path : piece.batch.touched) paths.push_back(path.path);
+      if (!paths.empty()) piece.change = difference_of(fixed, whole, paths);
+    }
+  });
+  PilotMaps maps;
+  for (const Piece& piece : pieces) {
+    maps.touched += piece.batch.touched.size();
+    maps.fixed.insert(maps.fixed.end(), piece.batch.block.photons.begin(), piece.batch.block.photons.end());
+    maps.dynamic.insert(maps.dynamic.end(), piece.change.block.photons.begin(), piece.change.block.photons.end());
+  }
+  return maps;
+}
+
+}  // namespace
+
+MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view, std::uint64_t seed) {
+  const SceneFrame standing = standing_scene(frame);
+  const PilotMaps maps = trace_maps(frame, standing, emission, seed);
+  const PhotonIndex fixed(maps.fixed, kind_bit(formats::PathKind::indirect), {}), dynamic(maps.dynamic, kind_bit(formats::PathKind::indirect), {});
+  const Tracer tracer(frame);
+  const Lights lights(frame, emission);
+  const SeenPlaces seen = places_seen({tracer, lights}, view, kPlaces, seed);
+  std::vector<std::uint8_t> gathered(kPlaces, 0);
+  parallel_chunks(kPlaces, 64, [&](std::size_t first, std::size_t last) {
+    NeighbourList found;
+    for (std::size_t i = first; i < last; ++i) {
+      const SeenPlace& place = seen.places[i];
+      if (!place.exists()) continue;
+      gathered[i] = place.surface.surface >= frame.static_count;   // what moves comes last
+      PhotonQuery query{place.surface.position, place.normal, INFINITY, 0.1f, 10, kAllKinds};
+      fixed.find_nearest(query, kNeighbours, found);
+      if (gathered[i] || found.count() == 0) continue;
+      query.max_radius = std::sqrt(found.distance2()[found.farthest()]);
+      const double light = sum(fixed, found);
+      dynamic.find_within(query, found);
+      gathered[i] = sum(dynamic, found) > double(InfluenceThresholds{}.low) * light;
+    }
+  });
+  std::size_t places = 0, near = 0;
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    places += seen.places[i].exists();
+    near += gathered[i];
+  }
+  return {double(maps.touched) / double(kPaths), places > 0 ? double(near) / double(places) : 0};
+}
+
+MovingChoice choose_moving(const MovingPilot& pilot, std::size_t segments, std::size_t states) {
+  const double once = double(segments) / double(std::max<std::size_t>(states, 1));
+  const MovingCost cost{once + kLeastLight + kLightByTouched * pilot.touched_share, once + kLeastRecords + pilot.gathered_share,
+                        once + 2 * pilot.touched_share};
+  const std::string touched = "what moves touches " + per_cent(pilot.touched_share) + " of the paths of light";
+  const std::string gathered = "matters at " + per_cent(pilot.gathered_share) + " of what is seen";
+  const std::string frames = std::to_string(states) + " states of light in " + std::to_string(segments) +
+                             (segments == 1 ? " segment" : " segments");
+  if (!(cost.light < 1)) return {MovingMethod::anew, {}, touched + "; " + frames};
+  const bool records = cost.records < 1;
+  return {records ? MovingMethod::records : MovingMethod::light, {cost.light, records ? cost.records : 1, cost.photon_bytes},
+          touched + " and " + gathered + "; " + frames};
+}
+
+}  // namespace tempolux
