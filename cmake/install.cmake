@@ -25,5 +25,8 @@ install(TARGETS tempolux-decode RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/temp
 if(TARGET tempolux-oiio)
   install(TARGETS tempolux-oiio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
 endif()
+if(TARGET tempolux-vdb)
+  install(TARGETS tempolux-vdb RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
+endif()
 install(DIRECTORY formats/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/formats FILES_MATCHING PATTERN "*.md")
 install(FILES LICENSE README.md Makefile.example DESTINATION ${CMAKE_INSTALL_DOCDIR})

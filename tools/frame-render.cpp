@@ -224,7 +224,7 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--max-spp", options.frame.max_samples, "never more samples than this for --target-error")
       ->capture_default_str()->check(tools::number_between(1, 1 << 24));
   app.add_option("--channels", options.channels,
-                 "RGBA, layers (or emission, specular, direct, caustic, indirect), Z, N, P, id, albedo, motion, "
+                 "RGBA, layers (or emission, specular, direct, caustic, indirect, volume), Z, N, P, id, albedo, motion, "
                  "coverage, variance, diffuse.variance, samples")
       ->delimiter(',')->type_name("NAMES")->default_str("RGBA,Z,N,id");
   app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")

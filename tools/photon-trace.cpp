@@ -19,6 +19,7 @@
 #include "lib/photon/dynamic_map.h"
 #include "lib/photon/photon_map.h"
 #include "lib/scene/standing.h"
+#include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
 
@@ -29,6 +30,7 @@ namespace {
 struct Options {
   std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto", map = "global",
               importance, paths, static_paths;
+  float volume_share = PhotonOptions{}.volume_share;
 };
 
 /// 0 stands for automatic.
@@ -67,6 +69,7 @@ void count(tools::Tool& tool, const PhotonMapResult& result, std::uint64_t refus
   tool.stats().count("paths", double(result.path_count));
   tool.stats().count("rays", double(result.ray_count));
   tool.stats().count("specular_rays", double(result.specular_ray_count));
+  if (result.medium_steps > 0) tool.stats().count("medium_steps", double(result.medium_steps));
   tool.stats().count("bytes_written", double(result.byte_count));
   tool.stats().count("refused_rays", double(refused));
 }
@@ -101,6 +104,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   photon_options.photon_count = tools::parse_count(options.photons);
   photon_options.group_count = group_count(options.groups);
   photon_options.set_kinds(options.kinds);
+  photon_options.volume_share = options.volume_share;
   const formats::PhotonHeader header = header_of(tool, frame, emission, frame_number);
 
   tool.stats().phase("trace", true);
@@ -264,7 +268,7 @@ void check(const CLI::App& app, const Options& options) {
   if (options.map != "dynamic") return;
   if (options.static_paths.empty())
     throw InputError("--map dynamic needs --static: the .paths file that --map static --paths has written");
-  for (const char* name : {"--photons", "--kinds", "--groups", "--seed"})
+  for (const char* name : {"--photons", "--kinds", "--groups", "--seed", "--volume-share"})
     if (app.get_option(name)->count() > 0) throw InputError(std::string(name) + ": of --map dynamic the static map has it");
 }
 
@@ -279,7 +283,7 @@ int main(int argc, char** argv) {
   app.add_option("--photons", options.photons,
                  "photon paths to start per frame (10k, 1M, 1G), rounded up to a multiple of the groups")
       ->capture_default_str();
-  app.add_option("--kinds", options.kinds, "kinds of light to record: direct,caustic,indirect")->capture_default_str();
+  app.add_option("--kinds", options.kinds, "kinds of light to record: direct,caustic,indirect, and volume, which is recorded where there is a medium")->capture_default_str();
   app.add_option("--groups", options.groups, "photon groups N_g (photon i is of group i mod N_g), or auto")
       ->capture_default_str();
   app.add_option("--importance", options.importance,
@@ -294,6 +298,9 @@ int main(int argc, char** argv) {
   tool.output_option(options.paths, "of --map static: also write which paths movers can touch, .paths", "--paths");
   app.add_option("--static", options.static_paths, "of --map dynamic: the .paths file of the segment's static map")
       ->type_name("FILE");
+  app.add_option("--volume-share", options.volume_share, "share of the tentative collisions in media that are recorded")
+      ->capture_default_str()
+      ->check(tools::number_between(0.001, 1));
   tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_frames);
 
   return tool.run([&] {
@@ -303,6 +310,8 @@ int main(int argc, char** argv) {
       throw InputError("--output: several frames need a pattern, for example f.####.photons");
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light);
+    if (options.map != "global" && input.has_media())
+      throw InputError(options.scene + ": has media, which all light meets: --map " + options.map + " cannot be told from the rest; trace the global map");
     StandingTree standing;
     std::vector<formats::ViewSphere> view;
     if (!options.importance.empty()) {

@@ -68,9 +68,9 @@ void remove_left_overs(tools::Tool& tool, const Options& options) {
 }
 
 /// The plan as files; of those whose content would be the same only plan.mk is written.
-void write_plan(tools::Tool& tool, const Plan& plan, const Scene& scene, const Options& options,
+void write_plan(tools::Tool& tool, const Plan& plan, const std::vector<std::string>& files, const Options& options,
                 tools::Output& makefile, const std::string& estimate) {
-  const std::string rules = plan_makefile(plan, options.folder, scene.files);
+  const std::string rules = plan_makefile(plan, options.folder, files);
   std::size_t changed = 0;
   const std::vector<PlanFile> states = state_files(plan);
   for (const PlanFile& state : states) changed += write_if_changed(options.folder + "/" + state.name, state.content);
@@ -102,6 +102,7 @@ void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options
   if (plan.photon_kinds.empty()) return;
   if (light.segments == 0)
     return use_moving(plan, "anew", "no segment has " + std::to_string(kFewestStates) + " states of light");
+  if (plan.media && options.moving == "auto") return use_moving(plan, "anew", "there are media, which all light meets");
   if (options.moving == "anew") return use_moving(plan, "anew", "--moving anew");
   tool.stats().phase("pilot of what moves", true);
   const SceneFrame frame = input.at(light.frame);
@@ -129,7 +130,8 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
 
   tool.stats().phase("plan");
   const int camera = scene.camera_node(tool.common().camera);
-  Plan plan = make_plan(scene, tool.common().frames, camera, input.time());
+  const MediaHash media = [&](int frame) { return input.media_hash(frame); };
+  Plan plan = make_plan(scene, tool.common().frames, camera, input.time(), input.has_media() ? media : MediaHash{});
   decide_indirect(tool, input, options, camera, plan);
   decide_moving(tool, input, options, camera, plan);
   for (const std::string& warning : plan.warnings) tool.warn(options.scene + ": " + warning);
@@ -148,7 +150,9 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
     std::cout << (options.json ? estimate_as_json : estimate_text(estimate, processors, options.jobs, threads));
   }
   tool.stats().phase("write");
-  if (makefile) write_plan(tool, plan, scene, options, *makefile, estimate_as_json);
+  std::vector<std::string> files = scene.files;
+  files.insert(files.end(), input.media_files().begin(), input.media_files().end());
+  if (makefile) write_plan(tool, plan, files, options, *makefile, estimate_as_json);
   for (const Stage& stage : plan.stages)
     tool.say(stage.name + (stage.needed ? ": needed: " : ": not needed: ") + stage.because);
 }

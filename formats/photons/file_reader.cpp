@@ -25,8 +25,8 @@ bool FileReader::read_block(PhotonBlock& block) {
   for (;;) {
     const std::uint64_t start = bytes.offset();
     const std::string mark = in_.read_mark();
-    if (mark == kLedgerMark && !has_ledger_) {
-      read_ledger();
+    if (mark == (has_tentative(header_) ? kDatedLedgerMark : kLedgerMark) && !has_ledger_) {
+      read_ledger(mark);
       continue;
     }
     if (mark == kEndMark) {
@@ -76,27 +76,32 @@ void FileReader::check_body(const PhotonBlock& block, std::uint64_t start) const
                      "correct the program that wrote it");
 }
 
-void FileReader::read_ledger() {
+void FileReader::read_ledger(std::string_view mark) {
+  const bool dated = mark == kDatedLedgerMark;
+  const std::size_t size = dated ? kDatedLedgerEntrySize : kLedgerEntrySize;
   std::uint32_t count = 0;
-  in_.read_head(kLedgerMark, {&count, 1}, "the ledger");
+  in_.read_head(mark, {&count, 1}, "the ledger");
   const std::uint64_t start = in_.body_offset();
   const std::size_t expected = is_overlay() ? groups_.size() : header_.group_count;
   if (count != expected)
     in_.bytes().fail(start - 8,
                      "ledger of " + std::to_string(count) + " groups instead of " + std::to_string(expected));
-  in_.bytes().expect(std::uint64_t(count) * kLedgerEntrySize, "the ledger");
-  std::array<unsigned char, kLedgerEntrySize> entry{};
+  in_.bytes().expect(std::uint64_t(count) * size, "the ledger");
+  std::array<unsigned char, kDatedLedgerEntrySize> entry{};
   for (std::size_t i = 0; i < count; ++i) {
-    in_.read_body(entry.data(), entry.size(), "the ledger");
+    in_.read_body(entry.data(), size, "the ledger");
     GroupFlux& group = ledger_.emplace_back();
     group.group = get<std::uint32_t>(entry.data());
     std::memcpy(group.emitted.data(), &entry[4], 24);
     std::memcpy(group.escaped.data(), &entry[28], 24);
     std::memcpy(group.absorbed.data(), &entry[52], 24);
+    if (!dated) continue;
+    group.frame = get<std::int32_t>(&entry[76]);
+    group.paths = get<std::uint64_t>(&entry[80]);
   }
   in_.end_block("the ledger");
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t at = start + i * kLedgerEntrySize;
+    const std::uint64_t at = start + i * size;
     if (ledger_[i].group != (is_overlay() ? groups_[i] : i))
       in_.bytes().fail(at, "the ledger's groups are not those of the file");
     check_flux(ledger_[i].emitted, at + 4, "emitted flux");
@@ -123,6 +128,7 @@ void FileReader::read_end() {
   check_flux(totals_.escaped_flux, start + 60, "escaped flux");
   check_flux(totals_.absorbed_flux, start + 84, "absorbed flux");
   if (is_overlay() && !has_ledger_) in_.bytes().fail(start, "an overlay without ledger", "make it again");
+  if (has_tentative(header_) && !has_ledger_) in_.bytes().fail(start, "tentative photons without ledger", "make it again");
   if (has_ledger_) {
     PhotonTotals sums = totals_;
     add_up(ledger_, sums);

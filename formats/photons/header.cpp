@@ -6,7 +6,7 @@
 namespace tempolux::formats::photons {
 namespace {
 
-constexpr std::array<std::string_view, 4> kKindNames{"direct", "caustic", "indirect", "volume"};
+constexpr std::array<std::string_view, kPathKinds> kKindNames{"direct", "caustic", "indirect", "volume", "tentative"};
 constexpr std::array<std::string_view, 4> kColumnsNames{"none", "direction", "albedo", "direction,albedo"};
 
 /// Bit set of the kinds in a list "direct,caustic"; 0 if it is not one.
@@ -30,12 +30,17 @@ bool is_base_name(std::string_view text) {
   return !text.empty() && text != "." && text != ".." && text.find('/') == text.npos && is_printable(text);
 }
 
+constexpr std::uint32_t kTentative = 1u << int(PathKind::tentative);
+
 /// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
 std::string_view fault_of(const PhotonHeader& h) {
   if (h.map != "global" && h.map != "static" && h.map != "dynamic")
     return "map is not global, static or dynamic";
-  if (parse_kinds(h.kinds) == 0) return "kinds is not a list of direct, caustic, indirect, volume";
+  if (parse_kinds(h.kinds) == 0) return "kinds is not a list of direct, caustic, indirect, volume, tentative";
   if (!is_part(h.part)) return "part is not low or high";
+  if ((parse_kinds(h.kinds) & kTentative) != 0 && h.majorants.empty()) return "kinds has tentative, but majorants is missing";
+  if ((parse_kinds(h.kinds) & kTentative) == 0 && !h.majorants.empty()) return "majorants, but kinds has no tentative";
+  if (!h.majorants.empty() && !is_digest(h.majorants)) return "majorants is not 32 hexadecimal digits";
   if (h.columns >= kColumnsNames.size()) return "columns are not known";
   if (h.group_count < 1 || h.group_count > kMaxGroupCount) return "groups is not in 1 .. 16777216";
   if (const std::string_view fault = fault_of_common(h.origin, h.identity); !fault.empty()) return fault;
@@ -46,7 +51,7 @@ std::string_view fault_of(const PhotonHeader& h) {
   return "";
 }
 
-constexpr std::uint16_t kEmissionSince = 1, kPartSince = 2;  ///< minor versions
+constexpr std::uint16_t kEmissionSince = 1, kPartSince = 2, kTentativeSince = 3;  ///< minor versions
 
 /// Takes one line's value into the header.
 Line take_line(std::string_view key, std::string_view value, std::uint16_t minor, PhotonHeader& h) {
@@ -62,6 +67,7 @@ Line take_line(std::string_view key, std::string_view value, std::uint16_t minor
   if (key == "groups") return result(parse_numbers(value, &h.group_count, 1));
   if (key == "emitted") return result(parse_numbers(value, &h.emitted_count, 1));
   if (key == "emission" && minor >= kEmissionSince) return h.identity.emission = value, result(!value.empty());
+  if (key == "majorants" && minor >= kTentativeSince) return h.majorants = value, result(!value.empty());
   if (key == "base") return h.base_name = value, result(!value.empty());
   if (key == "base-digest") return h.base_digest = value, result(!value.empty());
   return take_common_line(key, value, common_keys(h));
@@ -69,9 +75,11 @@ Line take_line(std::string_view key, std::string_view value, std::uint16_t minor
 
 }  // namespace
 
+bool has_tentative(const PhotonHeader& h) { return (parse_kinds(h.kinds) & kTentative) != 0; }
+
 Format format_of(const PhotonHeader& h) {
   Format format = kFormat;
-  format.minor = !h.part.empty() ? kPartSince : !h.identity.emission.empty() ? kEmissionSince : 0;
+  format.minor = has_tentative(h) ? kTentativeSince : !h.part.empty() ? kPartSince : !h.identity.emission.empty() ? kEmissionSince : 0;
   return format;
 }
 
@@ -87,6 +95,7 @@ std::string header_text(const PhotonHeader& h) {
   text.line("emitted", text_of(h.emitted_count));
   text.identity(h.identity);
   if (!h.identity.emission.empty()) text.line("emission", h.identity.emission);
+  if (!h.majorants.empty()) text.line("majorants", h.majorants);
   if (!h.base_name.empty()) {
     text.line("base", h.base_name);
     text.line("base-digest", h.base_digest);
@@ -105,6 +114,7 @@ std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_
   if (error) return error;
   if (const std::string_view fault = fault_of(h); !fault.empty())
     return HeaderError{0, "header: " + std::string(fault)};
+  if (minor < kTentativeSince && has_tentative(h)) return HeaderError{0, "header: kinds has tentative, which is since version 1.3"};
   return std::nullopt;
 }
 

@@ -13,10 +13,10 @@
 
 namespace tempolux::formats::photons {
 
-inline constexpr Format kFormat{{"\x89TPHOT\r\n", 8}, ".photons", "photon-trace", 1, 2};
+inline constexpr Format kFormat{{"\x89TPHOT\r\n", 8}, ".photons", "photon-trace", 1, 3};
 inline constexpr std::uint32_t kMaxGroupCount = 1u << 24;
-inline constexpr std::string_view kBlockMark = "PHOT", kLedgerMark = "LEDG";
-inline constexpr std::size_t kBlockHeadSize = 16, kLedgerEntrySize = 76, kEndBodySize = 104;
+inline constexpr std::string_view kBlockMark = "PHOT", kLedgerMark = "LEDG", kDatedLedgerMark = "LEDU";
+inline constexpr std::size_t kBlockHeadSize = 16, kLedgerEntrySize = 76, kDatedLedgerEntrySize = 88, kEndBodySize = 104;
 
 /// Bytes of one photon in a block with these columns.
 constexpr std::size_t photon_size(std::uint32_t columns) {
@@ -25,6 +25,8 @@ constexpr std::size_t photon_size(std::uint32_t columns) {
 
 /// The version a file with this header has: the oldest that knows its keys.
 Format format_of(const PhotonHeader& header);
+/// Has the map tentative photons? Then it is of version 1.3 and has a dated ledger.
+bool has_tentative(const PhotonHeader& header);
 
 /// The text of a header. std::invalid_argument if a value is out of range.
 std::string header_text(const PhotonHeader& header);
@@ -35,7 +37,7 @@ std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_
 
 /// What records of this file may hold.
 struct RecordRules {
-  std::uint32_t kinds = 15;  ///< bit k: PathKind k
+  std::uint32_t kinds = 31;  ///< bit k: PathKind k
   bool signed_flux = true;
 };
 /// The rules of a good header.

@@ -22,12 +22,13 @@
 namespace tempolux::formats {
 
 /// How light reached the photon, in Heckbert's notation (photons.md).
-enum class PathKind : std::uint8_t { direct = 0, caustic = 1, indirect = 2, volume = 3 };
+enum class PathKind : std::uint8_t { direct = 0, caustic = 1, indirect = 2, volume = 3, tentative = 4 };
+inline constexpr std::size_t kPathKinds = 5;
 
 /// One photon: a packet of flux that arrived at a point. 32 bytes, in memory as on disk.
 struct Photon {
   std::array<float, 3> position{};   ///< m; world space minus the header's origin
-  std::array<float, 3> flux{};       ///< W, linear Rec. 709; already divided by the number of emitted paths
+  std::array<float, 3> flux{};       ///< W, linear Rec. 709; already divided by the number of emitted paths. Tentative: W m
   std::array<std::uint16_t, 2> normal{};  ///< octahedral: surface normal on the side the light arrived at
   std::uint16_t object = 0xffff;     ///< id.object; 0xffff in a medium or not known
   PathKind kind = PathKind::direct;
@@ -56,6 +57,7 @@ struct PhotonHeader {
   std::string part;  ///< "low" or "high": holds that part of the light alone (photonmap-split); "": all of it
   /// Of an overlay: the file it changes, and that file's digest. Groups not in this file come from the base.
   std::string base_name, base_digest;
+  std::string majorants;                      ///< of tentative photons: hash of the majorants they were drawn from
 };
 
 /// Photons of one group. Blocks of a group follow each other; groups never descend.
@@ -71,6 +73,8 @@ struct PhotonBlock {
 struct GroupFlux {
   std::uint32_t group = 0;
   std::array<double, 3> emitted{}, escaped{}, absorbed{};
+  std::int32_t frame = 0;                    ///< at which it was traced; only in files of version 1.3 with tentative photons
+  std::uint64_t paths = 0;                   ///< that it started; likewise
 
   bool operator==(const GroupFlux&) const = default;
 };

@@ -20,7 +20,7 @@ std::string_view fault_of(const Photon& photon, const RecordRules& rules) {
   }
   if (photon.normal[0] == 0xffff || photon.normal[1] == 0xffff) return "normal is above 65534";
   const auto kind = static_cast<unsigned>(photon.kind);
-  if (kind > 3) return "kind is not known";
+  if (kind >= kPathKinds) return "kind is not known";
   if (!((rules.kinds >> kind) & 1)) return "kind is not one of those the header names";
   return "";
 }
@@ -37,7 +37,7 @@ bool any_bad(std::span<const Photon> photons, const RecordRules& rules) {
   const __m256i normal = _mm256_setr_epi32(0, 0, 0, 0, 0, 0, -1, 0);
   __m256i bad = _mm256_setzero_si256();
   std::uint64_t bad_kind = 0;
-  const std::uint64_t refused = ~std::uint64_t(rules.kinds & 15);
+  const std::uint64_t refused = ~std::uint64_t(rules.kinds & 31);
   for (const Photon& photon : photons) {
     const __m256i words = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(&photon));
     bad = _mm256_or_si256(bad, _mm256_cmpeq_epi32(_mm256_and_si256(words, mask), infinite));

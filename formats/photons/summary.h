@@ -17,7 +17,7 @@ struct PhotonShare {
 
 struct PhotonSummary {
   PhotonShare all;
-  std::array<PhotonShare, 4> by_kind;  ///< by PathKind
+  std::array<PhotonShare, kPathKinds> by_kind;  ///< by PathKind
   std::map<std::uint16_t, PhotonShare> by_object;
   std::array<double, 3> bounds_min{}, bounds_max{};  ///< m, world space; min > max if there are no photons
   std::array<double, 3> mean_flux{};                 ///< W per photon and channel; 0 if there are no photons

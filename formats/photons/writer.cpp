@@ -102,14 +102,18 @@ void PhotonWriter::State::check_totals(const PhotonTotals& totals) const {
 }
 
 void PhotonWriter::State::write_ledger(std::span<const GroupFlux> ledger) {
+  const bool dated = has_tentative(header);
   std::string body;
   for (const GroupFlux& group : ledger) {
     put(body, group.group);
     put_flux(body, group.emitted);
     put_flux(body, group.escaped);
     put_flux(body, group.absorbed);
+    if (!dated) continue;
+    put(body, group.frame);
+    put(body, group.paths);
   }
-  out.write_block(kLedgerMark, {std::uint32_t(ledger.size())}, body);
+  out.write_block(dated ? kDatedLedgerMark : kLedgerMark, {std::uint32_t(ledger.size())}, body);
 }
 
 PhotonWriter::PhotonWriter(std::function<void(const void*, std::size_t)> sink, const PhotonHeader& header)
@@ -144,7 +148,7 @@ PhotonTotals PhotonWriter::finish(const PhotonTotals& given, std::span<const Gro
   PhotonTotals totals = given;
   totals.photon_count = s.photon_count;
   totals.stored_flux = s.stored_flux.rounded();
-  const bool has_ledger = !ledger.empty() || s.is_overlay();
+  const bool has_ledger = !ledger.empty() || s.is_overlay() || has_tentative(s.header);
   if (has_ledger) {
     s.check_ledger(ledger);
     for (const GroupFlux& group : ledger)

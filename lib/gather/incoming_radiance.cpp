@@ -5,6 +5,7 @@
 
 #include "lib/core/frame.h"
 #include "lib/core/sampling.h"
+#include "lib/gather/medium_event.h"
 #include "lib/material/inside.h"
 #include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
@@ -15,6 +16,7 @@ namespace {
 /// Events followed by one ray; roulette ends all but 4e-12 of them before, clear or not.
 constexpr int kDeepest = 512;
 constexpr float kLargestSurvival = 0.95f;
+constexpr std::uint64_t kMediaNumbers = std::uint64_t(1) << 32;   ///< the random numbers of media, apart from those of any depth
 constexpr std::size_t kAtOnce = 32;  ///< rays whose answers are fetched together
 
 }  // namespace
@@ -72,10 +74,12 @@ inline void IncomingRadiance::meet(Vec3 wo, float distance, Met& met) const {
   met.distance = distance;
 }
 
-/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything. alike: as
-/// Tracer::intersect.
-template <class Take>
-void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take) const {
+/// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything. Of those that a
+/// medium scatters before: take_medium(i, collision, distance), by the numbers of key(i). alike: as Tracer::intersect.
+template <class Take, class Key, class TakeMedium>
+void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key,
+                              const TakeMedium& take_medium) const {
+  const Media* const media = tracer_.frame().media.get();
   std::array<Hit, kAtOnce> hits;
   std::array<Met, kAtOnce> met;
   std::array<PointLookup::Question, kAtOnce> questions;
@@ -85,8 +89,15 @@ void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCount
     tracer_.intersect(rays.subspan(first, count), std::span(hits).first(count), alike);
     for (std::size_t i = 0; i < count; ++i) {
       met[i].bsdf = nullptr;
-      if (hits[i].surface == kNone) continue;
       const Ray& ray = rays[first + i];
+      if (media) [[unlikely]] {
+        MediumPoint collision;
+        if (collides(*media, ray, hits[i].surface == kNone ? INFINITY : hits[i].t, PathRandom(key(first + i), kMediaNumbers), 0, collision)) {
+          take_medium(first + i, collision, length(collision.position - ray.origin));
+          continue;
+        }
+      }
+      if (hits[i].surface == kNone) continue;
       tracer_.surface_points(std::span(hits).subspan(i, 1), &met[i].hit);
       meet(-ray.direction, length(met[i].hit.position - ray.origin), met[i]);
       if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(met[i].hit.position, met[i].geometric);
@@ -112,6 +123,9 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
   follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
     distance[i] = met.distance;
     radiance[i] = reflected(met, point, {{}, keys[i], Rgb(1.0f), i}, 0, to);
+  }, [&](std::size_t i) { return keys[i]; }, [&](std::size_t i, const MediumPoint& collision, float way) {
+    distance[i] = way;
+    radiance[i] = scattered_in_media(collision, {{}, keys[i], Rgb(1.0f), i}, to);
   });
   for (int depth = 1; !next.empty(); ++depth) {
     std::swap(now, next);
@@ -121,6 +135,9 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
     follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
       const Further from = now[i];
       radiance[from.of] += from.weight * reflected(met, point, from, depth, to);
+    }, [&](std::size_t i) { return now[i].key; }, [&](std::size_t i, const MediumPoint& collision, float) {
+      const Further from = now[i];
+      radiance[from.of] += from.weight * scattered_in_media(collision, from, to);
     });
   }
 }
@@ -189,7 +206,17 @@ Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, f
                                        const Gathered& to, const MaterialValues* inside) const {
   Hit hit;
   ++to.counts.rays;
-  if (!tracer_.intersect(spawn_ray(start, travel), hit))
+  const Ray ray = spawn_ray(start, travel);
+  const bool meets = tracer_.intersect(ray, hit);
+  if (const Media* const media = tracer_.frame().media.get()) [[unlikely]] {
+    MediumPoint collision;
+    if (collides(*media, ray, meets ? hit.t : INFINITY, PathRandom(from.key, kMediaNumbers), 0, collision)) {
+      const Rgb left = inside ? transmittance(*inside, length(collision.position - start.position)) : Rgb(1.0f);
+      from.weight *= left;
+      return left * scattered_in_media(collision, from, to);
+    }
+  }
+  if (!meets)
     return from.sees_lamps && lights_.has_environment() ? lights_.environment(travel) : Rgb(0.0f);
   Met met;
   met.hit = tracer_.surface_point(hit);
@@ -200,6 +227,24 @@ Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, f
   const Rgb emitted = from.sees_lamps ? lights_.emitted(met.hit, met.wo, 0) : Rgb(0.0f);
   const PointLookup::Light* point = met.bsdf->has_diffuse() ? points_.find(met.hit.position, met.geometric) : nullptr;
   return left * (emitted + reflected(met, point, from, depth, to));
+}
+
+/// Light of a lamp that a medium sends back along a ray from its collision; to.further receives the ray that goes on, which counts
+/// lamps it sees by way of events S: no point tells of them here.
+Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const {
+  if (RadianceSource* const source = to.source_of(from)) source->partial = source->mover = true;
+  const PathRandom random(from.key, kMediaNumbers + 1);
+  Rgb light{0.0f};
+  if (!lights_.empty())
+    light = at.albedo * tempolux::sampled_light(tracer_, lights_, at, random.get2(1, Purpose::light_point), false,
+                                                {random, 1, way_shadow_of_medium}, to.counts.shadow_rays);
+  Rgb weight = from.weight * at.albedo;
+  const float survival = std::min(kLargestSurvival, max_component(weight));
+  if (!(random.get1(1, Purpose::roulette) < survival)) return light;
+  weight *= 1 / survival;
+  const Vec3 travel = sample_hg(at.g, at.travel, random.get2(1, Purpose::phase));
+  to.further.push_back({{at.position, travel, 0, INFINITY}, mix64(from.key + 1), weight, from.of, true});
+  return light;
 }
 
 /// Irradiance at a hit but for what arrives along the ray that goes on, which to.further receives. Near hits take caustic light
@@ -234,7 +279,10 @@ Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const 
                                          random.get2(1, Purpose::light_point), light) || !side.sees(light.wi))
     return Rgb(0.0f);
   ++counts.shadow_rays;
-  if (tracer_.occluded(spawn_shadow_ray(met.hit, light.position, light.position_offset))) return Rgb(0.0f);
+  const Ray shadow = spawn_shadow_ray(met.hit, light.position, light.position_offset);
+  if (tracer_.occluded(shadow)) return Rgb(0.0f);
+  if (const Media* const media = tracer_.frame().media.get()) [[unlikely]]
+    light.radiance *= media_transmittance(*media, shadow, {random, 1, way_shadow});
   const float cosine = dot(light.wi, side.normal);
   return light.radiance * (cosine * met.bsdf->arrival_weight(cosine));
 }

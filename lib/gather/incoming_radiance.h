@@ -31,8 +31,11 @@ struct RadianceSource {
   bool mover = false;            ///< a surface on the way moves in the segment
 };
 
+struct MediumPoint;   // lib/gather/medium_event.h
+
 /// Follows rays from places to what they meet. Emission counts nowhere on the way; events S are passed; at the first Lambert lobe
-/// the point that stands for the hit is read, or the path goes on where none does or the first hit is near. Thread-safe.
+/// the point that stands for the hit is read, or the path goes on where none does or the first hit is near. Media on the way take
+/// out and scatter. Thread-safe.
 class IncomingRadiance {
  public:
   /// near_factor: hits nearer than about this many radii of the estimate behind their point go on by one bounce.
@@ -51,7 +54,9 @@ class IncomingRadiance {
   struct Further;
   struct Gathered;
   void meet(Vec3 wo, float distance, Met& met) const;
-  template <class Take> void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take) const;
+  template <class Take, class Key, class TakeMedium>
+  void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key, const TakeMedium& take_medium) const;
+  Rgb scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const;
   Rgb reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth, const Gathered& to) const;
   Rgb reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth, const Gathered& to,
                        const MaterialValues* inside) const;

@@ -1,3 +1,4 @@
+#include "lib/gather/medium_event.h"
 #include "lib/gather/irradiance_points.h"
 
 #include <algorithm>
@@ -120,7 +121,7 @@ Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, flo
   return found;
 }
 
-/// Calls each(sample, share, shadow ray) for the stratified light samples of a point that can give it light; share: cosine to the
+/// Calls each(sample, share, shadow ray, random bits of its way through media) for the stratified light samples of a point that can give it light; share: cosine to the
 /// shading normal, as where an eye looks at the place and where photons arrive (photon_trace.h), times arrival_weight
 /// under a coat. What comes from behind either normal does not count.
 template <class Each>
@@ -139,7 +140,7 @@ void for_light_samples(const Lights& lights, const IrradiancePoint& point, float
     const float cosine = dot(light.wi, scattering.normal);
     if (!(cosine > 0 && dot(light.wi, point.normal) > 0)) continue;
     each(light, scattering.coat ? cosine * scattering.coat->arrival_weight(cosine) : cosine,
-         spawn_shadow_ray(from, light.position, light.position_offset));
+         spawn_shadow_ray(from, light.position, light.position_offset), WayBits{random, std::uint32_t(s), way_shadow});
   }
 }
 
@@ -147,8 +148,9 @@ void for_light_samples(const Lights& lights, const IrradiancePoint& point, float
 Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset,
                  int samples, const Scattering& scattering, const PathRandom& random) {
   Rgbd sum{0.0};
-  for_light_samples(lights, point, offset, samples, scattering, random, [&](const LightSample& light, float share, const Ray& ray) {
-    if (!tracer.occluded(ray)) sum += Rgbd(light.radiance) * double(share);
+  for_light_samples(lights, point, offset, samples, scattering, random,
+                    [&](const LightSample& light, float share, const Ray& ray, const WayBits& bits) {
+    sum += Rgbd(light.radiance * transmittance(tracer, ray, bits)) * double(share);
   });
   return Rgb(sum / double(samples));
 }
@@ -252,7 +254,7 @@ std::size_t update_direct(const Tracer& tracer, const Lights& lights, const Move
       bool touched = !watch;
       if (watch)
         for_light_samples(lights, point, offset, options.light_samples, scattering, random,
-                          [&](const LightSample&, float, const Ray& ray) { touched = touched || watch->touching(ray, 1) != 0; });
+                          [&](const LightSample&, float, const Ray& ray, const WayBits&) { touched = touched || watch->touching(ray, 1) != 0; });
       if (!touched) continue;
       point.direct = direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
       ++count;

@@ -11,6 +11,7 @@
 #include "lib/material/inside.h"
 #include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
+#include "lib/photon/photon_path.h"
 #include "lib/scene/texture_lookup.h"
 
 namespace tempolux {
@@ -21,7 +22,7 @@ using formats::PathKind;
 /// A light this near to a surface's plane is in it, of the offset of rays that leave the surface: a few steps of a float.
 constexpr float kInPlane = 0.25f;
 constexpr int kMostPlanes = 8;               ///< that a light may be in, one upon the other
-constexpr float kLargestSurvival = 0.9995f;  ///< in a lossless box paths end after 2000 bounces in the mean
+constexpr float kStepsPerCrossing = 10;      ///< tentative collisions in a mean crossing of the media's box, at least
 constexpr float kAcross = 500;               ///< pixels that an eye has for the whole scene
 
 /// Kind of a photon by the events so far (architecture.md 3).
@@ -116,29 +117,38 @@ void record(Rgb flux, const SurfacePoint& point, Vec3 normal, PathKind kind, std
   photon.bounce = std::uint8_t(std::min(bounce, 255u));
 }
 
+void record_direction(Vec3 wi, PhotonBatch& batch) {
+  batch.block.directions.push_back(formats::encode_normal({wi.x, wi.y, wi.z}));
+}
+
 }  // namespace
 
 void PhotonOptions::set_kinds(const std::string& list) {
-  store_direct = store_caustic = store_indirect = false;
+  store_direct = store_caustic = store_indirect = store_volume = false;
   std::istringstream in(list);
   for (std::string kind; std::getline(in, kind, ',');) {
     if (kind == "direct") store_direct = true;
     else if (kind == "caustic") store_caustic = true;
     else if (kind == "indirect") store_indirect = true;
-    else throw InputError("--kinds: '" + kind + "' is not a kind of light; choose from direct,caustic,indirect");
+    else if (kind == "volume") store_volume = true;
+    else throw InputError("--kinds: '" + kind + "' is not a kind of light; choose from direct,caustic,indirect,volume");
   }
-  if (kinds().empty()) throw InputError("--kinds: no kind named; choose from direct,caustic,indirect");
+  if (kinds().empty()) throw InputError("--kinds: no kind named; choose from direct,caustic,indirect,volume");
 }
 
 std::string PhotonOptions::kinds() const {
   std::string list;
   for (const auto& [stored, name] : {std::pair{store_direct, "direct"}, std::pair{store_caustic, "caustic"},
-                                     std::pair{store_indirect, "indirect"}})
+                                     std::pair{store_indirect, "indirect"},
+                                     std::pair{store_volume, "tentative"}})
     if (stored) list += (list.empty() ? "" : ",") + std::string(name);
   return list;
 }
 
-std::uint32_t automatic_group_count(std::uint64_t photon_count) {
+std::uint32_t automatic_group_count(std::uint64_t photon_count, bool media) {
+  if (media)
+    for (std::uint32_t groups : {2520u, 630u, 210u, 30u, 6u})
+      if (photon_count / groups >= 64) return groups;
   for (std::uint32_t groups : {630u, 210u, 30u, 6u})
     if (photon_count / groups >= 256) return groups;
   return 1;
@@ -146,10 +156,14 @@ std::uint32_t automatic_group_count(std::uint64_t photon_count) {
 
 PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const PhotonOptions& options)
     : tracer_(tracer), lights_(lights), options_(options), halton_(options.seed) {
-  group_count_ = options.group_count ? options.group_count : automatic_group_count(options.photon_count);
+  group_count_ = options.group_count ? options.group_count : automatic_group_count(options.photon_count, tracer.frame().media != nullptr);
   members_ = (options.photon_count + group_count_ - 1) / group_count_;
   batches_per_group_ = (members_ + kBatch - 1) / kBatch;
   stores_ = {options.store_direct, options.store_caustic, options.store_indirect};
+  if (const Media* const media = tracer.frame().media.get()) {
+    media_ = *media;
+    media_->raise_majorants_to(kStepsPerCrossing / media->majorants().mean_chord());
+  }
   for (const PlacedLight& placed : tracer.frame().lights)
     has_point_lights_ |= placed.light.kind != PunctualLight::Kind::directional;
   for (const Material& material : tracer.frame().materials) {
@@ -208,15 +222,6 @@ struct PhotonTracer::Draw {
   Vec3 direction;   ///< sample_hemisphere_cos(u)
 };
 
-/// A photon on its way.
-struct PhotonTracer::Path {
-  PathRandom random{0, 0};
-  Ray ray;
-  Rgb flux;
-  bool diffuse_seen = false, specular_seen = false;
-  Inside inside;
-};
-
 /// Step by step for all photons of a wave: what one computes does not wait for another's result, so that the processor
 /// works on several at a time.
 void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint32_t first_path, PhotonBatch& batch) const {
@@ -226,7 +231,7 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
   PhotonEmission emissions[kWave];
   for (std::size_t i = 0; i < started; ++i) emission_numbers[i] = halton_.point(path_numbers[i]);
   lights_.emit({emission_numbers, started}, {emissions, started});
-  std::uint32_t alive[kWave];   // indices of paths
+  std::uint32_t alive[kWave], scattered[kWave];   // indices of paths
   const float share = float(1.0 / double(photon_count()));
   std::size_t count = 0;
   std::uint64_t touched[kWave];   // bits by interval, while movers are watched
@@ -247,8 +252,9 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
   Vec3 directions[kWave];
   for (std::uint32_t bounce = 0; count > 0; ++bounce) {
     batch.ray_count += count;
-    std::size_t arrived = 0;
-    for (std::size_t i = 0; i < count; ++i) {
+    std::size_t arrived = 0, in_media = 0;
+    if (media_) [[unlikely]] arrived = fly(bounce, count, paths, alive, hits, scattered, in_media, batch);
+    else for (std::size_t i = 0; i < count; ++i) {
       const Path& path = paths[alive[i]];
       const bool meets = tracer_.intersect(path.ray, hits[arrived]);
       if (watch_) [[unlikely]] touched[alive[i]] |= watch_->touching(path.ray, meets ? hits[arrived].t : INFINITY);
@@ -267,6 +273,7 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
       count += scatter(paths[number], points[i], hits[i].t, draw, batch);
       if (batch.by_path) [[unlikely]] batch.path_of.resize(batch.block.photons.size(), first_path + number);
     }
+    for (std::size_t i = 0; i < in_media; ++i) alive[count++] = scattered[i];
   }
   if (watch_)
     for (std::size_t i = 0; i < started; ++i)
@@ -339,6 +346,7 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
     if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials);
     if (coverage != 1) stored *= 1 / coverage;
     record(stored, point, at.normal_geometric, kind, draw.bounce, batch.block.photons);
+    if (stores_directions()) [[unlikely]] record_direction(at.wi, batch);
   }
 
   // Scatter, or be absorbed.
@@ -367,7 +375,7 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   const float cos_geometric = (next.transmitted ? -1.0f : 1.0f) * dot(travel, at.normal_geometric);
   const Rgb reflected = flux * next.weight;
   const float survival =
-      std::min(kLargestSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
+      std::min(kLargestPhotonSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
   const bool survives = cos_geometric > 0 && random.get1(draw.bounce, Purpose::roulette) < survival;
   path.flux = reflected * (survives ? 1 / survival : 0);
   batch.absorbed += Rgbd(flux) - Rgbd(path.flux);

@@ -14,6 +14,7 @@
 #include "lib/material/bsdf.h"
 #include "lib/trace/mover_watch.h"
 #include "lib/trace/trace.h"
+#include "lib/volume/medium.h"
 
 namespace tempolux {
 
@@ -22,19 +23,25 @@ struct PhotonOptions {
   std::uint64_t photon_count = 1'000'000;    ///< paths to start; rounded up to a multiple of group_count
   std::uint32_t group_count = 0;             ///< N_g; 0: automatic
   bool store_direct = true, store_caustic = true, store_indirect = true;
+  /// Tentative collisions in media, those of direct light only with store_direct. Of each so many are kept at random, as much
+  /// heavier: of ten to a crossing four, which is what a radiance volume can tell apart (docs/methods/volume_photons.md).
+  bool store_volume = false;
+  float volume_share = 0.4f;
 
-  /// "direct,caustic,indirect" or a part of it. Throws InputError.
+  /// "direct,caustic,indirect,volume" or a part of it. Throws InputError.
   void set_kinds(const std::string& list);
   std::string kinds() const;
 };
 
-/// N_g that keeps groups at 256 photons or more: the largest of 630 = 2 3^2 5 7, 210, 30, 6, 1 that does.
-std::uint32_t automatic_group_count(std::uint64_t photon_count);
+/// N_g that keeps groups at 256 photons or more: the largest of 630 = 2 3^2 5 7, 210, 30, 6, 1 that does. With media, where groups
+/// are shot again one by one, at 64 photons, a wave, or more, and from 2520 = 2^3 3^2 5 7 down.
+std::uint32_t automatic_group_count(std::uint64_t photon_count, bool media);
 
 /// What a batch of photon paths left behind.
 struct PhotonBatch {
   formats::PhotonBlock block;                ///< of one group
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};   ///< W; emitted = escaped + absorbed up to rounding
+  std::uint64_t medium_steps = 0;            ///< tentative collisions
   std::uint64_t ray_count = 0, path_count = 0;
   std::uint64_t specular_ray_count = 0;      ///< of the rays: those that an event S sent
   std::uint64_t seen_count = 0;              ///< photons stored in the spheres of Lights::aim()
@@ -57,6 +64,13 @@ struct PhotonBatch {
 /// share alpha of the photons take notice: divided by alpha they stand for all that arrive. Roulette keeps the flux
 /// of a path about constant
 /// and its expectation exact.
+///
+/// In media (SceneFrame::media) a photon flies by null collisions under the media's majorants, raised to ten tentative collisions
+/// per mean crossing of their box; its numbers are keyed by (seed, i, bounce, step). At each tentative collision, real or null, a
+/// photon of kind tentative may be recorded with
+///     flux / (majorant x volume_share)     [W m]
+/// so that their sum over a region is the integral of the fluence over it, whatever the density there. A real one scatters
+/// the albedo's share by the phase function; roulette as at surfaces.
 class PhotonTracer {
  public:
   PhotonTracer(const Tracer& tracer, const Lights& lights, const PhotonOptions& options);
@@ -66,6 +80,10 @@ class PhotonTracer {
   /// Batches in file order: groups ascending, each cut into pieces of kBatch paths. In a batch photons lie by waves of
   /// kWave paths, in these by bounce.
   std::size_t batch_count() const { return std::size_t(group_count_) * batches_per_group_; }
+  /// The majorants of flight, floor included; empty without media.
+  const MajorantGrid& majorants() const;
+  /// Do records need their direction: is a phase function of the media not even?
+  bool stores_directions() const { return options_.store_volume && media_ && media_->directional(); }
   /// Traces batch number b < batch_count(). Thread-safe.
   PhotonBatch trace(std::size_t batch) const;
   /// Traces these paths, all of one group. Thread-safe.
@@ -90,6 +108,11 @@ class PhotonTracer {
   void follow(std::span<const std::uint64_t> numbers, std::uint32_t first_path, PhotonBatch& batch) const;
   std::size_t leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths, std::uint32_t* alive,
                                      Hit* hits, SurfacePoint* points, std::uint64_t* touched, PhotonBatch& batch) const;
+  std::size_t fly(std::uint32_t bounce, std::size_t count, Path* paths, std::uint32_t* alive, Hit* hits, std::uint32_t* scattered,
+                  std::size_t& scattered_count, PhotonBatch& batch) const;
+  enum class Flown { through, scattered, ended };
+  Flown fly_through_media(Path& path, float end, std::uint32_t bounce, PhotonBatch& batch) const;
+  void record_tentative(const Path& path, Rgb flux, Vec3 position, std::uint32_t bounce, PhotonBatch& batch) const;
   bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
   bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
                   const std::optional<Vec3>& seen, const Draw& draw, PhotonBatch& batch) const;
@@ -100,6 +123,7 @@ class PhotonTracer {
   PhotonHalton halton_;
   std::array<bool, 3> stores_{};   ///< by formats::PathKind
   bool has_point_lights_ = false;   ///< or spots
+  std::optional<Media> media_;      ///< the frame's, with raised majorants
   std::vector<char> solid_;   ///< by material: boundary of a solid of glass
   std::vector<std::array<Bsdf, 2>> bsdfs_;   ///< by material: seen from the back, from the front
   std::vector<std::uint8_t> varies_;         ///< by material: textures decide at each hit

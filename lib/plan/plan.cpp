@@ -44,7 +44,7 @@ bool light_transport_moves(const std::vector<MovingNode>& moves) {
 /// The frames of a segment, evaluated, in order; of the frames asked for some may lie beyond the animation.
 std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const Scene& scene,
                                          const std::set<int>& asked, int camera_node, bool light_moves,
-                                         const TimeOptions& options) {
+                                         const TimeOptions& options, const MediaHash& media) {
   std::set<int> numbers = asked;
   for (int f = stage.segment().first; f <= stage.segment().last; ++f) numbers.insert(f);
 
@@ -65,6 +65,8 @@ std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const Scene&
       frame.materials = state.hashes.materials;
       if (frame.asked) frame.camera = camera_hash(state.camera(camera_node));
     }
+    if (media) frame.media = frame.evaluated != frame.frame && !frames.empty() && frames.back().evaluated == frame.evaluated
+                                 ? frames.back().media : media(frame.evaluated);
     frames.push_back(std::move(frame));
   }
   return frames;
@@ -72,9 +74,9 @@ std::vector<PlannedFrame> planned_frames(const SegmentScene& stage, const Scene&
 
 /// Sets lit_frame of all frames: the first frame of the same content, in whichever segment.
 void share_light(std::vector<PlannedSegment>& segments) {
-  std::map<std::array<std::string, 5>, int> first_with;
+  std::map<std::array<std::string, 6>, int> first_with;
   const auto content = [](const PlannedSegment& s, const PlannedFrame& f) {
-    return std::array{s.static_geometry, f.materials, s.frozen, f.moving_geometry, f.lights};
+    return std::array{s.static_geometry, f.materials, s.frozen, f.moving_geometry, f.lights, f.media};
   };
   for (const PlannedSegment& segment : segments)
     for (const PlannedFrame& frame : segment.frames)
@@ -129,7 +131,7 @@ std::string standing_hash(const SceneFrame& frame) {
 }
 
 PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const std::set<int>& asked,
-                            int camera_node, const TimeOptions& options) {
+                            int camera_node, const TimeOptions& options, const MediaHash& media) {
   const SegmentScene stage(scene, segment, options);
   const SceneFrame begin = stage.at(segment.first);
   PlannedSegment planned;
@@ -140,7 +142,7 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, const st
   planned.frozen = emission_hash(build_emission_table(scene, segment, options), segment);
   planned.moves = moving_nodes(scene, segment);
   const bool light_moves = light_transport_moves(planned.moves);
-  planned.frames = planned_frames(stage, scene, asked, camera_node, light_moves, options);
+  planned.frames = planned_frames(stage, scene, asked, camera_node, light_moves, options, media);
   planned.materials = materials_of(planned.frames);
   planned.camera_moves = cameras_differ(planned.frames);
   return planned;
@@ -222,8 +224,10 @@ void plan_stages(const Scene& scene, Plan& plan) {
 
   const bool indirect = diffuse > 0, caustic = indirect && specular > 0;
   plan.photon_kinds = caustic ? "caustic,indirect" : indirect ? "indirect" : "";
+  if (plan.media) plan.photon_kinds += plan.photon_kinds.empty() ? "volume" : ",volume";
+  const bool photons = indirect || plan.media;
   plan.stages = {
-      {"photon-trace", indirect, indirect ? frames + ", " + states : lambert},
+      {"photon-trace", photons, photons ? frames + ", " + states : lambert},
       {"photon-trace --kinds indirect", indirect, lambert},
       {"photon-trace --kinds caustic", caustic, indirect ? other : lambert},
       {"photon-trace --kinds direct", false, "frame-render samples the lights for direct light"},
@@ -232,12 +236,14 @@ void plan_stages(const Scene& scene, Plan& plan) {
       plan_walkthrough(plan, other),
       {"frame-render", true, frames + ", " + pictures}};
   plan.walkthrough = plan.stages[plan.stages.size() - 2].needed;
+  if (plan.media) plan.stages.push_back({"volume-compose", true, "there are media; " + pictures});
 }
 
 }  // namespace
 
 void use_indirect(Plan& plan, const std::string& method, const std::string& because) {
   if (plan.photon_kinds.empty()) return;
+  if (plan.media && method == "paths") throw InputError("indirect light by paths: the scene has media, which photons light; choose records or gather");
   plan.indirect = method;
   if (method == "paths") plan.photon_kinds.clear();
   for (Stage& stage : plan.stages) {
@@ -281,16 +287,19 @@ UpdatableLight updatable_light(const Plan& plan) {
 
 void use_moving(Plan& plan, const std::string& method, const std::string& because) {
   if (plan.photon_kinds.empty()) return;
+  if (plan.media && method != "anew") throw InputError("light that follows from that of what stands: the scene has media, which all light meets; use anew");
   const auto states = states_by_segment(plan);
   const bool records = method == "records" && plan.indirect == "records";
   plan.moving = method == "anew" || states.empty() ? "anew" : records ? "records" : "light";
   const bool light = plan.moving != "anew";
   for (const auto& entry : states) plan.segments[entry.first].updated = light;
-  plan.stages.insert(plan.stages.end() - 1, {{"photon-trace --map dynamic", light, because},
-                                             {"irradcache-build records --update", plan.moving == "records", because}});
+  const auto before = std::ranges::find(plan.stages, "frame-render", &Stage::name);
+  plan.stages.insert(before, {{"photon-trace --map dynamic", light, because},
+                             {"irradcache-build records --update", plan.moving == "records", because}});
 }
 
-Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options) {
+Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,
+               const MediaHash& media) {
   if (frames.empty()) throw std::invalid_argument("make_plan: no frames");
   require_lights(scene);
   Plan plan;
@@ -298,13 +307,14 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   plan.camera = camera.name.empty() ? "node " + std::to_string(camera.source_index) : camera.name;
   if (scene.environment) plan.environment = scene.environment->path;
   plan.time = options;
+  plan.media = bool(media);
   std::set<int> seen;
   for (const int frame : frames)
     if (seen.insert(frame).second) plan.frames.push_back(frame);
 
   std::size_t beyond = 0;
   for (const auto& [segment, asked] : by_segment(scene, plan.frames, options)) {
-    plan.segments.push_back(plan_segment(scene, segment, asked, camera_node, options));
+    plan.segments.push_back(plan_segment(scene, segment, asked, camera_node, options, media));
     for (const PlannedFrame& frame : plan.segments.back().frames) beyond += frame.frame != frame.evaluated;
   }
   share_light(plan.segments);

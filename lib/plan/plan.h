@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct PlannedFrame {
   std::string moving_geometry;      ///< hashes, as in SceneHashes
   std::string lights;
   std::string materials;
+  std::string media;                ///< empty: the scene has no media at any frame
 };
 
 /// A segment that holds some of the frames asked for, with all frames it has.
@@ -78,12 +80,14 @@ struct Plan {
   /// What of each state of light follows from that of what stands: "anew" (nothing), "light" (photons and points) or "records" (they,
   /// too).
   std::string moving = "anew";
+  bool media = false;               ///< has the scene media?
   std::vector<PlannedView> views;   ///< empty: photons are not aimed. make_plan leaves it so, it traces no rays
   std::vector<std::string> warnings;
 };
 
 /// Leaves out what another way of finding indirect light does not need: records, or photons and points as well.
-/// `because`: the fact that decides. A plan whose scene has no indirect light stays as it is.
+/// `because`: the fact that decides. A plan whose scene has no indirect light stays as it is. Throws InputError for paths where
+/// there are media: their light is photons'.
 void use_indirect(Plan& plan, const std::string& method, const std::string& because);
 
 /// Segments of whose light something stands while something moves: those with kFewestStates states of light or more among what is
@@ -98,6 +102,8 @@ UpdatableLight updatable_light(const Plan& plan);
 /// Has the light of such segments follow from that of what stands, as far as `method` says (Plan::moving). `because`: the fact that
 /// decides.
 void use_moving(Plan& plan, const std::string& method, const std::string& because);
+/// The media at a frame: content hash (SceneHashes::media). An empty function: there are none.
+using MediaHash = std::function<std::string(int frame)>;
 
 /// Evaluates the segments that hold `frames` and compares their states by content: hashes decide, neither
 /// file times nor what the file calls an animation. A frame beyond the animation shows its nearest end and is
@@ -106,7 +112,8 @@ void use_moving(Plan& plan, const std::string& method, const std::string& becaus
 /// `camera_node` is an index into Scene::nodes (Scene::camera_node). Time is linear in what moves, times the
 /// frames of the segments, and in what stands, times the segments. Throws InputError for a scene without
 /// light or one that cannot be evaluated, std::invalid_argument for an empty `frames`.
-Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options);
+Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,
+               const MediaHash& media = {});
 
 /// By first frame. Photons of one group are aimed alike, so that photon i is the same in all of its frames.
 std::vector<ViewGroup> view_groups(const Plan& plan);

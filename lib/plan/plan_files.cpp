@@ -21,6 +21,7 @@ Json frame_json(const PlannedFrame& frame, bool photons) {
   if (photons) json["photons"] = frame.lit_frame;
   if (frame.asked) json["picture"] = frame.picture;
   json["hashes"] = {{"moving_geometry", frame.moving_geometry}, {"lights", frame.lights}};
+  if (!frame.media.empty()) json["hashes"]["media"] = frame.media;
   if (frame.asked) json["hashes"]["camera"] = frame.camera;
   return json;
 }
@@ -139,6 +140,7 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   text += "plan_indirect := " + (photons ? plan.indirect : "paths") + "\n";
   text += "plan_moving := " + (photons ? plan.moving : "anew") + "\n";
   text += std::string("plan_method := ") + (plan.walkthrough ? "walkthrough" : "frames") + "\n";
+  if (plan.media) text += "plan_media := 1\n";
   for (const std::string& file : scene_files)  // the empty rule: a file that is gone asks for a new plan
     text += folder + "/plan.mk: " + escaped_for_make(file) + "\n" + escaped_for_make(file) + ":\n";
   for (const PlannedSegment& segment : plan.segments) {
@@ -148,7 +150,7 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
     for (const PlannedFrame& frame : segment.frames) {
       const std::string digits = frame_digits(frame.frame);
       text += "light_" + digits + " := $(addprefix " + folder + "/state/,static." + first +
-              " materials." + first + " frozen." + first + " moving." + digits + " lights." + digits + ")\n";
+              " materials." + first + " frozen." + first + " moving." + digits + " lights." + digits + (frame.media.empty() ? "" : " media." + digits) + ")\n";
       if (!frame.asked) continue;
       text += "camera_" + digits + " := " + folder + "/state/camera." + digits + "\n";
       text += "picture_" + digits + " := " + frame_digits(frame.picture) + "\n";
@@ -181,6 +183,7 @@ std::vector<PlanFile> state_files(const Plan& plan) {
     for (const PlannedFrame& frame : segment.frames) {
       add("moving", frame.frame, frame.moving_geometry);
       add("lights", frame.frame, frame.lights);
+      if (!frame.media.empty()) add("media", frame.frame, frame.media);
       if (frame.asked) add("camera", frame.frame, frame.camera);
     }
   }

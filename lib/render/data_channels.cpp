@@ -11,7 +11,7 @@
 namespace tempolux {
 namespace {
 
-const std::vector<std::string> kGroups{"RGBA", "layers", "emission", "specular", "direct", "caustic", "indirect",
+const std::vector<std::string> kGroups{"RGBA", "layers", "emission", "specular", "direct", "caustic", "indirect", "volume",
                                        "Z", "N", "P", "id", "albedo", "motion",
                                        "coverage", "variance", "diffuse.variance", "samples"};
 

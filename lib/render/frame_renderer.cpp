@@ -29,7 +29,7 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
 }
 
 LayerImage empty_layers(const CameraView& view, const FrameOptions& options) {
-  LayerImage image{view.width(), view.height(), 0, {}, {}};
+  LayerImage image{view.width(), view.height(), 0, false, {}, {}};
   const std::size_t count = std::size_t(view.width()) * std::size_t(view.height());
   image.pixels.reserve(count);
   formats::prefer_large_pages(image.pixels.data(), count * sizeof(Layers));
@@ -97,6 +97,7 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
       if (4 * count > options.max_samples) break;
     }
   }
+  for (LayerImage* image : {&frame.mean, &frame.half[0], &frame.half[1]}) image->media = scene.frame().media != nullptr;
   frame.mean_radiance = mean_radiance(frame.mean);
   if (!(frame.samples_per_pixel > 0)) frame.samples_per_pixel = frame.mean.samples;
   return frame;
@@ -134,7 +135,7 @@ void add_colour_channels(const LayerImage& layers, const std::vector<std::string
       image.add("A");
     }
     for (std::size_t l = 0; l < kLayerCount; ++l)
-      if (name == "layers" || name == kLayerNames[l]) add(std::string(kLayerNames[l]) + ".", l);
+      if ((name == "layers" && (layers.media || l != std::size_t(Layer::volume))) || name == kLayerNames[l]) add(std::string(kLayerNames[l]) + ".", l);
   }
   parallel_chunks(layers.pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
     for (const auto& [channel, layer] : colours) {

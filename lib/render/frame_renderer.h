@@ -30,6 +30,7 @@ struct FrameOptions {
 /// Mean radiance by layer and pixel of one half (or of all samples).
 struct LayerImage {
   int width = 0, height = 0, samples = 0;
+  bool media = false;                   ///< of a scene with media: "layers" holds the layer volume too
   std::vector<Layers> pixels;           ///< width * height, top row first
   std::vector<SampleHalves> sample_halves;   ///< of the same pixels; empty unless asked for
   SampleHalves* halves_of(std::size_t pixel) { return sample_halves.empty() ? nullptr : &sample_halves[pixel]; }

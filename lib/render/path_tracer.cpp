@@ -1,6 +1,7 @@
 #include "lib/render/path_tracer.h"
 
 #include "lib/core/sampling.h"
+#include "lib/gather/medium_event.h"
 #include "lib/material/inside.h"
 #include "lib/render/known_light.h"
 #include "lib/render/shading.h"
@@ -54,8 +55,11 @@ void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, SampledL
   }
   if (is_black(diffuse) && is_black(glossy)) return;
   ++counts.shadow;
-  if (scene.tracer.occluded(spawn_shadow_ray(x.surface, light.position, light.position_offset))) return;
+  const Ray shadow = spawn_shadow_ray(x.surface, light.position, light.position_offset);
+  if (scene.tracer.occluded(shadow)) return;
   Rgb arriving = throughput * light.radiance * (std::abs(wi.z) / share);
+  if (const Media* const media = scene.frame().media.get()) [[unlikely]]
+    arriving *= media_transmittance(*media, shadow, {random.hashed(), bounce, way_shadow});
   if (inside.any()) arriving *= inside.transmittance_over(scene.frame().materials, length(light.position - x.surface.position));
   result[path.after(true).layer()] += arriving * diffuse;
   result[path.after(false).layer()] += arriving * glossy;
@@ -86,9 +90,9 @@ void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter
   result[layer] += throughput * scene.lights.environment(direction) * weight;
 }
 
-/// What a path knows of the light beyond its last Lambert lobe.
+/// What a path knows of the light beyond its last event D: a Lambert lobe or a collision.
 struct Beyond {
-  bool matte = false;            ///< there was a Lambert lobe
+  bool matte = false;            ///< there was such an event
   bool caustic_known = false;    ///< what arrives there by events S
   bool indirect_known = false;   ///< what arrives there by events D
   bool specular = false;         ///< events S since then
@@ -152,7 +156,12 @@ class EyeTracer {
   void follow(Walk walk) const;
 
  private:
+  enum class Passed { through, scattered, ended };
+  Passed pass_media(const Media& media, Walk& walk) const;
+  bool scatter_in_medium(const MediumPoint& point, Walk& walk) const;
   bool scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, Walk& walk) const;
+  bool survives(Walk& walk) const;
+  void go_on(const Ray& ray, Walk& walk) const;
 
   const RenderScene& scene_;
   const PixelRandom& random_;
@@ -160,6 +169,23 @@ class EyeTracer {
   RayCounts& counts_;
   Layers& result_;
 };
+
+/// Roulette.
+bool EyeTracer::survives(Walk& walk) const {
+  if (walk.bounce + 1 < kRouletteFrom) return true;
+  const float survival = std::min(kLargestSurvival, max_component(walk.throughput));
+  if (!(random_.get1(walk.bounce, Purpose::roulette) < survival)) return false;
+  walk.throughput *= 1 / survival;
+  return true;
+}
+
+void EyeTracer::go_on(const Ray& ray, Walk& walk) const {
+  walk.ray = ray;
+  ++counts_.bounce;
+  walk.hit = {};
+  scene_.tracer.intersect(walk.ray, walk.hit);
+  ++walk.bounce;
+}
 
 /// The next ray, by event D or S as u_lobe says; times: by how much likelier than the Bsdf has it. False if the path ends.
 bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times,
@@ -174,12 +200,8 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
   else walk.beyond.specular = true;
   const bool front = dot(x.surface.normal_geometric, walk.ray.direction) < 0;
   if (!next.diffuse && is_solid_glass(material)) walk.inside.scatter(x.surface.material, front, next.transmitted);
+  if (!survives(walk)) return false;
 
-  if (walk.bounce + 1 >= kRouletteFrom) {
-    const float survival = std::min(kLargestSurvival, max_component(walk.throughput));
-    if (!(random_.get1(walk.bounce, Purpose::roulette) < survival)) return false;
-    walk.throughput *= 1 / survival;
-  }
   LastScatter& last = walk.last;
   last.weighed = !next.delta;
   if (next.diffuse) walk.cone = {};
@@ -188,16 +210,47 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
   last.light_share = next.transmitted ? x.bsdf.light_share_beyond() : 1 - x.bsdf.light_share_beyond();
   last.pdf_solid_angle =
       times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.wo_local) : x.bsdf.pdf_specular(next.wi, x.wo_local));
-  walk.ray = spawn_ray(x.surface, wi);
-  ++counts_.bounce;
-  walk.hit = {};
-  scene_.tracer.intersect(walk.ray, walk.hit);
-  ++walk.bounce;
+  go_on(spawn_ray(x.surface, wi), walk);
   return true;
+}
+
+/// Scattering in a medium: light of a lamp, roulette, a new ray. False if the path ends there.
+bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
+  walk.path.scatter_in_medium();
+  walk.beyond = {true, false, false, false, 0};
+  walk.cone = {};
+  walk.throughput *= point.albedo;
+  if (is_black(walk.throughput)) return false;
+  const WayBits bits{random_.hashed(), walk.bounce, way_shadow_of_medium};
+  result_[walk.path.layer()] += walk.throughput * sampled_light(scene_.tracer, scene_.lights, point, random_.get2(walk.bounce, Purpose::light_point),
+                                                                true, bits, counts_.shadow);
+  if (!survives(walk)) return false;
+  const Vec3 travel = sample_hg(point.g, point.travel, random_.get2(walk.bounce, Purpose::phase));
+  walk.last = {true, point.position, {}, pdf_hg(point.g, point.travel, travel), 1};
+  go_on({point.position, travel, 0, INFINITY}, walk);
+  return true;
+}
+
+/// On the way to walk.hit.
+EyeTracer::Passed EyeTracer::pass_media(const Media& media, Walk& walk) const {
+  const float way = walk.hit.surface == kNone ? INFINITY : walk.hit.t;
+  if (known_ && walk.bounce == 0) {
+    const auto left = float(std::exp(-media.optical_depth(walk.ray.origin, walk.ray.direction, way)));
+    walk.throughput *= left;
+    result_.coverage = 1 - left;
+    return Passed::through;
+  }
+  MediumPoint collision;
+  if (!collides(media, walk.ray, way, random_.hashed(), walk.bounce, collision)) return Passed::through;
+  if (walk.bounce == 0) result_.coverage = 1;
+  if (walk.beyond.indirect_known) return Passed::ended;
+  if (walk.inside.any()) walk.throughput *= walk.inside.transmittance_over(scene_.frame().materials, length(collision.position - walk.ray.origin));
+  return scatter_in_medium(collision, walk) ? Passed::scattered : Passed::ended;
 }
 
 void EyeTracer::follow(Walk walk) const {
   const SceneFrame& frame = scene_.frame();
+  const Media* const media = frame.media.get();
   for (;;) {
     const Ray& ray = walk.ray;
     const Hit& hit = walk.hit;
@@ -205,6 +258,11 @@ void EyeTracer::follow(Walk walk) const {
     const LastScatter& last = walk.last;
     const std::uint32_t bounce = walk.bounce;
     const bool forked = walk.forked;
+    if (media) [[unlikely]] {
+      const Passed passed = pass_media(*media, walk);
+      if (passed == Passed::ended) return;
+      if (passed == Passed::scattered) continue;
+    }
     if (hit.surface == kNone) {
       if (scene_.lights.has_environment() && walk.beyond.light_counts())
         add_environment(scene_, ray.direction, last, walk.throughput, path.layer(), result_);

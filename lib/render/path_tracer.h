@@ -13,15 +13,15 @@
 namespace tempolux {
 
 /// Layers of a frame (architecture.md 3); their sum, in this order, is the image.
-enum class Layer : std::uint8_t { emission, specular, direct, caustic, indirect };
-inline constexpr std::size_t kLayerCount = 5;
-inline constexpr std::array<const char*, kLayerCount> kLayerNames{"emission", "specular", "direct", "caustic", "indirect"};
+enum class Layer : std::uint8_t { emission, specular, direct, caustic, indirect, volume };
+inline constexpr std::size_t kLayerCount = 6;
+inline constexpr std::array<const char*, kLayerCount> kLayerNames{"emission", "specular", "direct", "caustic", "indirect", "volume"};
 
 /// Radiance [W/m^2/sr] by layer.
 template <class T>
 struct LayersT {
   std::array<RgbT<T>, kLayerCount> value{};
-  T coverage = 0;                  ///< 1 if the camera ray met a surface: the alpha channel
+  T coverage = 0;                  ///< 1 if the camera ray met a surface or a medium: the alpha channel
   RgbT<T>& operator[](Layer layer) { return value[std::size_t(layer)]; }
   const RgbT<T>& operator[](Layer layer) const { return value[std::size_t(layer)]; }
 };
@@ -38,7 +38,14 @@ class EyePath {
       case Layer::direct: layer_ = diffuse ? Layer::indirect : Layer::caustic; break;
       case Layer::caustic: layer_ = diffuse ? Layer::indirect : Layer::caustic; break;
       case Layer::indirect: break;
+      case Layer::volume: break;
     }
+  }
+  /// In a medium. What an S sent there is part of what is seen by it.
+  void scatter_in_medium() {
+    sharp_ = false;
+    if (layer_ == Layer::emission) layer_ = Layer::volume;
+    else if (layer_ != Layer::specular && layer_ != Layer::volume) layer_ = Layer::indirect;
   }
   /// Has the path no event D yet? Only then is it the eye that looks at what it meets.
   bool sharp() const { return sharp_; }
@@ -68,6 +75,9 @@ class PixelRandom {
   float get1(std::uint32_t bounce, Purpose purpose) const {
     return bounce < kSobolBounces ? sobol_owen_1d(sample_, key(bounce, purpose)) : plain().get1(bounce, purpose);
   }
+
+ /// Hashed numbers of this sample alone: for what takes as many as it comes to.
+  PathRandom hashed() const { return plain(); }
 
  private:
   PixelRandom(std::uint64_t key, std::uint32_t sample) : key_(key), sample_(sample) {}
@@ -114,6 +124,9 @@ struct RenderScene {
 ///
 /// An unlit material shows its base colour as radiance to the eye, directly and through events S alone (layers emission
 /// and specular); it lights nothing and scatters nothing, here and in photon-trace alike.
+/// Media (SceneFrame::media): free flight by null collisions, lamps sampled at each collision. With `known` the camera
+/// ray itself passes them attenuated, exactly, and what they scatter towards it is left to volume-compose; beyond an event S
+/// they scatter as without. What they scatter to a matte surface is part of its indirect light.
 /// `cone` is the pixel's, for the level of textures (CameraView::cone); the default reads their finest level.
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random, const KnownLight* known,
                       RayCounts& counts, RayCone cone = {});

@@ -17,7 +17,8 @@ struct PixelSum {
   void add(const Layers& sample) {
     for (std::size_t l = 0; l < kLayerCount; ++l) layers.value[l] += Rgbd(sample.value[l]);
     layers.coverage += double(sample.coverage);
-    const Rgb s = sample[Layer::emission] + sample[Layer::specular] + sample[Layer::caustic] + sample[Layer::indirect];
+    const Rgb s = sample[Layer::emission] + sample[Layer::specular] + sample[Layer::caustic] + sample[Layer::indirect] +
+                  sample[Layer::volume];
     const double v = channel_mean(Rgbd(s));
     sharp += v;
     sharp_square += v * v;

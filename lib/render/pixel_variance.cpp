@@ -30,7 +30,7 @@ void SampleHalves::add(int rank, int count, const Layers& sample) {
   const bool second = count == 1 ? half[1].count < half[0].count : 2 * rank >= count;
   Sum& sum = half[second ? 1 : 0];
   const Rgb diffuse = sample[Layer::direct] + sample[Layer::caustic] + sample[Layer::indirect];
-  sum.image += sample[Layer::emission] + sample[Layer::specular] + diffuse;
+  sum.image += sample[Layer::emission] + sample[Layer::specular] + diffuse + sample[Layer::volume];
   sum.diffuse += diffuse;
   sum.count += 1;
 }

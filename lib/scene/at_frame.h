@@ -15,6 +15,7 @@ namespace tempolux {
 
 class Animator;
 class Sharing;
+class Media;   // lib/volume/medium.h
 
 /// A material, light or camera that an animation changes in a segment (KHR_animation_pointer).
 struct PropertyChange {
@@ -142,6 +143,7 @@ struct SceneFrame {
   std::shared_ptr<const TextureImages> images;   ///< of the materials' textures; null: there are none
   std::vector<PlacedLight> lights;
   const Environment* environment = nullptr; ///< the scene's; nullptr: none
+  std::shared_ptr<const Media> media;       ///< nullptr: none. at() leaves that; who reads the volumes sets it
   Vec3d origin{};                           ///< world = origin + scene space
   Box3 bounds;                              ///< of the whole segment, scene space
   std::vector<Affine> world_from_node;      ///< per node, at this frame

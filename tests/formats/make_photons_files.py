@@ -43,6 +43,26 @@ def header_bytes(text, magic=MAGIC, major=1, minor=0, size=None):
     return rejoin([head + struct.pack("<I", zlib.crc32(head))] + pieces(GOOD)[1:])
 
 
+MAJORANTS = b"majorants: " + b"0123456789abcdef" * 2 + b"\n"
+
+
+def changed_text(p, change, minor=None):
+    """The file with another header text (and version): every checksum right."""
+    data = encode_photons(p)
+    size, = struct.unpack_from("<I", data, 12)
+    text = change(data[16:16 + size])
+    head = struct.pack("<8sHHI", MAGIC, 1, struct.unpack_from("<H", data, 10)[0] if minor is None else minor, len(text)) + text
+    rest = data[20 + size:]
+    end = rest[-112:-4]
+    at, crcs = 0, struct.pack("<I", zlib.crc32(head))
+    while rest[at:at + 4] == b"PHOT":
+        crcs += rest[at + 12:at + 16]
+        at += 16 + 32 * struct.unpack_from("<I", rest, at + 8)[0]
+    if rest[at:at + 3] == b"LED":
+        crcs += rest[at + 8:at + 12]
+    return head + crcs[:4] + rest[:-112] + end + struct.pack("<I", zlib.crc32(end, zlib.crc32(crcs)))
+
+
 def pieces(data):
     """Header, blocks and end block of a file without ledger and columns."""
     at = 20 + struct.unpack_from("<I", data, 12)[0]
@@ -86,6 +106,15 @@ OVERLAY = photons([Block(1, record(flux=(2, 2, 2))), Block(2, record()), Block(3
                   groups="4", base="overlay-base.photons", base_digest=base_digest)
 
 
+def tentative(blocks, ledger=None, **header):
+    """Photons in a medium: version 1.3."""
+    ledger = [(0, (1.0,) * 3 + (0.5,) * 6, 12, 4)] if ledger is None else ledger
+    return photons(blocks, ledger, **{"kinds": "indirect,tentative", "majorants": "0123456789abcdef" * 2} | header)
+
+
+TENTATIVE = tentative([Block(0, record(kind=2) + record(kind=4, normal=(32767, 32767)))])
+
+
 def accept():
     example = photons(**IDENTITY)
     example.history = ["example"]
@@ -110,6 +139,9 @@ def accept():
     save("accept/later-minor-version-with-new-key", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=7))
     save("accept/overlay-base", BASE)
     save("accept/overlay", OVERLAY)
+    save("accept/tentative", TENTATIVE)
+    save("accept/tentative-with-directions", tentative([Block(0, record(kind=4), b"\1\2\3\4")], columns="direction"))
+    save("accept/tentative-of-nothing", tentative([]))
 
 
 def refuse_headers():
@@ -122,6 +154,7 @@ def refuse_headers():
     save("refuse/header-key-unknown", header_bytes(TEXT + b"colour-of-ink: blue\n"))
     save("refuse/header-key-of-a-later-version", header_bytes(TEXT + b"frames: 0 23\nemission: d4\n"))
     save("refuse/header-part-of-a-later-version", header_bytes(TEXT + b"part: low\n", minor=1))
+    save("refuse/header-key-unknown-1.3", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=3))
     save("refuse/header-key-unknown-1.2", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=2))
     save("refuse/header-key-unknown-1.1", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=1))
     save("refuse/header-key-missing", header_bytes(TEXT.replace(b"groups: 1\n", b"")))
@@ -161,6 +194,13 @@ def refuse_blocks():
     save("refuse/direction-above-65534", photons([Block(0, record(), b"\xff\xff\0\0")], columns="direction"))
     save("refuse/kind-not-in-header", photons([Block(0, record(kind=3))]))
     save("refuse/kind-4", photons([Block(0, record(kind=4))]))
+    save("refuse/tentative-without-majorants", changed_text(TENTATIVE, lambda t: t.replace(MAJORANTS, b"")))
+    save("refuse/tentative-of-version-1.2", changed_text(TENTATIVE, lambda t: t.replace(MAJORANTS, b""), minor=2))
+    save("refuse/tentative-without-ledger", tentative([Block(0, record(kind=4))], []))
+    save("refuse/tentative-with-undated-ledger", encode_photons(TENTATIVE).replace(b"LEDU", b"LEDG"))
+    save("refuse/majorants-without-tentative", photons(majorants="0123456789abcdef" * 2))
+    save("refuse/majorants-short", tentative([], majorants="abc"))
+    save("refuse/majorants-of-a-later-version", header_bytes(TEXT + MAJORANTS, minor=2))
     save("refuse/kind-65", photons([Block(0, record(kind=65))]))
     save("refuse/block-mark-unknown", with_head(GOOD, 0, b"PHOX"))
     save("refuse/block-group-out-of-range", with_head(GOOD, 4, struct.pack("<I", 1)))

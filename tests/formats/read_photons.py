@@ -26,14 +26,14 @@ import zlib
 MAGIC = b"\x89TPHOT\r\n"
 RECORD = struct.Struct("<3f3f2HHBB")                    # section 4: position, flux, normal, object, kind, bounce
 POSITION, FLUX, NORMAL, OBJECT, KIND, BOUNCE = 0, 3, 6, 8, 9, 10
-ENTRY = struct.Struct("<I9d")                           # section 6
+ENTRY, DATED_ENTRY = struct.Struct("<I9d"), struct.Struct("<I9diQ")   # section 6
 END = struct.Struct("<4sQ12dI")                         # section 7
-KINDS = ["direct", "caustic", "indirect", "volume"]
+KINDS = ["direct", "caustic", "indirect", "volume", "tentative"]
 COLUMNS = {"none": [], "direction": ["direction"], "albedo": ["albedo"], "direction,albedo": ["direction", "albedo"]}
 HASHES = ["static-geometry", "moving-geometry", "materials", "lights", "media", "emission"]
 REQUIRED = ["map", "kinds", "columns", "origin", "groups", "emitted"]
-KEYS = REQUIRED[:2] + ["part"] + REQUIRED[2:] + ["frames"] + HASHES + ["base", "base-digest"]          # and history
-SINCE = {"emission": 1, "part": 2}              # minor version; all others: 0
+KEYS = REQUIRED[:2] + ["part"] + REQUIRED[2:] + ["frames"] + HASHES + ["majorants", "base", "base-digest"]          # and history
+SINCE = {"emission": 1, "part": 2, "majorants": 3}              # minor version; all others: 0
 
 
 @dataclasses.dataclass
@@ -49,7 +49,7 @@ class Photons:
     header: dict            # key: text as in the file
     history: list           # lines
     blocks: list            # of Block, groups never descending
-    ledger: list            # of (group, nine numbers); empty if the file has none
+    ledger: list            # of (group, nine numbers), with tentative photons also frame and paths; empty if the file has none
     emitted: tuple          # W, three channels
     escaped: tuple
     absorbed: tuple
@@ -78,12 +78,12 @@ def parse_text(text, minor):                                              # sect
             refuse(16, f"key twice: {key}")
         elif key in KEYS and minor >= SINCE.get(key, 0):
             header[key] = value
-        elif minor <= 2:
+        elif minor <= 3:
             refuse(16, f"unknown key: {key}")
     for key in REQUIRED:
         if key not in header:
             refuse(16, f"key missing: {key}")
-    check_header(header)
+    check_header(header, minor)
     return header, history
 
 
@@ -93,13 +93,15 @@ def integers(text, count, low, high):
     return values if values and all(low <= v <= high for v in values) else None
 
 
-def check_header(h):
+def check_header(h, minor):
     number = r"-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?"
     kinds = h["kinds"].split(",")
     frames = integers(h.get("frames", "0 0"), 2, -2**31, 2**31 - 1)
     rules = {
         "map": h["map"] in ("global", "static", "dynamic"),
         "kinds": all(k in KINDS for k in kinds) and len(set(kinds)) == len(kinds),
+        "majorants": ("tentative" in kinds) == ("majorants" in h) and (minor >= 3 or "tentative" not in kinds) and
+                     re.fullmatch("[0-9a-f]{32}", h.get("majorants", "0" * 32)),
         "part": h.get("part", "low") in ("low", "high"),
         "columns": h["columns"] in COLUMNS,
         "origin": re.fullmatch(" ".join([number] * 3), h["origin"]) and
@@ -141,7 +143,7 @@ def stored_flux(blocks):
 def column_sums(ledger):
     """The ledger's entries added in its order: nine sums. (Not sum(), which may compensate.)"""
     totals = [0.0] * 9
-    for _, values in ledger:
+    for _, values, *_ in ledger:
         totals = [t + v for t, v in zip(totals, values)]
     return tuple(totals)
 
@@ -190,18 +192,20 @@ def parse_photons(stream):
         if any(code == 65535 for code, in struct.iter_unpack("<H", block.direction)):
             refuse(start, "direction above 65534")
         blocks.append(block)
-    if mark == b"LEDG":                                                   # section 6
+    tentative = "tentative" in header["kinds"].split(",")
+    if mark == (b"LEDU" if tentative else b"LEDG"):                                                   # section 6
         head = take(8)
         count, crc = struct.unpack("<II", head)
         expected = sorted({b.group for b in blocks}) if "base" in header else range(groups)
         if count != len(expected):
             refuse(offset, "ledger of another size")
-        body = take(ENTRY.size * count)
+        entry = DATED_ENTRY if tentative else ENTRY
+        body = take(entry.size * count)
         chain += checksum(crc, mark, head[:4], body)
-        ledger = [(v[0], v[1:]) for v in ENTRY.iter_unpack(body)]
+        ledger = [(v[0], v[1:10], *v[10:]) for v in entry.iter_unpack(body)]
         if [e[0] for e in ledger] != list(expected):
             refuse(offset, "ledger of other groups")
-        for _, values in ledger:
+        for _, values, *_ in ledger:
             check_fluxes(values, signed, offset)
         mark, had_ledger = take(4), True
     else:
@@ -216,8 +220,8 @@ def parse_photons(stream):
     check_fluxes(values[5:14], signed, offset)
     if had_ledger and column_sums(ledger) != values[5:14]:
         refuse(offset, "totals are not the ledger's")
-    if "base" in header and not had_ledger:
-        refuse(offset, "overlay without ledger")
+    if ("base" in header or tentative) and not had_ledger:
+        refuse(offset, "overlay or tentative photons without ledger")
     if stream.read(1):
         refuse(offset, "bytes after the end block")
     return Photons(header, history, blocks, ledger, values[5:8], values[8:11], values[11:14])
@@ -232,6 +236,7 @@ def read_photons(path):
     with open(os.path.join(os.path.dirname(path), p.header["base"]), "rb") as stream:     # section 8
         base = parse_photons(stream)
     same = all(p.header[k] == base.header[k] for k in ("map", "columns", "groups"))
+    same = same and p.header.get("majorants") == base.header.get("majorants")
     same = same and set(p.header["kinds"].split(",")) == set(base.header["kinds"].split(","))
     same = same and [float(x) for x in p.header["origin"].split()] == [float(x) for x in base.header["origin"].split()]
     if "base" in base.header or not base.ledger or not same:
@@ -261,8 +266,9 @@ def encode_photons(p):
         crcs += crc
     totals = p.emitted + p.escaped + p.absorbed
     if p.ledger or "base" in p.header:
-        head = struct.pack("<4sI", b"LEDG", len(p.ledger))
-        body = b"".join(ENTRY.pack(group, *values) for group, values in p.ledger)
+        dated = "majorants" in p.header
+        head = struct.pack("<4sI", b"LEDU" if dated else b"LEDG", len(p.ledger))
+        body = b"".join((DATED_ENTRY if dated else ENTRY).pack(group, *values, *more) for group, values, *more in p.ledger)
         crc = struct.pack("<I", zlib.crc32(head + body))
         out += [head, crc, body]
         crcs += crc
@@ -280,7 +286,7 @@ def write_photons(path, p):
 
 
 def summary(p):
-    kinds = [0] * 4
+    kinds = [0] * len(KINDS)
     for b in p.blocks:
         for v in RECORD.iter_unpack(b.records):
             kinds[v[KIND]] += 1

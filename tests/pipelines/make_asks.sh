@@ -31,7 +31,7 @@ refuses() { what=$1; shift; demo "$@" && bad "$*: not refused"; says "$what" || 
 refuses "no goal 'dmeo'; .*help. lists them" dmeo
 demo help && says 'QUALITY=draft' && says 'Further goals: estimate' || bad 'help'
 refuses 'QUALITY=drft' demo QUALITY=drft
-refuses 'VOLUME=smoke' demo VOLUME=smoke.vdb
+refuses 'VOLUME=' demo VOLUME='my smoke.vdb'
 refuses 'SIZE=32:' demo SIZE=32
 refuses 'SCENE=.my scene.glb' demo SCENE='my scene.glb'
 refuses 'OUT=.*/o 4' demo OUT="$work/o 4"

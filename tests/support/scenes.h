@@ -76,6 +76,7 @@ class HandMadeScene {
       for (Vec3 at : p) normals.push_back(normalize(inwards ? centre - at : at - centre));
     add(p, t, material, false, normals);
   }
+  void set_media(std::shared_ptr<const Media> media) { frame_.media = std::move(media); }
   /// Texture coordinates of the surface added last, by vertex.
   void set_uvs(const std::vector<Vec2>& uvs) { primitives_.back()->uvs = uvs; }
   const std::vector<Vec3>& last_positions() const { return primitives_.back()->positions; }

@@ -16,7 +16,7 @@ namespace {
 
 using namespace formats;
 
-constexpr const char* kKindNames[] = {"direct", "caustic", "indirect", "volume"};
+constexpr const char* kKindNames[] = {"direct", "caustic", "indirect", "volume", "tentative"};
 
 std::string column_names(std::uint32_t columns) {
   std::string names;

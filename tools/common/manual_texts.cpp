@@ -108,6 +108,18 @@ constexpr ManualText kTexts[] = {
      "# One frame, by its five files.\n"
      "st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o filtered.0010.exr",
      "frame-render aqm-compare tempolux-info"},
+    {"volume-compose",
+     "Puts the smoke of a scene into a frame: photons in media (photon-trace --kinds ...,volume) are summed in cells and smoothed, "
+     "each pixel's rays march through the smoke to the surfaces of the scene, and lamps are sampled on the way. The base is a "
+     "frame of the same scene, whose light frame-render has dimmed already, or any frame with a channel Z.",
+     "frame .exr: read and written, with layer volume (formats/frames/frames.md)\n"
+     ".photons: read (formats/photons/photons.md)\n"
+     ".vdb: density of the smoke, OpenVDB",
+     "photon-trace room.glb --frame 12 --photons 300k --kinds caustic,indirect,volume -o 12.photons\n"
+     "irradcache-build room.glb --frame 12 --photons 12.photons --size 640x360 -o 12.irradcache\n"
+     "frame-render room.glb --frame 12 --size 640x360 --photons 12.photons --irradcache 12.irradcache -o 12.exr\n"
+     "volume-compose room.glb --frame 12 --photons 12.photons --base 12.exr -o 12.smoke.exr",
+     "photon-trace frame-render tempolux-info"},
     {"aqm-compare",
      "Says how wrong a frame or a sequence is against a reference: RMSE, relMSE, bias, PSNR, flicker. With two "
      "independent "

@@ -130,6 +130,43 @@ void Tool::environment_options() {
   });
 }
 
+void Tool::volume_options() {
+  CLI::App& app = state_->app;
+  VolumeOptions& volume = state_->common.volume;
+  app.add_option("--volume", volume.files,
+                 "OpenVDB file, or a pattern as smoke.####.vdb: a medium, in metres of world space, instead of those the scene "
+                 "names; none: without any. Again for several")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  app.add_option("--volume-grid", volume.grids,
+                 "its grid, NAME or NAME:1 for the second of that name [density, else the only one that can be meant]")
+      ->type_name("NAME")
+      ->allow_extra_args(false);
+  parsed_option(app, "--volume-frames", "frames that have a file; others show the nearest [all]", "",
+                [&volume](const std::string& text) {
+                  const std::vector<int> frames = parse_frames(text);
+                  const auto [least, most] = std::ranges::minmax(frames);
+                  volume.frames = std::pair{least, most};
+                })
+      ->type_name("FRAMES");
+  app.add_option("--sigma-t", volume.sigma_t, "extinction of density 1, 1/m [1]")
+      ->type_name("X")
+      ->allow_extra_args(false)
+      ->check(number_between(0, 1e30));
+  app.add_option_function<std::vector<std::string>>(
+         "--albedo",
+         [&volume](const std::vector<std::string>& texts) {
+           for (const std::string& text : texts) volume.albedo.push_back(parse_color(text));
+         },
+         "share of the extinction that is scattered, 0 to 1: R,G,B or one number [1]")
+      ->type_name("R,G,B")
+      ->allow_extra_args(false);
+  app.add_option("--phase-g", volume.phase_g, "mean cosine of scattering by Henyey and Greenstein: forward above 0 [0]")
+      ->type_name("X")
+      ->allow_extra_args(false)
+      ->check(number_between(-0.9999, 0.9999));
+}
+
 void Tool::common_options(unsigned flags) {
   CLI::App& app = state_->app;
   Common& common = state_->common;
@@ -178,6 +215,7 @@ void Tool::common_options(unsigned flags) {
         ->capture_default_str()
         ->check(CLI::IsMember({"raw", "spec"}));
     environment_options();
+    volume_options();
     left_out(app.add_option("--state", common.state_files,
                             "state files of scene-plan, listed by --depfile instead of the scene's files"))
         ->type_name("FILE");

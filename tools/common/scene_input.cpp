@@ -1,8 +1,11 @@
 #include "tools/common/scene_input.h"
 
+#include <algorithm>
+
 #include "formats/error.h"
 #include "lib/scene/content_camera.h"
 #include "lib/scene/gltf_load.h"
+#include "lib/volume/medium.h"
 
 namespace tempolux::tools {
 
@@ -24,6 +27,8 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
   time_.fps = common.fps;
   time_.segment_length = common.segment_length;
   time_.light_units = common.light_units;
+  volumes_.emplace(tool, scene_);
+  if (volumes_->last_frame() > 0) scene_.duration_s = std::max(scene_.duration_s, volumes_->last_frame() / time_.fps);
   tool.say(path + ": light units " + common.light_units + ": punctual lights " +
            (common.light_units == "spec" ? "divided by 683" : "as they stand, factor 1"));
 }
@@ -50,9 +55,27 @@ void SceneInput::add_environment() {
   if (!scene_.environment->emits()) tool_.warn(scene_.environment->path + ": is black: it lights nothing");
 }
 
-void SceneInput::enter_segment(int frame) {
-  if (segment_ && frame >= segment_->segment().first && frame <= segment_->segment().last) return;
-  segment_ = std::make_unique<SegmentScene>(scene_, segment_of(scene_, frame, time_), time_);
+bool SceneInput::has_distant_light() const {
+  return scene_.environment || std::ranges::any_of(scene_.lights, [](const PunctualLight& punctual) {
+           return punctual.kind == PunctualLight::Kind::directional;
+         });
+}
+
+/// Light from far away is sent through a sphere around all that it can meet: media of the frame belong to that. So with both each
+/// frame has bounds of its own, the same whether it is made alone or as one of a range.
+void SceneInput::enter_segment(int frame, bool read_volumes) {
+  const bool inside = segment_ && frame >= segment_->segment().first && frame <= segment_->segment().last;
+  const bool adds_media = read_volumes && volumes_->any() && has_distant_light();
+  if (inside && (!adds_media || bounds_of_ == frame)) return;
+  Segment segment = segment_of(scene_, frame, time_);
+  bounds_of_.reset();
+  if (adds_media) {
+    if (const auto media = volumes_->at(frame, segment.origin))
+      for (const Medium& medium : media->all())
+        segment.world_bounds.add({medium.bounds().lower + segment.origin, medium.bounds().upper + segment.origin});
+    bounds_of_ = frame;
+  }
+  segment_ = std::make_unique<SegmentScene>(scene_, segment, time_);
   emission_.reset();
 }
 
@@ -64,12 +87,22 @@ SceneFrame SceneInput::at(int frame, bool asked) {
     warned_range_ = true;
   }
   frame = nearest;
-  enter_segment(frame);
-  return segment_->at(frame);
+  enter_segment(frame, asked);
+  SceneFrame at = segment_->at(frame);
+  if (asked && volumes_->any()) {
+    at.media = volumes_->at(frame, at.origin);
+    at.hashes.media = at.media ? at.media->hash() : VolumeInput::hash({});
+  }
+  return at;
+}
+
+std::string SceneInput::media_hash(int frame) {
+  enter_segment(frame, false);
+  return VolumeInput::hash(volumes_->read(frame, segment_->segment().origin));
 }
 
 const EmissionTable& SceneInput::emission(int frame) {
-  enter_segment(frame);
+  enter_segment(frame, true);
   if (!emission_) emission_ = build_emission_table(scene_, segment_->segment(), time_);
   return *emission_;
 }

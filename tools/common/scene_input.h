@@ -11,6 +11,7 @@
 #include "lib/light/lights.h"
 #include "lib/scene/at_frame.h"
 #include "tools/common/tool_main.h"
+#include "tools/common/volume_input.h"
 
 namespace tempolux::tools {
 
@@ -29,17 +30,26 @@ class SceneInput {
   const Scene& scene() const { return scene_; }
   const TimeOptions& time() const { return time_; }
   /// The scene at a frame; frames beyond the animation hold its end, with one warning if the user has asked for them.
+  /// Its media are read if it is `asked` for; for neighbours, of which only places are wanted, they are left out.
   SceneFrame at(int frame, bool asked = true);
+  /// Does the scene, or the command line, name media? And the hash of those at a frame, as in SceneHashes.
+  bool has_media() const { return volumes_->any(); }
+  std::string media_hash(int frame);
+  /// Files of media that were read so far.
+  const std::vector<std::string>& media_files() const { return volumes_->files(); }
   /// The frozen emission table of the frame's segment.
   const EmissionTable& emission(int frame);
 
  private:
   void add_environment();
-  void enter_segment(int frame);
+  void enter_segment(int frame, bool read_volumes);
+  bool has_distant_light() const;
 
   Tool& tool_;
   Scene scene_;
   TimeOptions time_;
+  std::optional<VolumeInput> volumes_;
+  std::optional<int> bounds_of_;   ///< frame whose media the segment's bounds hold
   std::unique_ptr<SegmentScene> segment_;
   std::optional<EmissionTable> emission_;
   bool warned_range_ = false;

@@ -46,10 +46,20 @@ enum class InputRole {
 };
 
 enum CommonOptions : unsigned {
-  uses_scene = 1,  ///< --fps --segment --animation --light-units --environment... --state --allow-stale --allow-outside
+  uses_scene = 1,  ///< --fps --segment --animation --light-units --environment... --volume... --state --allow-stale --allow-outside
   uses_seed = 2,   ///< --seed --seed-mode
   uses_camera = 4,  ///< --camera
   uses_frames = 8,  ///< --frame N or --frames SPEC, into Common::frames
+};
+
+/// Media that the command line names; a list has one value for all volumes or one for each.
+struct VolumeOptions {
+  std::vector<std::string> files;            ///< names or patterns; "none": what the scene names is left out
+  std::vector<std::string> grids;
+  std::vector<float> sigma_t;                ///< 1/m
+  std::vector<std::array<float, 3>> albedo;
+  std::vector<float> phase_g;
+  std::optional<std::pair<int, int>> frames; ///< that have files
 };
 
 /// Values of the common options.
@@ -66,6 +76,7 @@ struct Common {
   std::string environment;                              ///< file; "": none
   std::optional<std::array<float, 3>> environment_color;
   double environment_strength = 1, environment_rotation_deg = 0;
+  VolumeOptions volume;
   std::string stats_file, dep_file;      ///< "": none
   std::vector<std::string> state_files;  ///< listed in the depfile instead of the scene's files
   std::uint64_t max_memory_bytes = 0;    ///< 0: no limit
@@ -125,6 +136,7 @@ class Tool {
 
  private:
   void environment_options();
+  void volume_options();
 
   struct State;
   std::unique_ptr<State> state_;

@@ -1,0 +1,195 @@
+#include "lib/compose/compose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "formats/octahedral.h"
+#include "lib/core/parallel.h"
+#include "lib/core/sampling.h"
+#include "lib/gather/medium_event.h"
+#include "lib/volume/phase.h"
+
+namespace tempolux {
+namespace {
+
+constexpr std::size_t kChunk = 256;          ///< pixels
+constexpr int kMostSlices = 4096;            ///< along a ray
+
+struct Slice {
+  float begin, length;                       ///< m
+  float tau;
+  float left;                                ///< of light from its begin to the eye
+};
+
+double finest_voxel(const Media& media) {
+  double finest = INFINITY;
+  for (const Medium& medium : media.all()) finest = std::min(finest, medium.voxel_size());
+  return finest;
+}
+
+/// (1 - exp(-x)) / x.
+float mean_left(float x) { return x < 1e-4f ? 1 - x / 2 : -std::expm1(-x) / x; }
+
+/// Cuts the way into slices where there may be a medium; the depth by two points of Gauss and Legendre.
+void cut(const Media& media, const Ray& ray, float end, float step, std::vector<Slice>& slices) {
+  slices.clear();
+  constexpr float kGauss = 0.21132487f;
+  MajorantWalk walk(media.majorants(), ray.origin, ray.direction, end);
+  double tau = 0;
+  float from = 0, to = 0;
+  const auto cut_piece = [&] {
+    const float size = to - from;
+    const int n = std::clamp(int(std::ceil(size / step)), 1, kMostSlices);
+    const float each = size / float(n);
+    for (int i = 0; i < n && size > 0; ++i) {
+      const float begin = from + float(i) * each;
+      const float a = media.extinction(ray.origin + ray.direction * (begin + kGauss * each));
+      const float b = media.extinction(ray.origin + ray.direction * (begin + (1 - kGauss) * each));
+      const float depth = 0.5f * each * (a + b);
+      if (depth > 0) slices.push_back({begin, each, depth, float(std::exp(-tau))});
+      tau += double(depth);
+    }
+  };
+  for (MajorantWalk::Piece piece; walk.next(piece);) {
+    if (!(piece.majorant > 0)) continue;
+    if (piece.begin != to) {
+      cut_piece();
+      from = piece.begin;
+    }
+    to = piece.end;
+  }
+  cut_piece();
+}
+
+/// Direct light of the lamps scattered along the slices towards the eye: places by what is scattered from them.
+Rgb sampled_direct(const RenderScene& scene, const Media& media, const Ray& ray, const std::vector<Slice>& slices, float left,
+                   int samples, const PixelRandom& random, RayCounts& counts) {
+  Rgb sum{0.0f};
+  const float whole = 1 - left;              // share of what the eye would see from behind that is scattered or absorbed on the way
+  std::size_t at = 0;
+  float passed = 0;                          // of it, before slice `at`
+  for (int k = 0; k < samples; ++k) {
+    const float wanted = (float(k) + random.get1(0, Purpose::place)) / float(samples) * whole;
+    // Samples ascend; the last slice takes what rounding leaves over.
+    while (at + 1 < slices.size() && passed + slices[at].left * -std::expm1(-slices[at].tau) <= wanted) {
+      passed += slices[at].left * -std::expm1(-slices[at].tau);
+      ++at;
+    }
+    const Slice& slice = slices[at];
+    const float share = std::clamp((wanted - passed) / slice.left, 0.0f, -std::expm1(-slice.tau));
+    const float within = std::min(1.0f, -std::log1p(-share) / slice.tau);
+    const Vec3 position = ray.origin + ray.direction * (slice.begin + within * slice.length);
+    const auto bounce = std::uint32_t(k);
+    const MediumOptions& medium = media.collided(position, random.hashed().get1(bounce, Purpose::medium)).options();
+    const MediumPoint point{position, ray.direction, medium.albedo, medium.g};
+    sum += medium.albedo * sampled_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
+                                         {random.hashed(), bounce, way_shadow_of_medium}, counts.shadow);
+  }
+  return sum * (whole / float(samples));
+}
+
+SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray, float end, float step,
+                 const ComposeOptions& options, const PixelRandom& random, std::vector<Slice>& slices, RayCounts& counts) {
+  SmokePixel pixel;
+  cut(media, ray, end, step, slices);
+  if (slices.empty()) return pixel;
+  for (const Slice& slice : slices) {
+    const Vec3 middle = ray.origin + ray.direction * (slice.begin + 0.5f * slice.length);
+    pixel.light += light.scattered(middle) * (slice.left * slice.length * mean_left(slice.tau));
+  }
+  pixel.left = slices.back().left * std::exp(-slices.back().tau);
+  if (options.sample_lights && pixel.left < 1)
+    pixel.light += sampled_direct(scene, media, ray, slices, pixel.left, options.light_samples, random, counts);
+  return pixel;
+}
+
+}  // namespace
+
+MediaLight::MediaLight(const Media& media, const MajorantGrid& majorants, Vec3 eye, double emitted_flux, const Options& options)
+    : media_(media), eye_(eye), options_(options) {
+  if (!(options_.cell > 0)) options_.cell = finest_voxel(media);
+  for (const Medium& medium : media.all()) {
+    const float g = medium.options().g;
+    const auto found = std::find(gs_.begin(), gs_.end(), g);
+    g_of_.push_back(std::size_t(found - gs_.begin()));
+    if (found == gs_.end()) gs_.push_back(g);
+  }
+  sums_.assign(gs_.size(), FluenceSums(majorants, options_.cell, emitted_flux));
+}
+
+void MediaLight::add(const formats::PhotonBlock& block, Vec3 offset, int times) {
+  for (std::size_t i = 0; i < block.photons.size(); ++i) {
+    const formats::Photon& photon = block.photons[i];
+    if (photon.kind != formats::PathKind::tentative || (photon.bounce == 0 && !options_.direct)) continue;
+    const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset;
+    const Rgb worth{photon.flux[0], photon.flux[1], photon.flux[2]};
+    for (std::size_t g = 0; g < gs_.size(); ++g) {
+      float factor = 1;
+      if (gs_[g] != 0 && !block.directions.empty()) {
+        const auto wi = formats::decode_normal(block.directions[i]);
+        const Vec3 travel{-float(wi[0]), -float(wi[1]), -float(wi[2])};
+        factor = 4 * kPi * pdf_hg(gs_[g], travel, normalize(eye_ - position));
+      }
+      sums_[g].add(position, worth * factor, times);
+    }
+  }
+}
+
+void MediaLight::finish() {
+  volumes_.clear();
+  for (const FluenceSums& sums : sums_) volumes_.emplace_back(sums, options_.filter);
+}
+
+Rgb MediaLight::scattered(Vec3 point) const {
+  Rgb sum{0.0f};
+  const std::span<const Medium> media = media_.all();
+  for (std::size_t m = 0; m < media.size(); ++m) {
+    const float extinction = media[m].extinction(point);
+    if (extinction > 0) sum += media[m].options().albedo * volumes_[g_of_[m]].at(point) * (extinction / (4 * kPi));
+  }
+  return sum;
+}
+
+std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView& view, const MediaLight& light,
+                                      const std::vector<float>& depth, const ComposeOptions& options, RayCounts& counts) {
+  std::vector<SmokePixel> pixels(std::size_t(view.width()) * std::size_t(view.height()));
+  const Media* const media = scene.frame().media.get();
+  if (!media) return pixels;
+  const auto step = float(finest_voxel(*media) / 2);
+  std::mutex joining;
+  std::size_t done = 0;
+  parallel_chunks(pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    std::vector<Slice> slices;
+    RayCounts own;
+    for (std::size_t p = first; p < last; ++p) {
+      const auto x = float(p % std::size_t(view.width())), y = float(p / std::size_t(view.width()));
+      SmokePixel sum{Rgb(0.0f), 0};
+      for (int s = 0; s < options.samples; ++s) {
+        const PixelRandom random(options.seed, p, std::uint32_t(s));
+        const Vec2 within = options.surfaces_by_depth ? Vec2{0.5f, 0.5f} : random.get2(0, Purpose::pixel);
+        const Ray ray = view.ray(x + within.x, y + within.y);
+        float end = INFINITY;
+        if (options.surfaces_by_depth) {
+          // Z runs along the view axis; the ray does not.
+          const double along = view.depth(ray.origin + ray.direction) - view.depth(ray.origin);
+          end = float(double(depth[p]) / along);
+        } else {
+          Hit hit;
+          if (scene.tracer.intersect(ray, hit)) end = hit.t;
+          ++own.camera;
+        }
+        const SmokePixel one = march(scene, *media, light, ray, end, step, options, random, slices, own);
+        sum.light += one.light;
+        sum.left += one.left;
+      }
+      pixels[p] = {sum.light * (1 / float(options.samples)), sum.left / float(options.samples)};
+    }
+    const std::scoped_lock lock(joining);
+    counts += own;
+    if (options.progress) options.progress(double(done += last - first) / double(pixels.size()));
+  });
+  return pixels;
+}
+
+}  // namespace tempolux

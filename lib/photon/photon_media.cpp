@@ -1,0 +1,77 @@
+// lib/photon/photon_media.cpp -- photons in participating media.
+#include <algorithm>
+
+#include "lib/photon/photon_path.h"
+#include "lib/photon/photon_trace.h"
+#include "lib/volume/flight.h"
+#include "lib/volume/phase.h"
+
+namespace tempolux {
+
+const MajorantGrid& PhotonTracer::majorants() const {
+  static const MajorantGrid none;
+  return media_ ? media_->majorants() : none;
+}
+
+/// Follows photons to where they meet a surface, as the loop without media does; those that a medium scatters before are listed in
+/// `scattered`. Returns how many arrive.
+std::size_t PhotonTracer::fly(std::uint32_t bounce, std::size_t count, Path* paths, std::uint32_t* alive, Hit* hits,
+                              std::uint32_t* scattered, std::size_t& scattered_count, PhotonBatch& batch) const {
+  std::size_t arrived = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    Path& path = paths[alive[i]];
+    const bool meets = tracer_.intersect(path.ray, hits[arrived]);
+    const Flown flown = fly_through_media(path, meets ? hits[arrived].t : INFINITY, bounce, batch);
+    if (flown == Flown::scattered) scattered[scattered_count++] = alive[i];
+    if (flown != Flown::through) continue;
+    if (meets) alive[arrived++] = alive[i];
+    else batch.escaped += Rgbd(path.flux);
+  }
+  return arrived;
+}
+
+PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::uint32_t bounce, PhotonBatch& batch) const {
+  const PathRandom& random = path.random;
+  Flight flight(media_->majorants(), path.ray.origin, path.ray.direction, end);
+  Tentative t;
+  // Direct light is recorded only if it was asked for: volume-compose samples the lights.
+  const bool records = options_.store_volume && (options_.store_direct || path.diffuse_seen || path.specular_seen);
+  for (std::uint32_t step = 0;; ++step) {
+    const FlightNumbers numbers(random.bits(bounce, Purpose::flight, step & 0xffffff));
+    if (!flight.next(numbers.depth, t)) return Flown::through;
+    ++batch.medium_steps;
+    const Vec3 position = path.ray.origin + path.ray.direction * t.distance;
+    Rgb flux = path.flux;
+    if (path.inside.any()) flux *= path.inside.transmittance_over(tracer_.frame().materials, t.distance);
+    if (records && random.get1(bounce, Purpose::medium, (step & 0x7fffff) << 1 | 1) < options_.volume_share)
+      record_tentative(path, flux * (1 / (t.majorant * options_.volume_share)), position, bounce, batch);
+    if (!(numbers.accept * t.majorant < media_->extinction(position))) continue;
+
+    const MediumOptions& medium = media_->collided(position, random.get1(bounce, Purpose::medium)).options();
+    const Rgb scattered = flux * medium.albedo;
+    const float survival =
+        std::min(kLargestPhotonSurvival, max_component(scattered) / std::max(max_component(flux), 1e-37f));
+    const bool survives = random.get1(bounce, Purpose::roulette) < survival;
+    const Rgb left = scattered * (survives ? 1 / survival : 0);
+    batch.absorbed += Rgbd(path.flux) - Rgbd(left);
+    path.flux = left;
+    if (!survives) return Flown::ended;
+    path.diffuse_seen = true;
+    path.ray = {position, sample_hg(medium.g, path.ray.direction, random.get2(bounce, Purpose::phase)), 0, INFINITY};
+    return Flown::scattered;
+  }
+}
+
+void PhotonTracer::record_tentative(const Path& path, Rgb flux, Vec3 position, std::uint32_t bounce, PhotonBatch& batch) const {
+  formats::Photon& photon = batch.block.photons.emplace_back();
+  photon.position = {position.x, position.y, position.z};
+  photon.flux = {flux.r, flux.g, flux.b};
+  photon.normal = formats::encode_normal({0, 0, 1});   // of no meaning, and the same in all
+  photon.kind = formats::PathKind::tentative;
+  photon.bounce = std::uint8_t(std::min(bounce, 255u));
+  if (!stores_directions()) return;
+  const Vec3 wi = -path.ray.direction;
+  batch.block.directions.push_back(formats::encode_normal({wi.x, wi.y, wi.z}));
+}
+
+}  // namespace tempolux

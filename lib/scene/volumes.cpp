@@ -1,0 +1,123 @@
+#include "lib/scene/volumes.h"
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "formats/error.h"
+#include "lib/volume/vdb_file.h"
+
+namespace tempolux {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Values of one node's extras, each checked.
+class Extras {
+ public:
+  Extras(const Json& object, std::string place) : object_(object), place_(std::move(place)) {}
+
+  const Json* find(const char* key) const {
+    const auto found = object_.find(key);
+    return found == object_.end() || found->is_null() ? nullptr : &*found;
+  }
+  [[noreturn]] void fail(const char* key, const std::string& wanted) const {
+    throw InputError(place_ + ": extras." + key + ": must be " + wanted);
+  }
+  float number(const Json& value, const char* key, double least, double most, const std::string& wanted) const {
+    if (!value.is_number()) fail(key, wanted);
+    const double v = value.get<double>();
+    if (!(v >= least && v <= most)) fail(key, wanted);
+    return float(v);
+  }
+  float number(const char* key, float otherwise, double least, double most, const std::string& wanted) const {
+    const Json* value = find(key);
+    return value ? number(*value, key, least, most, wanted) : otherwise;
+  }
+  std::string text(const char* key) const {
+    const Json* value = find(key);
+    if (!value) return {};
+    if (!value->is_string()) fail(key, "a text");
+    return value->get<std::string>();
+  }
+  Rgb colour(const char* key, Rgb otherwise) const {
+    const std::string wanted = "three numbers from 0 to 1, or one";
+    const Json* value = find(key);
+    if (!value) return otherwise;
+    if (!value->is_array()) return Rgb(number(*value, key, 0, 1, wanted));
+    if (value->size() != 3) fail(key, wanted);
+    return {number((*value)[0], key, 0, 1, wanted), number((*value)[1], key, 0, 1, wanted), number((*value)[2], key, 0, 1, wanted)};
+  }
+  std::optional<std::pair<int, int>> range(const char* first, const char* last) const {
+    const Json *a = find(first), *b = find(last);
+    if (!a && !b) return std::nullopt;
+    const std::string wanted = "a whole number, together with its companion, first <= last";
+    for (const auto& [value, key] : {std::pair{a, first}, std::pair{b, last}})
+      if (!value || !value->is_number_integer() || std::abs(value->get<double>()) > 1e9) fail(key, wanted);
+    if (a->get<int>() > b->get<int>()) fail(first, wanted);
+    return std::pair{a->get<int>(), b->get<int>()};
+  }
+
+ private:
+  const Json& object_;
+  std::string place_;
+};
+
+bool leaves_folder(const std::filesystem::path& name) {
+  if (name.is_absolute()) return true;
+  for (const auto& part : name)
+    if (part == "..") return true;
+  return false;
+}
+
+}  // namespace
+
+std::vector<VolumeSource> volumes_of(const Scene& scene, bool allow_outside) {
+  std::vector<VolumeSource> sources;
+  for (const Node& node : scene.nodes) {
+    if (node.extras.empty() || node.extras.find("vdb_pattern") == std::string::npos) continue;
+    const Json object = Json::parse(node.extras, nullptr, false);
+    if (!object.is_object() || !object.contains("vdb_pattern")) continue;
+    const std::string place = scene.path + ": node " + (node.name.empty() ? std::to_string(node.source_index) : node.name);
+    const Extras extras(object, place);
+    const std::string pattern = extras.text("vdb_pattern");
+    if (pattern.empty()) extras.fail("vdb_pattern", "a file name");
+    if (!allow_outside && leaves_folder(pattern))
+      throw InputError(place + ": extras.vdb_pattern: leaves the scene's folder; pass --allow-outside to follow it");
+    VolumeSource source;
+    source.place = place;
+    source.pattern = (std::filesystem::path(scene.path).parent_path() / pattern).string();
+    source.grid = extras.text("vdb_grid");
+    source.frames = extras.range("vdb_first", "vdb_last");
+    source.options.sigma_t = extras.number("sigma_t_scale", 1, 0, 1e30, "a number from 0 on");
+    source.options.albedo = extras.colour("albedo", Rgb(1.0f));
+    source.options.g = extras.number("anisotropy", 0, -0.9999, 0.9999, "a number from -0.9999 to 0.9999");
+    sources.push_back(std::move(source));
+  }
+  return sources;
+}
+
+std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<const std::string> files, Vec3d origin,
+                               std::uint64_t max_memory) {
+  std::vector<Medium> media;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const VdbVolume volume = read_vdb(files[i], sources[i].grid, max_memory);
+    if (volume.voxels->empty()) continue;    // smoke that has not begun
+    Affine scene_from_index = volume.world_from_index;
+    scene_from_index.translation -= origin;
+    try {
+      media.emplace_back(volume.voxels, scene_from_index, sources[i].options);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(files[i] + ": " + error.what());
+    }
+    const Medium& medium = media.back();
+    if (!(max_component(max(abs(medium.bounds().lower), abs(medium.bounds().upper))) < 1e15))
+      throw InputError(files[i] + ": its voxels lie beyond 1e15 m");
+    if (!std::isfinite(medium.grid().largest() * medium.options().sigma_t))
+      throw InputError(files[i] + ": its extinction is beyond what numbers can hold; lower " + sources[i].place + "'s sigma_t");
+    if (medium.bounds().empty()) media.pop_back();
+  }
+  return media;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,72 @@
+// lib/volume/majorants.h -- the greatest extinction by cells of space, and the walk of a ray through them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lib/core/vec.h"
+
+namespace tempolux {
+
+/// Cells of equal size in a box of scene space, each with a majorant: an extinction [1/m] that no point of the cell exceeds.
+/// Frozen over a segment it makes each photon look at the same places in every frame.
+class MajorantGrid {
+ public:
+  static constexpr std::uint64_t kMostCells = std::uint64_t(1) << 21;
+
+  MajorantGrid() = default;                  ///< of nothing
+  /// Zeros. Counts are at least 1; throws std::invalid_argument for a box that is empty or more than kMostCells.
+  MajorantGrid(const Box3& box, const std::array<std::int32_t, 3>& counts);
+
+  bool empty() const { return values_.empty(); }
+  const Box3& box() const { return box_; }
+  const std::array<std::int32_t, 3>& counts() const { return counts_; }
+  const std::vector<float>& values() const { return values_; }   ///< z fastest
+  std::vector<float>& values() { return values_; }
+  Box3d cell(std::int32_t x, std::int32_t y, std::int32_t z) const;
+  /// Lower bound of tentative collisions: cells above 0 are raised to `least` [1/m].
+  void raise_to(float least);
+  /// Mean length of a way through the box: 4 V / S of a convex body (Cauchy) [m].
+  float mean_chord() const;
+  std::string hash() const;
+
+  friend class MajorantWalk;
+
+ private:
+  float plane(int axis, std::int32_t number) const {
+    return number == counts_[std::size_t(axis)] ? box_.upper[axis]
+                                                : box_.lower[axis] + float(number) * cell_size_[axis];
+  }
+  Box3 box_;
+  std::array<std::int32_t, 3> counts_{};
+  Vec3 cell_size_;
+  std::vector<float> values_;
+};
+
+/// The cells that a ray passes, one after the other: a digital differential analyser. Amanatides & Woo, Eurographics 1987.
+///
+/// Pieces join without gap or overlap, and reach from the box's entry to its exit or `length`, whichever is nearer.
+class MajorantWalk {
+ public:
+  struct Piece {
+    float begin, end;                        ///< m along the ray
+    float majorant;                          ///< 1/m
+  };
+  /// `direction` is unit; length may be infinite.
+  MajorantWalk(const MajorantGrid& grid, Vec3 origin, Vec3 direction, float length);
+  /// The next piece, which may be of no length; false at the end.
+  bool next(Piece& piece);
+
+ private:
+  float crossing(int axis) const;            ///< t at which the present cell is left along this axis
+  const MajorantGrid* grid_ = nullptr;
+  Vec3 origin_, inverse_;
+  std::array<std::int32_t, 3> cell_{}, step_{};
+  std::array<float, 3> leave_{};
+  float begin_ = 0, end_ = 0;
+  bool inside_ = false;
+};
+
+}  // namespace tempolux

@@ -1,0 +1,23 @@
+// lib/volume/vdb_pipe.h -- what tempolux-vdb, which alone links OpenVDB, is asked and what it prints.
+//
+// Asked on standard input: the file's path, a line feed, the grid's name (may be empty), a line feed.
+// Printed: VdbPipeHead, the name's bytes, then a VoxelBlock for each block of 8^3 voxels that is not all 0. In trouble: one
+// line on standard error and exit code 2.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "lib/volume/voxel_grid.h"
+
+namespace tempolux {
+
+struct VdbPipeHead {
+  std::array<char, 8> magic{'T', 'P', 'X', 'V', 'D', 'B', '1', '\n'};
+  std::array<double, 12> world_from_index{};   ///< three rows of four: x' = r0 x + r1 y + r2 z + r3
+  std::uint64_t block_count = 0;
+  std::uint64_t name_size = 0;
+};
+static_assert(sizeof(VoxelBlock) == 12 + 2048 && sizeof(VdbPipeHead) == 120);
+
+}  // namespace tempolux

@@ -1,0 +1,5 @@
+# smoke.mk -- part of Makefile.example, taken where scene-plan has found media (plan_media): smoke is put into the frames last.
+# Frames before it are in OUT/clear; what comes through the smoke is dimmed there already.
+$(pictures): $(OUT)/frames/%.exr: $(OUT)/clear/%.exr $$(photons_$$*:%=$(OUT)/photons/%.photons) $(OUT)/options/smoke $(BIN)/volume-compose
+	$(RUN) $(BIN)/volume-compose $(SCENE) --frame $* --base $< --photons $(OUT)/photons/$(photons_$*).photons $(options_smoke) \
+	  -o $@ --stats $(@:.exr=.json)

@@ -1,0 +1,103 @@
+# Media from files: what is read, what is refused, answers known on paper, the same bytes for any number of threads.
+failed=0
+bad() { echo "$*"; failed=1; }
+. "$HERE/expect.sh"
+command -v make-vdb > /dev/null || { echo 'built without volumes'; exit 77; }
+units=$HERE/../data/units
+furnace=$units/U5_furnace_closed.gltf
+python=${PYTHON:-python3}
+
+# cube.vdb: density 1 in 16^3 voxels; smoke.vdb: a ball, denser inside; of the others each has one fault.
+"$python" - <<'END' || bad 'values'
+import math, struct
+def write(name, f):
+    with open(name, "wb") as out:
+        out.write(b"".join(struct.pack("<f", f(x, y, z)) for x in range(16) for y in range(16) for z in range(16)))
+write("ones", lambda x, y, z: 1.0)
+write("zeros", lambda x, y, z: 0.0)
+write("ball", lambda x, y, z: max(0.0, 1 - math.dist((x, y, z), (7.5, 7.5, 7.5)) / 8))
+write("negative", lambda x, y, z: -1.0 if (x, y, z) == (3, 4, 5) else 1.0)
+write("nan", lambda x, y, z: math.nan if (x, y, z) == (3, 4, 5) else 1.0)
+END
+place="16 16 16 .05 -.375 -.375 -.375"
+make-vdb cube.vdb $place < ones; make-vdb empty.vdb $place < zeros; make-vdb smoke.vdb $place < ball
+make-vdb negative.vdb $place < negative; make-vdb nan.vdb $place < nan
+make-vdb half.vdb $place density fog 0 half < ones; make-vdb double.vdb $place density fog 0 double < ones
+make-vdb level.vdb $place density level-set < ones; make-vdb outside.vdb $place density fog 0.5 < ones
+make-vdb heat.vdb $place heat < ones; make-vdb vector.vdb $place density fog 0 vector < ones
+make-vdb two.vdb $place heat < ones; make-vdb two.vdb $place soot < ball
+make-vdb twins.vdb $place density < zeros; make-vdb twins.vdb $place density < ones
+cp ones text.vdb; : > nothing.vdb
+
+tiny="--size 8x8 --spp 1 --integrator path -q -o made.exr"
+for file in cube half double heat empty; do expect 0 '' frame-render "$furnace" --volume $file.vdb $tiny; done
+expect 0 '' frame-render "$furnace" --volume twins.vdb --volume-grid density:1 $tiny
+expect 0 '' frame-render "$furnace" --volume two.vdb --volume-grid soot $tiny
+refused() { expect 2 "$2" frame-render "$furnace" --volume $1 $tiny; }
+refused negative.vdb 'negative.vdb: voxel (3, 4, 5) is -1'
+refused nan.vdb 'nan.vdb: voxel (3, 4, 5) is nan'
+refused level.vdb "level.vdb: grid 'density' is not a density but level set"
+refused vector.vdb 'is not a density'
+refused outside.vdb 'not 0 outside its voxels'
+refused two.vdb 'several grids that could be meant: heat (fog volume), soot (fog volume)'
+refused twins.vdb 'several grids that could be meant'
+refused text.vdb 'text.vdb: is not an OpenVDB file'
+refused nothing.vdb 'is not an OpenVDB file'
+refused absent.vdb 'absent.vdb: cannot be opened'
+refused 'smoke.####.vdb' 'smoke.0000.vdb: cannot be opened'
+expect 2 "has no grid 'fire'; it has density" frame-render "$furnace" --volume cube.vdb --volume-grid fire $tiny
+expect 2 'name one' frame-render "$furnace" --sigma-t 3 $tiny
+expect 2 'is given 2 times for 1 volumes' frame-render "$furnace" --volume cube.vdb --sigma-t 3 --sigma-t 4 $tiny
+expect 2 'at most 1' frame-render "$furnace" --volume cube.vdb --albedo 2 $tiny
+
+# A file cut anywhere: an error in one line, or voxels that are whole; never a signal, never long.
+size=$(wc -c < smoke.vdb)
+for percent in 1 5 10 20 30 40 50 60 70 80 90 95 99; do
+  head -c $((size * percent / 100)) smoke.vdb > cut.vdb
+  timeout 10 frame-render "$furnace" --volume cut.vdb $tiny > out.txt 2>&1
+  code=$?
+  case $code in 0) ;; 2) [ "$(wc -l < out.txt)" = 1 ] || bad "cut at $percent %: $(cat out.txt)";; *) bad "cut at $percent %: exit $code: $(cat out.txt)";; esac
+done
+
+means() { tempolux-info --json "$1" > info.json; }
+check() {  # FILE TOLERANCE R G B [LAYER.]: means of channels
+  means "$1"
+  "$python" - "$2" "$3" "$4" "$5" "$6" <<'END' || bad "$1: $2 $3 $4 $5"
+import json, sys
+tolerance, *wanted = map(float, sys.argv[1:5])
+prefix = sys.argv[5] if len(sys.argv) > 5 else ""
+channels = {c["channel"]: c["mean"] for c in json.load(open("info.json"))["channels"]}
+for name, want in zip("RGB", wanted):
+    got = channels[prefix + name]
+    assert abs(got - want) <= tolerance * max(want, 1e-9), (name, got, want)
+END
+}
+
+# A furnace: in a closed room of one radiance all around, smoke that absorbs nothing changes nothing, by paths, and by photons and slices.
+# Noise of these counts is a third of each tolerance (measured over eight seeds).
+medium="--volume smoke.vdb --sigma-t 6 --albedo 1"
+frame-render "$furnace" $medium --size 32x32 --spp 64 --integrator path -q -o path.exr || bad 'path'
+check path.exr .01 2 5 1.25
+frame-render "$furnace" $medium --phase-g .8 --size 32x32 --spp 64 --integrator path -q -o g.exr || bad 'path, g'
+check g.exr .01 2 5 1.25
+photon-trace "$furnace" $medium --photons 200k --kinds indirect,volume -q -o p.photons || bad photons
+frame-render "$furnace" $medium --size 32x32 --photons p.photons --spp 8 --channels RGBA,Z,layers -q -o base.exr || bad base
+volume-compose "$furnace" $medium --photons p.photons --base base.exr -q -o composed.exr || bad compose
+check composed.exr .02 2 5 1.25
+
+# Without the medium the file is as if there were no such option, and no medium is known.
+frame-render "$furnace" --volume none --size 8x8 --spp 1 --integrator path -q -o none.exr && frame-render "$furnace" --size 8x8 --spp 1 --integrator path -q -o plain.exr
+[ "$(tempolux-info --digest none.exr | cut -c 1-32)" = "$(tempolux-info --digest plain.exr | cut -c 1-32)" ] || bad '--volume none is not nothing'
+tempolux-info --json plain.exr | grep -q 'volume.R' && bad 'a layer volume without medium'
+photon-trace "$furnace" --volume none --photons 10k --kinds indirect -q -o none.photons
+expect 2 'media differ' volume-compose "$furnace" $medium --photons none.photons --base base.exr -o x.exr
+photon-trace "$furnace" $medium --photons 10k --kinds indirect -q -o surfaces.photons
+expect 2 'has no photons in media' volume-compose "$furnace" $medium --photons surfaces.photons --base base.exr -o x.exr
+expect 2 'has smoke in its layer volume already' volume-compose "$furnace" $medium --photons p.photons --base composed.exr -o x.exr
+
+for threads in 1 2 3 7; do
+  photon-trace "$furnace" $medium --photons 20k --kinds indirect,volume --threads $threads -q -o t$threads.photons
+  volume-compose "$furnace" $medium --photons p.photons --base base.exr --threads $threads -q -o t$threads.exr
+  cmp t1.photons t$threads.photons && cmp t1.exr t$threads.exr || bad "$threads threads"
+done
+exit $failed

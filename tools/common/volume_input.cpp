@@ -1,0 +1,90 @@
+#include "tools/common/volume_input.h"
+
+#include <algorithm>
+
+#include "formats/error.h"
+#include "formats/hash.h"
+
+namespace tempolux::tools {
+namespace {
+
+/// The value for volume i of n: its own, or the one given for all, or none.
+template <class T>
+const T* value_for(const std::vector<T>& values, std::size_t i, std::size_t n, const char* option) {
+  if (values.empty()) return nullptr;
+  if (values.size() != 1 && values.size() != n)
+    throw InputError(std::string(option) + ": is given " + std::to_string(values.size()) + " times for " + std::to_string(n) +
+                     " volumes; give it once, or once for each");
+  return &values[values.size() == 1 ? 0 : i];
+}
+
+std::vector<VolumeSource> sources_of(const VolumeOptions& options) {
+  std::vector<VolumeSource> sources;
+  const std::size_t n = options.files.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    VolumeSource source;
+    source.place = "--volume " + options.files[i];
+    source.pattern = options.files[i];
+    if (const auto* grid = value_for(options.grids, i, n, "--volume-grid")) source.grid = *grid;
+    if (const auto* sigma = value_for(options.sigma_t, i, n, "--sigma-t")) source.options.sigma_t = *sigma;
+    if (const auto* albedo = value_for(options.albedo, i, n, "--albedo")) source.options.albedo = Rgb((*albedo)[0], (*albedo)[1], (*albedo)[2]);
+    if (const auto* g = value_for(options.phase_g, i, n, "--phase-g")) source.options.g = *g;
+    if (max_component(source.options.albedo) > 1) throw InputError("--albedo: a share of light is at most 1");
+    if (options.frames) source.frames = *options.frames;
+    sources.push_back(std::move(source));
+  }
+  return sources;
+}
+
+}  // namespace
+
+VolumeInput::VolumeInput(Tool& tool, const Scene& scene) : tool_(tool) {
+  const VolumeOptions& options = tool.common().volume;
+  const bool none = options.files.size() == 1 && options.files.front() == "none";
+  if (options.files.empty()) sources_ = volumes_of(scene, tool.common().allow_outside);
+  else if (!none) sources_ = sources_of(options);
+  if ((options.files.empty() || none) &&
+      (!options.grids.empty() || !options.sigma_t.empty() || !options.albedo.empty() || !options.phase_g.empty() || options.frames))
+    throw InputError("--volume-grid, --volume-frames, --sigma-t, --albedo and --phase-g say what --volume FILE is; name one");
+}
+
+int VolumeInput::last_frame() const {
+  int last = -1;
+  for (const VolumeSource& source : sources_) {
+    if (!source.frames) return -1;
+    last = std::max(last, source.frames->second);
+  }
+  return last;
+}
+
+std::vector<Medium> VolumeInput::read(int frame, Vec3d origin) {
+  std::vector<std::string> files;
+  for (const VolumeSource& source : sources_) {
+    const int at = source.frames ? std::clamp(frame, source.frames->first, source.frames->second) : frame;
+    files.push_back(has_frame_pattern(source.pattern) ? frame_name(source.pattern, at) : source.pattern);
+    tool_.depends_on(files.back(), InputRole::of_scene);
+  }
+  for (const std::string& file : files)
+    if (std::ranges::find(files_, file) == files_.end()) files_.push_back(file);
+  return read_media(sources_, files, origin, tool_.common().max_memory_bytes);
+}
+
+std::string VolumeInput::hash(const std::vector<Medium>& media) {
+  Hasher hasher;
+  hasher.add(std::string_view("media 1"));
+  for (const Medium& medium : media) hasher.add(std::string_view(medium.hash()));
+  return hasher.hex();
+}
+
+std::shared_ptr<const Media> VolumeInput::at(int frame, Vec3d origin) {
+  if (!any()) return nullptr;
+  if (has_last_ && last_at_ == frame && last_origin_ == origin) return last_;
+  std::vector<Medium> media = read(frame, origin);
+  last_ = media.empty() ? nullptr : std::make_shared<const Media>(std::move(media));
+  last_at_ = frame;
+  last_origin_ = origin;
+  has_last_ = true;
+  return last_;
+}
+
+}  // namespace tempolux::tools
