@@ -92,7 +92,9 @@ void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options&
   const Tracer tracer(frame);
   const Lights lights(frame, input.emission(frame.frame));
   const IndirectChoice choice = choose_indirect(pilot_indirect({tracer, lights}, view, 0));
-  use_indirect(plan, kIndirectMethods[std::size_t(choice.method)], choice.because);
+  const std::string method = kIndirectMethods[std::size_t(choice.method)];
+  if (plan.media && method == "paths") return use_indirect(plan, "gather", "photons light the media, points read them, too");
+  use_indirect(plan, method, choice.because);
 }
 
 /// Decides what of a frame's light follows from that of what stands: as asked, or by a pilot. What it then costs is noted for the
@@ -150,6 +152,10 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
     std::cout << (options.json ? estimate_as_json : estimate_text(estimate, processors, options.jobs, threads));
   }
   tool.stats().phase("write");
+  if (makefile && plan.media)
+    for (const PlannedSegment& segment : plan.segments)
+      write_if_changed(options.folder + "/state/majorants." + frame_digits(segment.first),
+                       majorants_text(input.frozen_majorants(segment.first, segment.last)));
   std::vector<std::string> files = scene.files;
   files.insert(files.end(), input.media_files().begin(), input.media_files().end());
   if (makefile) write_plan(tool, plan, files, options, *makefile, estimate_as_json);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "lib/core/parallel.h"
+#include "lib/photon/photon_ledger.h"
 
 namespace tempolux {
 namespace {
@@ -18,19 +19,6 @@ struct EncodedBatch {
 
 std::array<double, 3> to_array(const Rgbd& c) { return {c.r, c.g, c.b}; }
 
-void add_to_ledger(const PhotonBatch& batch, std::int32_t frame, std::vector<formats::GroupFlux>& ledger) {
-  formats::GroupFlux& group = ledger[batch.block.group];
-  group.group = batch.block.group;
-  group.frame = frame;
-  group.paths += batch.path_count;
-  for (int c = 0; c < 3; ++c) {
-    const auto i = std::size_t(c);
-    group.emitted[i] += batch.emitted[c];
-    group.escaped[i] += batch.escaped[c];
-    group.absorbed[i] += batch.absorbed[c];
-  }
-}
-
 }  // namespace
 
 PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions& options,
@@ -38,11 +26,7 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
                                  const std::function<void(const void*, std::size_t)>& sink,
                                  const std::function<void(double)>& progress) {
   PhotonMapResult result;
-  header.group_count = tracer.group_count();
-  header.emitted_count = tracer.photon_count();
-  header.kinds = options.kinds();
-  if (options.store_volume) header.majorants = tracer.majorants().hash();
-  if (tracer.stores_directions()) header.columns |= formats::column_direction;
+  describe_map(tracer, options, header);
   formats::PhotonWriter writer(
       [&](const void* data, std::size_t size) {
         sink(data, size);
@@ -65,25 +49,19 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
         const auto& item = *static_cast<const EncodedBatch*>(pointer);
         if (!item.bytes.empty()) writer.write_encoded(item.bytes, item.batch.block);
         result.totals.photon_count += item.batch.block.photons.size();
-        result.path_count += item.batch.path_count;
-        result.ray_count += item.batch.ray_count;
-        result.specular_ray_count += item.batch.specular_ray_count;
-        result.seen_count += item.batch.seen_count;
+        count(item.batch, result);
         emitted += item.batch.emitted;
         escaped += item.batch.escaped;
         absorbed += item.batch.absorbed;
         result.touched.insert(result.touched.end(), item.batch.touched.begin(), item.batch.touched.end());
-        result.medium_steps += item.batch.medium_steps;
-        if (!ledger.empty()) add_to_ledger(item.batch, header.identity.first_frame, ledger);
+        if (!ledger.empty()) add_to_ledger(item.batch, header.identity.first_frame, ledger[item.batch.block.group]);
         if (progress) progress(double(i + 1) / double(tracer.batch_count()));
       });
   result.totals.emitted_flux = to_array(emitted);
   result.totals.escaped_flux = to_array(escaped);
   // What lossless walls absorb is 0 in the mean, and what roulette gives and takes may leave it below.
   for (double& flux : result.totals.absorbed_flux = to_array(absorbed)) flux = std::max(flux, 0.0);
-  // Of a group roulette may leave a little less than nothing absorbed; of the whole map hardly.
-  for (formats::GroupFlux& group : ledger)
-    for (double& flux : group.absorbed) flux = std::max(flux, 0.0);
+  for (formats::GroupFlux& group : ledger) close_ledger(group);
   writer.finish(result.totals, ledger);
   return result;
 }

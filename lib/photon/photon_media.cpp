@@ -1,6 +1,7 @@
 // lib/photon/photon_media.cpp -- photons in participating media.
 #include <algorithm>
 
+#include "lib/photon/photon_ledger.h"
 #include "lib/photon/photon_path.h"
 #include "lib/photon/photon_trace.h"
 #include "lib/volume/flight.h"
@@ -43,9 +44,10 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
     const Vec3 position = path.ray.origin + path.ray.direction * t.distance;
     Rgb flux = path.flux;
     if (path.inside.any()) flux *= path.inside.transmittance_over(tracer_.frame().materials, t.distance);
+    const float extinction = media_->extinction(position);
     if (records && random.get1(bounce, Purpose::medium, (step & 0x7fffff) << 1 | 1) < options_.volume_share)
-      record_tentative(path, flux * (1 / (t.majorant * options_.volume_share)), position, bounce, batch);
-    if (!(numbers.accept * t.majorant < media_->extinction(position))) continue;
+      record_tentative(path, flux * (1 / (t.majorant * options_.volume_share)), position, extinction, t.majorant, bounce, batch);
+    if (!(numbers.accept * t.majorant < extinction)) continue;
 
     const MediumOptions& medium = media_->collided(position, random.get1(bounce, Purpose::medium)).options();
     const Rgb scattered = flux * medium.albedo;
@@ -62,11 +64,12 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
   }
 }
 
-void PhotonTracer::record_tentative(const Path& path, Rgb flux, Vec3 position, std::uint32_t bounce, PhotonBatch& batch) const {
+void PhotonTracer::record_tentative(const Path& path, Rgb flux, Vec3 position, float extinction, float majorant, std::uint32_t bounce,
+                                    PhotonBatch& batch) const {
   formats::Photon& photon = batch.block.photons.emplace_back();
   photon.position = {position.x, position.y, position.z};
   photon.flux = {flux.r, flux.g, flux.b};
-  photon.normal = formats::encode_normal({0, 0, 1});   // of no meaning, and the same in all
+  photon.normal = encode_likelihood(extinction, majorant);
   photon.kind = formats::PathKind::tentative;
   photon.bounce = std::uint8_t(std::min(bounce, 255u));
   if (!stores_directions()) return;

@@ -188,7 +188,7 @@ PhotonBatch PhotonTracer::trace(std::size_t number) const {
     }
   if (!lights_.aim().empty())
     for (const formats::Photon& photon : batch.block.photons)
-      batch.seen_count += lights_.aim().holds({photon.position[0], photon.position[1], photon.position[2]});
+      batch.seen_count += photon.kind != PathKind::tentative && lights_.aim().holds({photon.position[0], photon.position[1], photon.position[2]});
   return batch;
 }
 

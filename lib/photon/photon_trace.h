@@ -80,6 +80,12 @@ class PhotonTracer {
   /// Batches in file order: groups ascending, each cut into pieces of kBatch paths. In a batch photons lie by waves of
   /// kWave paths, in these by bounce.
   std::size_t batch_count() const { return std::size_t(group_count_) * batches_per_group_; }
+  /// Batches [first, last) of a group.
+  std::pair<std::size_t, std::size_t> batches_of(std::uint32_t group) const {
+    return {std::size_t(group * batches_per_group_), std::size_t((group + 1) * batches_per_group_)};
+  }
+  /// The frame's media as photons fly through them, or null.
+  const Media* media() const { return media_ ? &*media_ : nullptr; }
   /// The majorants of flight, floor included; empty without media.
   const MajorantGrid& majorants() const;
   /// Do records need their direction: is a phase function of the media not even?
@@ -112,7 +118,7 @@ class PhotonTracer {
                   std::size_t& scattered_count, PhotonBatch& batch) const;
   enum class Flown { through, scattered, ended };
   Flown fly_through_media(Path& path, float end, std::uint32_t bounce, PhotonBatch& batch) const;
-  void record_tentative(const Path& path, Rgb flux, Vec3 position, std::uint32_t bounce, PhotonBatch& batch) const;
+  void record_tentative(const Path& path, Rgb flux, Vec3 position, float extinction, float majorant, std::uint32_t bounce, PhotonBatch& batch) const;
   bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
   bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
                   const std::optional<Vec3>& seen, const Draw& draw, PhotonBatch& batch) const;

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "formats/error.h"
 #include "formats/hash.h"
 #include "lib/light/lights.h"
 #include "lib/material/surface_material.h"

@@ -56,6 +56,22 @@ std::string variable(const std::string& name, const Frames& frames) {
   return line.append(1, '\n');
 }
 
+/// The map before each in its segment: what it may be an update of.
+std::string previous_maps(const Plan& plan, const std::set<int>& photon_frames) {
+  std::string text = "\n# the photon map before, in the same segment\n";
+  for (const PlannedSegment& segment : plan.segments) {
+    int previous = 0;
+    bool any = false;
+    for (const int frame : photon_frames) {
+      if (frame < segment.first || frame > segment.last) continue;
+      if (any) text += "lit_before_" + frame_digits(frame) + " := " + frame_digits(previous) + "\n";
+      previous = frame;
+      any = true;
+    }
+  }
+  return text;
+}
+
 /// A file name as a prerequisite.
 std::string escaped_for_make(const std::string& name) {
   std::string text;
@@ -154,12 +170,14 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
       if (!frame.asked) continue;
       text += "camera_" + digits + " := " + folder + "/state/camera." + digits + "\n";
       text += "picture_" + digits + " := " + frame_digits(frame.picture) + "\n";
+      if (plan.media) text += "majorants_" + digits + " := " + folder + "/state/majorants." + first + "\n";
       if (photons) text += "photons_" + digits + " := " + frame_digits(frame.lit_frame) + "\n";
       text += "segment_" + digits + " := " + first + "\n";
       text += "previous_" + digits + " :=" + previous + "\n";
       previous = " " + digits;
     }
   }
+  if (photons && plan.media) text += previous_maps(plan, photon_frames);
   if (photons) text += "\n# photon maps, and the pictures they light\n";
   for (const int light : photon_frames) text += variable("views_" + frame_digits(light), lit.at(light));
   text += standing_variables(plan, folder, photon_frames);

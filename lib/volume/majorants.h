@@ -25,6 +25,8 @@ class MajorantGrid {
   const std::array<std::int32_t, 3>& counts() const { return counts_; }
   const std::vector<float>& values() const { return values_; }   ///< z fastest
   std::vector<float>& values() { return values_; }
+  /// Majorant at a point; 0 outside.
+  float at(Vec3 point) const;
   Box3d cell(std::int32_t x, std::int32_t y, std::int32_t z) const;
   /// Lower bound of tentative collisions: cells above 0 are raised to `least` [1/m].
   void raise_to(float least);

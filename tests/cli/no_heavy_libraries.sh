@@ -11,7 +11,7 @@ for tool in "$1"/*; do
   libraries=$(ldd "$tool") || { echo "$tool: ldd failed"; bad=1; continue; }
   if echo "$libraries" | grep -iE 'openimageio|openvdb|opencv|ffmpeg|libav'; then echo "^ $tool links these"; bad=1; fi
   case $(basename "$tool") in
-    frame-render | ibr-warp | st-filter) images='png|jpeg';;   # write frames
+    frame-render | ibr-warp | st-filter | volume-compose) images='png|jpeg';;   # write frames
     aqm-compare | tempolux-info) images='jpeg';;
     *) images='png|jpeg|openexr|imath';;
   esac

@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
   const std::array<int, 3> size{std::atoi(argv[2]), std::atoi(argv[3]), std::atoi(argv[4])};
   const std::string name = argc > 9 ? argv[9] : "density", kind = argc > 10 ? argv[10] : "fog", type = argc > 12 ? argv[12] : "float";
   const double voxel = std::atof(argv[5]), background = argc > 11 ? std::atof(argv[11]) : 0;
-  std::vector<float> values(std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]));
+  const std::size_t count = std::size_t(size[0]) * std::size_t(size[1]) * std::size_t(size[2]);
+  std::vector<float> values(count);
   if (std::fread(values.data(), sizeof(float), values.size(), stdin) != values.size())
     return std::fprintf(stderr, "make-vdb: fewer values than voxels\n"), 2;
   openvdb::initialize();

@@ -161,6 +161,9 @@ void Tool::volume_options() {
          "share of the extinction that is scattered, 0 to 1: R,G,B or one number [1]")
       ->type_name("R,G,B")
       ->allow_extra_args(false);
+  app.add_option("--majorants", volume.majorants,
+                 "state/majorants.FFFF of scene-plan: bounds of the media that hold for a whole segment, for maps that are updated")
+      ->type_name("FILE");
   app.add_option("--phase-g", volume.phase_g, "mean cosine of scattering by Henyey and Greenstein: forward above 0 [0]")
       ->type_name("X")
       ->allow_extra_args(false)

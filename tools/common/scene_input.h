@@ -35,6 +35,7 @@ class SceneInput {
   /// Does the scene, or the command line, name media? And the hash of those at a frame, as in SceneHashes.
   bool has_media() const { return volumes_->any(); }
   std::string media_hash(int frame);
+  FrozenMajorants frozen_majorants(int first, int last) { return volumes_->freeze(first, last); }
   /// Files of media that were read so far.
   const std::vector<std::string>& media_files() const { return volumes_->files(); }
   /// The frozen emission table of the frame's segment.

@@ -60,6 +60,7 @@ struct VolumeOptions {
   std::vector<std::array<float, 3>> albedo;
   std::vector<float> phase_g;
   std::optional<std::pair<int, int>> frames; ///< that have files
+  std::string majorants;                     ///< file of scene-plan; "": each frame has its own
 };
 
 /// Values of the common options.

@@ -1,12 +1,16 @@
 #include "tools/common/volume_input.h"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
 #include "formats/error.h"
 #include "formats/hash.h"
 
 namespace tempolux::tools {
 namespace {
+
+constexpr std::size_t kMostKept = std::size_t(1) << 30;   ///< bytes of voxels that stay in memory for frames to come
 
 /// The value for volume i of n: its own, or the one given for all, or none.
 template <class T>
@@ -58,6 +62,45 @@ int VolumeInput::last_frame() const {
 }
 
 std::vector<Medium> VolumeInput::read(int frame, Vec3d origin) {
+  const auto found = kept_.find(frame);
+  if (found != kept_.end() && found->second.origin == origin) return found->second.media;
+  std::vector<Medium> media = parse(frame, origin);
+  std::size_t bytes = 0;
+  for (const Medium& medium : media) bytes += medium.grid().byte_count();
+  if (kept_bytes_ + bytes <= kMostKept && kept_.emplace(frame, Kept{origin, media}).second) kept_bytes_ += bytes;
+  return media;
+}
+
+FrozenMajorants VolumeInput::freeze(int first, int last) {
+  Box3d box;
+  double finest = INFINITY;
+  for (int frame = first; frame <= last; ++frame)
+    for (const Medium& medium : read(frame, {})) {
+      box.add(medium.bounds());
+      finest = std::min(finest, medium.voxel_size());
+    }
+  FrozenMajorants frozen{first, last, {}};
+  if (box.empty()) return frozen;
+  frozen.grid = majorant_cells(box, finest);
+  for (int frame = first; frame <= last; ++frame) raise_majorants(read(frame, {}), frozen.grid);
+  return frozen;
+}
+
+const MajorantGrid* VolumeInput::frozen(int frame, Vec3d origin) {
+  const std::string& file = tool_.common().volume.majorants;
+  if (file.empty()) return nullptr;
+  if (!majorants_) {
+    majorants_ = load_majorants(file);
+    tool_.depends_on(file);
+  }
+  if (frame < majorants_->first_frame || frame > majorants_->last_frame)
+    throw InputError(file + ": holds for frames " + std::to_string(majorants_->first_frame) + " to " +
+                     std::to_string(majorants_->last_frame) + ", not for " + std::to_string(frame) + "; name that of its segment");
+  scene_majorants_ = moved(majorants_->grid, origin);
+  return &scene_majorants_;
+}
+
+std::vector<Medium> VolumeInput::parse(int frame, Vec3d origin) {
   std::vector<std::string> files;
   for (const VolumeSource& source : sources_) {
     const int at = source.frames ? std::clamp(frame, source.frames->first, source.frames->second) : frame;
@@ -80,7 +123,15 @@ std::shared_ptr<const Media> VolumeInput::at(int frame, Vec3d origin) {
   if (!any()) return nullptr;
   if (has_last_ && last_at_ == frame && last_origin_ == origin) return last_;
   std::vector<Medium> media = read(frame, origin);
-  last_ = media.empty() ? nullptr : std::make_shared<const Media>(std::move(media));
+  if (const MajorantGrid* const majorants = frozen(frame, origin)) {
+    try {
+      last_ = majorants->empty() && media.empty() ? nullptr : std::make_shared<const Media>(std::move(media), *majorants);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(tool_.common().volume.majorants + ": " + error.what() + " at frame " + std::to_string(frame) + "; run scene-plan again");
+    }
+  } else {
+    last_ = media.empty() ? nullptr : std::make_shared<const Media>(std::move(media));
+  }
   last_at_ = frame;
   last_origin_ = origin;
   has_last_ = true;

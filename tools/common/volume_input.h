@@ -1,11 +1,14 @@
 // tools/common/volume_input.h -- the smoke of a scene: --volume and its companions, or what the scene's nodes name.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lib/scene/volumes.h"
+#include "lib/volume/majorants_file.h"
 #include "tools/common/tool_main.h"
 
 namespace tempolux::tools {
@@ -25,6 +28,8 @@ class VolumeInput {
   std::vector<Medium> read(int frame, Vec3d origin);
   /// All that were read so far.
   const std::vector<std::string>& files() const { return files_; }
+  /// Majorants that hold for these frames, world space.
+  FrozenMajorants freeze(int first, int last);
   /// Hash of what read() gives, for SceneHashes::media.
   static std::string hash(const std::vector<Medium>& media);
 
@@ -32,6 +37,16 @@ class VolumeInput {
   Tool& tool_;
   std::vector<VolumeSource> sources_;
   std::vector<std::string> files_;
+  const MajorantGrid* frozen(int frame, Vec3d origin);
+  std::vector<Medium> parse(int frame, Vec3d origin);
+  struct Kept {
+    Vec3d origin;
+    std::vector<Medium> media;
+  };
+  std::map<int, Kept> kept_;                 ///< what read() gave, as far as kMostKept allows
+  std::size_t kept_bytes_ = 0;
+  std::optional<FrozenMajorants> majorants_;
+  MajorantGrid scene_majorants_;
   std::shared_ptr<const Media> last_;        ///< what at() gave last
   int last_at_ = 0;
   Vec3d last_origin_;

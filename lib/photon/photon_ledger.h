@@ -1,0 +1,57 @@
+// lib/photon/photon_ledger.h -- what writers of photon maps have in common: the ledger, what a header says, records of media.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "formats/photons/photons.h"
+#include "lib/photon/photon_map.h"
+
+namespace tempolux {
+
+/// Adds a batch to its group's entry.
+inline void add_to_ledger(const PhotonBatch& batch, std::int32_t frame, formats::GroupFlux& group) {
+  group.group = batch.block.group;
+  group.frame = frame;
+  group.paths += batch.path_count;
+  for (int c = 0; c < 3; ++c) {
+    const auto i = std::size_t(c);
+    group.emitted[i] += batch.emitted[c];
+    group.escaped[i] += batch.escaped[c];
+    group.absorbed[i] += batch.absorbed[c];
+  }
+}
+
+/// What roulette gives may leave a little less than nothing absorbed.
+inline void close_ledger(formats::GroupFlux& group) {
+  for (double& flux : group.absorbed) flux = std::max(flux, 0.0);
+}
+
+inline void count(const PhotonBatch& batch, PhotonMapResult& result) {
+  result.path_count += batch.path_count;
+  result.ray_count += batch.ray_count;
+  result.specular_ray_count += batch.specular_ray_count;
+  result.medium_steps += batch.medium_steps;
+  result.seen_count += batch.seen_count;
+}
+
+/// Counts, kinds, columns and majorants of the map that the tracer makes.
+inline void describe_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader& header) {
+  header.group_count = tracer.group_count();
+  header.emitted_count = tracer.photon_count();
+  header.kinds = options.kinds();
+  if (options.store_volume) header.majorants = tracer.majorants().hash();
+  if (tracer.stores_directions()) header.columns |= formats::column_direction;
+}
+
+/// A tentative photon keeps in place of a normal how likely it was real: extinction / majorant in 65534ths.
+inline std::array<std::uint16_t, 2> encode_likelihood(float extinction, float majorant) {
+  const float share = majorant > 0 ? std::clamp(extinction / majorant, 0.0f, 1.0f) : 0;
+  return {std::uint16_t(share * 65534 + 0.5f), 0};
+}
+/// Extinction at the photon when it was recorded, where the majorant is this.
+inline float extinction_when_recorded(const formats::Photon& photon, float majorant) {
+  return float(photon.normal[0]) / 65534 * majorant;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,191 @@
+#include "lib/photon/photon_update.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <set>
+
+#include "formats/photons/file_reader.h"
+#include "lib/core/parallel.h"
+#include "lib/core/random.h"
+#include "lib/photon/photon_ledger.h"
+
+namespace tempolux {
+namespace {
+
+std::string file_name(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
+std::uint64_t draw(int frame, std::uint32_t group) { return mix64(mix64(std::uint64_t(std::uint32_t(frame)) + 0x75706474ull) + group); }
+
+/// Groups whose blocks an overlay holds itself.
+std::set<std::uint32_t> own_groups(const std::string& path) {
+  formats::photons::FileReader reader(path);
+  std::set<std::uint32_t> groups;
+  formats::PhotonBlock block;
+  while (reader.read_block(block)) groups.insert(block.group);
+  return groups;
+}
+
+/// A stream of a file's blocks, one group after the other.
+class Groups {
+ public:
+  explicit Groups(std::function<bool(formats::PhotonBlock&)> read) : read_(std::move(read)) { more_ = read_(next_); }
+  /// take(block) for each block of the group; those of groups before it are passed over.
+  template <class Take>
+  void of(std::uint32_t group, const Take& take) {
+    while (more_ && next_.group < group) more_ = read_(next_);
+    while (more_ && next_.group == group) {
+      take(next_);
+      more_ = read_(next_);
+    }
+  }
+  /// To the end, so that it is checked.
+  void finish() {
+    while (more_) more_ = read_(next_);
+  }
+
+ private:
+  std::function<bool(formats::PhotonBlock&)> read_;
+  formats::PhotonBlock next_;
+  bool more_ = false;
+};
+
+struct Traced {
+  std::vector<PhotonBatch> batches;
+};
+
+}  // namespace
+
+PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, bool census, Vec3d origin) {
+  formats::PhotonReader reader(path);
+  PreviousMap previous;
+  previous.header = reader.header();
+  if (census) previous.change.assign(previous.header.group_count, 0.0);
+  const Media* const media = tracer.media();
+  const auto& o = previous.header.origin;
+  const Vec3 offset(Vec3d{o[0], o[1], o[2]} - origin);
+  formats::PhotonBlock block;
+  while (reader.read_block(block)) {
+    if (!census) continue;
+    for (const formats::Photon& photon : block.photons) {
+      if (photon.kind != formats::PathKind::tentative) continue;
+      const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset;
+      const float now = media ? media->extinction(position) : 0, then = extinction_when_recorded(photon, tracer.majorants().at(position));
+      previous.change[block.group] += double((photon.flux[0] + photon.flux[1] + photon.flux[2]) / 3) * double(std::abs(now - then));
+    }
+  }
+  previous.ledger = reader.ledger();
+  previous.digest = reader.digest();
+  return previous;
+}
+
+std::string why_not_updatable(const formats::PhotonHeader& a, const formats::PhotonHeader& b) {
+  if (a.map != b.map || !a.part.empty()) return "it is a part of a map";
+  if (a.kinds != b.kinds) return "it has other kinds of photons (" + a.kinds + ")";
+  if (a.majorants.empty()) return "it has no photons in media: only these maps say how old their groups are";
+  if (a.majorants != b.majorants) return "its majorants are others: make all maps of a segment with the same --majorants";
+  if (a.group_count != b.group_count || a.emitted_count != b.emitted_count) return "it has another number of groups or paths";
+  if (a.columns != b.columns) return "it has other columns";
+  if (a.origin != b.origin) return "it has another origin";
+  if (a.identity.emission != b.identity.emission) return "its paths were started by another table of lamps: it is of another segment";
+  return "";
+}
+
+std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame, bool same, const UpdateOptions& options) {
+  const std::uint32_t count = previous.header.group_count;
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0u);
+  if (options.strategy == UpdateStrategy::all) return order;
+  if (same) return {};
+  std::vector<double> priority(count);
+  for (std::uint32_t g = 0; g < count; ++g) {
+    const double age = std::max(0, frame - previous.ledger[g].frame);
+    const bool due = options.age_floor > 0 && age >= options.age_floor;
+    const double wanted = options.strategy == UpdateStrategy::random ? 1
+                          : options.strategy == UpdateStrategy::oldest ? age
+                                                                       : age * previous.change[g];
+    priority[g] = due ? INFINITY : wanted;
+  }
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    if (priority[a] != priority[b]) return priority[a] > priority[b];
+    return std::pair(draw(frame, a), a) < std::pair(draw(frame, b), b);
+  });
+  order.resize(std::size_t(std::min<std::uint64_t>(options.most_groups, count)));
+  std::erase_if(order, [&](std::uint32_t g) { return !(priority[g] > 0); });
+  std::ranges::sort(order);
+  return order;
+}
+
+PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader header,
+                                  const std::string& path, const PreviousMap& previous, std::span<const std::uint32_t> groups,
+                                  bool may_overlay, const std::function<void(const void*, std::size_t)>& sink) {
+  describe_map(tracer, options, header);
+  const bool upon_overlay = !previous.header.base_name.empty();
+  std::set<std::uint32_t> differing = upon_overlay ? own_groups(path) : std::set<std::uint32_t>{};
+  differing.insert(groups.begin(), groups.end());
+  const bool overlay = may_overlay && differing.size() * 2 <= header.group_count;
+  if (overlay) {
+    header.base_name = upon_overlay ? previous.header.base_name : file_name(path);
+    header.base_digest = upon_overlay ? previous.header.base_digest : previous.digest;
+  }
+  PhotonMapResult result;
+  formats::PhotonWriter writer(
+      [&](const void* data, std::size_t size) {
+        sink(data, size);
+        result.byte_count += size;
+      },
+      header);
+  // What is kept: of an overlay its own groups, else all.
+  std::unique_ptr<formats::photons::FileReader> file;
+  std::unique_ptr<formats::PhotonReader> whole;
+  if (overlay && upon_overlay) file = std::make_unique<formats::photons::FileReader>(path);
+  else if (!overlay) whole = std::make_unique<formats::PhotonReader>(path, formats::PhotonReadOptions{.digest = false});
+  Groups kept([&](formats::PhotonBlock& block) { return file ? file->read_block(block) : whole ? whole->read_block(block) : false; });
+
+  std::vector<formats::GroupFlux> ledger;
+  std::uint32_t next = 0;
+  const auto keep_until = [&](std::uint32_t end) {
+    for (; next < end; ++next) {
+      if (overlay && !differing.contains(next)) continue;
+      bool any = false;
+      kept.of(next, [&](const formats::PhotonBlock& block) {
+        writer.write(block);
+        any = true;
+      });
+      if (overlay && !any) writer.write({next, {}, {}, {}});
+      ledger.push_back(previous.ledger[next]);
+    }
+  };
+  parallel_ordered(
+      groups.size(), std::size_t(2 * parallel_thread_count()),
+      [&](std::size_t i) -> std::shared_ptr<void> {
+        auto traced = std::make_shared<Traced>();
+        const auto [first, last] = tracer.batches_of(groups[i]);
+        for (std::size_t b = first; b < last; ++b) traced->batches.push_back(tracer.trace(b));
+        return traced;
+      },
+      [&](std::size_t i, void* pointer) {
+        keep_until(groups[i]);
+        formats::GroupFlux entry;
+        bool any = false;
+        for (const PhotonBatch& batch : static_cast<const Traced*>(pointer)->batches) {
+          if (!batch.block.photons.empty()) {
+            writer.write(batch.block);
+            any = true;
+          }
+          add_to_ledger(batch, header.identity.first_frame, entry);
+          count(batch, result);
+        }
+        if (overlay && !any) writer.write({groups[i], {}, {}, {}});
+        close_ledger(entry);
+        ledger.push_back(entry);
+        next = groups[i] + 1;
+      });
+  keep_until(header.group_count);
+  kept.finish();
+  result.totals = writer.finish({}, ledger);
+  return result;
+}
+
+}  // namespace tempolux
