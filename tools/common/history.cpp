@@ -63,8 +63,10 @@ std::string make_word(const std::string& name) {
 std::string Tool::history_line(std::optional<int> frame) const {
   std::string line = "tempolux " TEMPOLUX_VERSION " " + state_->name;
   const auto add = [&](const CLI::Option& option) {
-    for (const std::string& value : option.results())
-      line += " " + quoted(without_folder(frame ? frame_name(value, *frame) : value));
+    for (const std::string& value : option.results()) {
+      const bool named = has_frame_pattern(value) || value.find("%%") != std::string::npos;   // "10%" is no name
+      line += " " + quoted(without_folder(frame && named ? frame_name(value, *frame) : value));
+    }
   };
   const std::vector<const CLI::Option*> options = std::as_const(state_->app).get_options();
   for (const CLI::Option* option : options)
