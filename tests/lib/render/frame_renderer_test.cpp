@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <span>
 #include <cmath>
 
 #include "formats/error.h"
@@ -32,7 +33,8 @@ TEST(FrameRenderer, SumOfLayersIsTheImageExactly) {
   for (std::size_t p = 0; p < image.pixel_count(); ++p)
     for (int ch = 0; ch < 3; ++ch) {
       float sum = 0;
-      for (const char* layer : kLayerNames) sum += (*image.rgb(layer)[std::size_t(ch)])[p];
+      for (const char* layer : std::span(kLayerNames).first(std::size_t(Layer::volume)))   // without media none of them
+        sum += (*image.rgb(layer)[std::size_t(ch)])[p];
       ASSERT_EQ(sum, (*rgb[std::size_t(ch)])[p]);
     }
 }
