@@ -23,6 +23,8 @@ foreach(format irradpoints irradcache)
   add_test(NAME formats.read_${format} COMMAND sh formats/read_irrad_test.sh ${format} $<TARGET_FILE:${format}_test>
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 endforeach()
+add_test(NAME formats.read_radsamples COMMAND sh formats/read_radsamples_test.sh $<TARGET_FILE:radsamples_test>
+         WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 add_test(NAME formats.read_flow COMMAND sh formats/read_flow_test.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 

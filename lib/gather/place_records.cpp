@@ -11,7 +11,6 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kBatch = 256;
 constexpr int kCoarsest = 16;
 constexpr float kFewCells = 8, kEnoughCells = 32;   ///< lit cells: gradients are left out; count in full
 constexpr float kWideLight = 0.6f;   ///< share of the hemisphere
@@ -63,13 +62,14 @@ std::vector<std::size_t> edge_pixels(const std::vector<Glimpse>& glimpses, int w
 class Placement {
  public:
   Placement(const FinalGather& gather, const PixelViews& views, const PlacementOptions& options,
-            RecordStore& store, GatherCounts& counts)
+            RecordStore& store, GatherCounts& counts, const RecordSource* source)
       : gather_(gather),
         views_(views),
         options_(options),
         store_(store),
         first_(store.records().size()),
-        counts_(counts) {}
+        counts_(counts),
+        source_(source) {}
 
   /// From now on a new record leaves its neighbours as they are: what is covered stays so.
   void fix_radii() { first_ = kFixed; }
@@ -107,8 +107,8 @@ class Placement {
     std::vector<Open> open;
     for (const auto& some : found) open.insert(open.end(), some.begin(), some.end());
     std::sort(open.begin(), open.end(), [](const Open& a, const Open& b) { return a.key != b.key ? a.key < b.key : a.pixel < b.pixel; });
-    for (std::size_t start = 0; start < open.size(); start += kBatch)
-      add_batch(std::span(open).subspan(start, std::min(kBatch, open.size() - start)));
+    for (std::size_t start = 0; start < open.size(); start += kPlacedTogether)
+      add_batch(std::span(open).subspan(start, std::min(kPlacedTogether, open.size() - start)));
   }
 
   bool is_covered(Vec3 position, Vec3 normal, float footprint) const {
@@ -133,19 +133,23 @@ class Placement {
       for (std::size_t i = first; i < last; ++i) {
         const SeenPoint& seen = points[i].seen;
         if (is_covered(seen)) continue;
-        float share = store_.lit_share(seen.surface.position, seen.normal);
-        if (share < 0) share = gather_.lit_share(seen.surface, seen.normal, local);
-        records[i] = gather_.gather(seen.surface, seen.normal, local, share);
+        std::optional<RecordStore::Expected> expected = store_.expected(seen.surface.position, seen.normal);
+        if (!expected) expected = RecordStore::Expected{gather_.lit_share(seen.surface, seen.normal, local), 0};
+        if (source_) {
+          records[i] = source_->gather(seen, *expected, i, local);
+          continue;
+        }
+        records[i] = gather_.gather(seen.surface, seen.normal, local, expected->lit_share);
         limit_radius(*records[i], seen.footprint, options_);
         gather_.look_around(seen.surface, *records[i]);
       }
       const std::lock_guard lock(mutex);
       counts_ += local;
     });
-    for (auto& record : records) {
-      if (!record) continue;
-      if (options_.clamp_neighbours) store_.clamp_with_neighbours(*record, options_.error_bound, first_);
-      store_.add(*record);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      if (!records[i]) continue;
+      if (options_.clamp_neighbours) store_.clamp_with_neighbours(*records[i], options_.error_bound, first_);
+      if (store_.add(*records[i]) && source_) source_->added(i, first_);
     }
   }
 
@@ -155,6 +159,7 @@ class Placement {
   RecordStore& store_;
   std::size_t first_;        ///< records before were there already, or are fixed
   GatherCounts& counts_;
+  const RecordSource* source_;
 };
 
 }  // namespace
@@ -188,9 +193,9 @@ void limit_radius(IrradianceRecord& record, float footprint, const PlacementOpti
 
 std::size_t place_records(const FinalGather& gather, const PixelViews& views, int width, int height,
                           const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
-                          const std::function<void(double)>& progress) {
+                          const std::function<void(double)>& progress, const RecordSource* source) {
   const std::size_t before = store.records().size();
-  Placement placement(gather, views, options, store, counts);
+  Placement placement(gather, views, options, store, counts, source);
   std::vector<Glimpse> glimpses(std::size_t(width) * std::size_t(height));
   std::size_t done = 0;
   const auto advance = [&](std::size_t pixels) {

@@ -42,6 +42,16 @@ struct Look {
 inline constexpr std::size_t kLooksTogether = 8;
 using PixelViews = std::function<void(std::span<const Look>, std::span<std::optional<SeenPoint>> seen)>;
 
+/// Where records come from in place of FinalGather::gather, for whoever keeps what rays brought.
+struct RecordSource {
+  /// A record with its radius limited and its surroundings looked at. slot: below kPlacedTogether, its number among those gathered
+  /// side by side.
+  std::function<IrradianceRecord(const SeenPoint&, const RecordStore::Expected&, std::size_t slot, GatherCounts&)> gather;
+  /// The record of a slot is the store's next; those of number narrows_from and later ones may have been narrowed by it.
+  std::function<void(std::size_t slot, std::size_t narrows_from)> added;
+};
+inline constexpr std::size_t kPlacedTogether = 256;
+
 /// Adds records until every pixel's point is covered: the points through the centres of lattices of 16, 8, 4, 2 and
 /// 1 pixels one after the other, each in a fixed shuffled order and in batches of fixed size: a batch is tested and
 /// gathered in parallel, its records are added in order. Up to the lattice of 2 new records may narrow those added before
@@ -49,7 +59,7 @@ using PixelViews = std::function<void(std::span<const Look>, std::span<std::opti
 /// glass, so that a frame's samples find records there too. The same records for any number of threads.
 /// Returns how many were added.
 std::size_t place_records(const FinalGather& gather, const PixelViews& views, int width, int height, const PlacementOptions& options, RecordStore& store,
-                          GatherCounts& counts, const std::function<void(double)>& progress = {});
+                          GatherCounts& counts, const std::function<void(double)>& progress = {}, const RecordSource* source = nullptr);
 std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height, const PlacementOptions& options, RecordStore& store,
                           GatherCounts& counts, const std::function<void(double)>& progress = {});
 

@@ -199,15 +199,27 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal, f
   return result;
 }
 
-float RecordStore::lit_share(Vec3 position, Vec3 normal) const {
-  float weights = 0, sum = 0;
+std::optional<RecordStore::Expected> RecordStore::expected(Vec3 position, Vec3 normal) const {
+  float weights = 0, lit = 0, further = 0;
   any_near(&Level::buckets, options_.least_cosine, position, normal, [&](const Entry& entry) {
     const float weight = weight_of(entry, entry.radius, options_.least_cosine, position, normal);
     weights += weight;
-    sum += weight * records_[entry.record].lit_share;
+    lit += weight * records_[entry.record].lit_share;
+    further += weight * records_[entry.record].further_share;
     return false;
   });
-  return weights > 0 ? sum / weights : -1;
+  return weights > 0 ? std::optional(Expected{lit / weights, further / weights}) : std::nullopt;
+}
+
+float RecordStore::weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const {
+  const Vec3 position = records_[record].position, normal = records_[record].normal;
+  float sum = 0;
+  any_near(&Level::buckets, options_.least_cosine, position, normal, [&](const Entry& entry) {
+    if (entry.record < record && (marked.empty() || !marked[entry.record]))
+      sum += weight_of(entry, entry.radius, options_.least_cosine, position, normal);
+    return false;
+  });
+  return sum;
 }
 
 bool RecordStore::covers(Vec3 position, Vec3 normal, float weight, float least_reach) const {

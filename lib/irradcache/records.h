@@ -26,6 +26,7 @@ struct IrradianceRecord {
   float lit_cells = INFINITY;           ///< how many gather rays carry the irradiance (hemisphere.h); not in files
   float lit_share = 1;                  ///< lit_cells / all cells; not in files
   float expected_share = 1;             ///< what was thought of lit_share before its own rays; not in files
+  float further_share = 0;              ///< further rays per cell that its unevenness would call for; not in files
   float curvature = 0;                  ///< W/m^4: size of the second derivatives (hemisphere.h); not in files
   Clearance clearance;                  ///< what was seen around it, about `normal`: beyond it does not count
   std::uint32_t object = 0;             ///< the object it rides on
@@ -90,8 +91,14 @@ class RecordStore {
   /// (clearance). Where no record counts those in the
   /// angle of kWideCosine do.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
-  /// Mean lit_share of the records that are valid there, so weighted; below 0 if none is.
-  float lit_share(Vec3 position, Vec3 normal) const;
+  /// What the records that are valid at a place say of the light there, before it is gathered: means, so weighted.
+  struct Expected {
+    float lit_share = 1, further_share = 0;
+  };
+  /// None if no record is valid there.
+  std::optional<Expected> expected(Vec3 position, Vec3 normal) const;
+  /// Sum of the weights at a record's own place of those added before it, but for those marked (empty: none is).
+  float weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const;
   /// Is the sum of the weights there at least `weight`? Looks no farther once it is. Or is it, were no radius larger than
   /// least_reach, in the angle of kWideCosine? Where normals turn faster than records may be fine, they need not be finer.
   bool covers(Vec3 position, Vec3 normal, float weight, float least_reach = 0) const;

@@ -7,6 +7,7 @@ photon-trace "$scene" --photons 2k -o p.photons --stats photon-trace.json -q || 
 irradcache-build "$scene" --photons p.photons --point-count 100 --size 8x6 --rays 4 --keep-points p.irradpoints -o c.irradcache \
   --stats irradcache-build.json -q || bad cache
 frame-render "$scene" --size 8x6 --spp 2 --irradcache c.irradcache --points p.irradpoints -o f.exr --stats frame-render.json -q || bad frame
+gather-temporal final "$scene" --points p.irradpoints --size 8x6 --rays 4 -o s.radsamples --cache t.irradcache --stats gather-temporal.json -q || bad temporal
 cp f.exr g.exr
 aqm-compare f.exr g.exr --json comparison.json --stats aqm-compare.json -q >/dev/null || bad comparison
 scene-plan "$scene" -o plan --stats scene-plan.json -q || bad plan
@@ -19,7 +20,7 @@ assert list(example) == list(made), (list(example), list(made))
 assert [list(p) for p in example["phases"]] == [list(p) for p in made["phases"]]
 assert [(p["name"], p["parallel"]) for p in example["phases"]] == [(p["name"], p["parallel"]) for p in made["phases"]]
 assert list(example["counts"]) == list(made["counts"]) and list(example["results"]) == list(made["results"])
-for tool in ("scene-plan", "photon-trace", "irradcache-build", "frame-render", "aqm-compare"):
+for tool in ("scene-plan", "photon-trace", "irradcache-build", "gather-temporal", "frame-render", "aqm-compare"):
     row = next(line for line in page.splitlines() if line.startswith(f"| {tool} |"))
     named = set(re.findall("`([a-z_]+)", row))
     made = json.load(open(tool + ".json"))

@@ -16,6 +16,9 @@ frame-render "$mirror" -q --size 96x54 --irradcache in/c.irradcache --points in/
 photon-trace "$scene" -q --photons 20k --map static -o in/s.photons --paths in/s.paths &&
 photon-trace "$scene" -q --frame 10 --map dynamic --static in/s.paths -o in/d.photons &&
 irradcache-build points "$scene" -q --map static --photons in/s.photons --point-count 1k -o in/s.irradpoints &&
+photon-trace "$scene" -q --photons 5k -o in/0.photons && photon-trace "$scene" -q --frame 1 --photons 5k -o in/1.photons &&
+irradcache-build points "$scene" -q --photons in/0.photons --point-count 1k -o in/t.0000.irradpoints &&
+irradcache-build points "$scene" -q --frame 1 --photons in/1.photons --point-count 1k -o in/t.0001.irradpoints &&
 frame-render "$mirror" -q --size 96x54 --integrator path --spp 2 --halves --channels RGBA,layers,id -o in/r.exr &&
 aqm-compare in/x.exr --reference-halves in/r_a.exr in/r_b.exr -q --json in/e.json || exit 1
 each_tool() {
@@ -32,6 +35,8 @@ each_tool() {
     --keep-points a.irradpoints -o a.irradcache
   "$1" irradcache-build-records irradcache-build records "$mirror" --points "$in/p.irradpoints" --records "$in/c.irradcache" \
     --frame 2 --rays 50 --size 64x36 -o a.irradcache
+  "$1" gather-temporal gather-temporal final "$scene" --points "$in/t.####.irradpoints" --rays 50 --size 64x36 --frames 0-1 \
+    -o "a.####.radsamples" --cache "a.####.irradcache"
   "$1" frame-render frame-render "$mirror" --size 96x54 --irradcache "$in/c.irradcache" --points "$in/p.irradpoints" \
     --photons "$in/p.photons" --spp 2 --channels RGBA,layers,Z,N,id -o a.exr
   "$1" frame-render-paths frame-render "$mirror" --size 96x54 --integrator path --spp 2 --halves -o a.exr

@@ -60,6 +60,21 @@ assert max(v[at[c]] for v in vertices for c in ("red", "green", "blue")) == 255 
 END
 done
 
+# .radsamples: valid or not, the page's digest, and by how many samples of which age a file is made.
+accept=$formats/radsamples/accept refuse=$formats/radsamples/refuse example=$formats/radsamples/accept/worked-example.radsamples
+tempolux-info --check "$accept"/* >out.txt || bad 'radsamples: a good file is not valid'
+tempolux-info --check "$refuse"/* >out.txt 2>errors.txt
+[ $? = 1 ] && [ ! -s out.txt ] && [ "$(wc -l <errors.txt)" = "$(ls "$refuse" | wc -l)" ] || bad "radsamples: bad files: $(cat out.txt)"
+page=$(sed -n 's/.*digest is \([0-9a-f]\{32\}\).*/\1/p' "$HERE/../../formats/radsamples/radsamples.md")
+[ "$(tempolux-info --digest "$example" | cut -d' ' -f1)" = "$page" ] || bad "radsamples: digest is not the page's, '$page'"
+tempolux-info --json "$example" | "${PYTHON:-python3}" -c '
+import json, sys
+f = json.load(sys.stdin)
+assert (f["records"], f["samples"], f["points"]) == (1, 3, 2) and f["age"]["samples_by_age"] == [0, 1, 1, 1] and f["age"]["mean"] == 2
+assert f["share_of_samples"] == {"valid": 1, "dynamic": 1 / 3, "miss": 1 / 3, "near": 1 / 3, "anchored": 1 / 3}' || bad 'radsamples: facts'
+tempolux-info --diff "$example" "$accept/two-records.radsamples" >/dev/null
+[ $? = 1 ] || bad 'radsamples: files that differ: exit 1'
+
 tempolux-info --export csv -o rows.csv out.json 2>errors.txt
 [ $? = 2 ] && [ "$(wc -l <errors.txt)" = 1 ] || bad 'no points in JSON: exit 2, one line'
 exit $failed

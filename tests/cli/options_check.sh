@@ -8,7 +8,7 @@ longest=300
 render="frame-render $scene --size 8x6 --spp 1"
 
 # Help: no types of the program, what is typed in the first line; limits as numbers.
-for tool in photon-trace irradcache-build frame-render st-filter aqm-compare tempolux-info error-report scene-plan; do
+for tool in photon-trace irradcache-build gather-temporal frame-render st-filter aqm-compare tempolux-info error-report scene-plan; do
   "$tool" --help >help.txt
   grep -nE 'INT|FLOAT|NONNEGATIVE|POSITIVE|[0-9]x\)|\[\[|179769' help.txt && bad "$tool --help: see above"
 done

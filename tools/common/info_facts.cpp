@@ -94,6 +94,7 @@ FileType file_type(const std::string& path) {
   if (head.starts_with("\x89TPATH")) return FileType::paths;
   if (head.starts_with("\x89TIRPT")) return FileType::irradpoints;
   if (head.starts_with("\x89TIRRC")) return FileType::irradcache;
+  if (head.starts_with("\x89TRADS")) return FileType::radsamples;
   if (path == "-") return FileType::photons;   // whose reader says what is wrong
   if (head.find_first_not_of(" \t\r\n") < size && head[head.find_first_not_of(" \t\r\n")] == '{')
     return FileType::json;
@@ -113,6 +114,8 @@ Facts facts_of(const std::string& path, bool allow_nan) {
       return irradpoints_facts(path);
     case FileType::irradcache:
       return irradcache_facts(path);
+    case FileType::radsamples:
+      return radsamples_facts(path);
     case FileType::image:
       return image_facts(path, allow_nan);
     case FileType::json:
@@ -135,6 +138,8 @@ Facts difference_of(const std::string& a, const std::string& b) {
       return irradpoints_difference(a, b);
     case FileType::irradcache:
       return irradcache_difference(a, b);
+    case FileType::radsamples:
+      return radsamples_difference(a, b);
     case FileType::image:
       return image_difference(a, b);
     case FileType::json:
@@ -152,6 +157,7 @@ void export_points(const std::string& path, const std::string& format, Output& o
     case FileType::irradcache:
       return export_irradcache(path, format, output);
     case FileType::paths:
+    case FileType::radsamples:
     case FileType::image:
     case FileType::json:
       break;

@@ -15,7 +15,7 @@ namespace tempolux::tools {
 
 using Facts = nlohmann::ordered_json;
 
-enum class FileType { photons, paths, irradpoints, irradcache, image, json };
+enum class FileType { photons, paths, irradpoints, irradcache, radsamples, image, json };
 /// By the first bytes, not by the name; "-" is a .photons stream. Throws InputError.
 FileType file_type(const std::string& path);
 
@@ -29,6 +29,7 @@ Facts photon_facts(const std::string& path);
 Facts paths_facts(const std::string& path);
 Facts irradpoints_facts(const std::string& path);
 Facts irradcache_facts(const std::string& path);
+Facts radsamples_facts(const std::string& path);
 Facts image_facts(const std::string& path, bool allow_nan);
 Facts json_facts(const std::string& path);
 Facts facts_of(const std::string& path, bool allow_nan);
@@ -41,6 +42,7 @@ Facts photon_difference(const std::string& a, const std::string& b);
 Facts paths_difference(const std::string& a, const std::string& b);
 Facts irradpoints_difference(const std::string& a, const std::string& b);
 Facts irradcache_difference(const std::string& a, const std::string& b);
+Facts radsamples_difference(const std::string& a, const std::string& b);
 Facts image_difference(const std::string& a, const std::string& b);
 Facts json_difference(const std::string& a, const std::string& b);
 /// Throws InputError if the types differ.

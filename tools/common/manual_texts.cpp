@@ -63,6 +63,25 @@ constexpr ManualText kTexts[] = {
      "irradcache-build points room.glb --frame 12 --photons 12.photons -o 12.irradpoints\n"
      "irradcache-build records room.glb --frame 12 --points 12.irradpoints --size 640x360 -o 12.irradcache",
      "photon-trace frame-render tempolux-info"},
+    {"gather-temporal",
+     "Gathers indirect light in records whose samples of incoming radiance are kept from frame to frame. The first frame of a "
+     "segment is gathered as irradcache-build does it. In a later one a sample is traced again only where something moves in its way, or "
+     "where the light of the surface it met is another; some more get a new direction, drawn by age; all others take what the "
+     "irradiance points of the frame say. New records are placed where those kept do not reach.\n"
+     "\n"
+     "A range of frames keeps the samples in memory and writes those of each frame; --resume goes on after the last one that is whole. Each frame alone, "
+     "with --previous, gives the same files. Points of all frames must be made with the same options: those on what stands have the "
+     "same places then.",
+     ".irradpoints: light on all surfaces, read (formats/irradpoints/irradpoints.md)\n"
+     ".radsamples: records with their samples (formats/radsamples/radsamples.md)\n"
+     ".irradcache: the records of a frame (formats/irradcache/irradcache.md)",
+     "gather-temporal final room.glb --frames 0-23 --points p.####.irradpoints --size 640x360 -o s.####.radsamples "
+     "--cache c.####.irradcache\n"
+     "# One frame after the other, as make does.\n"
+     "gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 640x360 -o s.0000.radsamples --cache c.0000.irradcache\n"
+     "gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 640x360 --previous s.0000.radsamples -o s.0001.radsamples "
+     "--cache c.0001.irradcache",
+     "irradcache-build frame-render tempolux-info"},
     {"frame-render",
      "Traces the pixels of a frame: direct light is sampled at the lights, indirect light is read from an irradiance "
      "cache or estimated from photons, caustics from photons; or everything is path traced, which is unbiased and "
@@ -138,7 +157,7 @@ constexpr ManualText kTexts[] = {
      "Prints what a file says of itself, checks it to its end, digests its data, compares two, exports points and "
      "makes "
      "pictures. Files are told by their first bytes, not by their names.",
-     ".photons .irradpoints .irradcache .exr .json: read; the pages in formats/ define them",
+     ".photons .irradpoints .irradcache .radsamples .exr .json: read; the pages in formats/ define them",
      "tempolux-info 12.photons\n"
      "tempolux-info --check out/photons/*.photons\n"
      "tempolux-info 12.exr --png 12.png\n"

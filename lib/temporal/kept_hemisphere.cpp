@@ -1,0 +1,128 @@
+#include "lib/temporal/kept_hemisphere.h"
+
+#include <bit>
+#include <numeric>
+
+#include "lib/core/random.h"
+#include "lib/gather/gathered_record.h"
+#include "lib/gather/hemisphere.h"
+
+namespace tempolux {
+namespace {
+
+Rgb rgb_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+std::array<float, 3> array_of(const Rgb& c) { return {c.r, c.g, c.b}; }
+std::array<float, 3> array_of(Vec3 v) { return {v.x, v.y, v.z}; }
+Vec3 vec_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
+
+}  // namespace
+
+void keep_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance) {
+  const std::uint64_t bits = PathRandom(kept.record.key, cell).bits(2, Purpose::gather, kept.record.updates);
+  const auto share = [&](int from) { return float((bits >> from) & 0x1fffff) * 0x1p-21f; };
+  kept.samples[cell].rgbe = formats::encode_rgbe(array_of(radiance), {share(0), share(21), share(42)});
+}
+
+void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float distance, const RadianceSource& source,
+              std::size_t anchored_points, SampleUnits units) {
+  formats::RadianceSample& sample = kept.samples[cell];
+  const bool hit = distance < INFINITY, anchored = hit && source.point < anchored_points;
+  sample.flags = std::uint16_t(formats::age_of(sample) | formats::sample_valid | (hit ? 0 : formats::sample_miss) |
+                               (source.mover ? formats::sample_dynamic : 0) | (source.partial ? formats::sample_near : 0) |
+                               (anchored ? formats::sample_anchored : 0));
+  sample.distance = hit ? units.encode(distance) : std::uint16_t(0);
+  kept.anchors[cell] = anchored ? source.point : kNone;
+  keep_radiance(kept, cell, radiance);
+}
+
+IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units, float* further_share) {
+  thread_local Hemisphere sky;
+  sky.reset(kept.record.rings, kept.record.sectors);
+  const float closest = closest_distance(place);
+  for (std::size_t c = 0; c < kept.samples.size(); ++c) {
+    const formats::RadianceSample& sample = kept.samples[c];
+    sky.radiance[c] = rgb_of(formats::decode_rgbe(sample.rgbe));
+    if (sample.distance != 0) sky.inverse_distance[c] = 1 / std::max(units.decode(sample.distance), closest);
+  }
+  const Frame frame(kept.normal());
+  IrradianceRecord made = record_of_first_rays(sky, frame, place, kept.normal(), kept.record.expected_share, false);
+  sky.irradiance_and_rotational_gradient(frame, made);
+  if (further_share) {
+    thread_local std::vector<std::uint8_t> further;
+    sky.further_rays(further);
+    *further_share = float(std::accumulate(further.begin(), further.end(), 0u)) / float(further.size());
+  }
+  return made;
+}
+
+void keep_result(const IrradianceRecord& made, formats::RadsamplesRecord& record) {
+  record.position = array_of(made.position);
+  record.normal = array_of(made.normal);
+  record.object = std::uint16_t(made.object);
+  record.irradiance = array_of(made.irradiance);
+  for (std::size_t c = 0; c < 3; ++c) {
+    record.rotational[c] = array_of(made.rotational[c]);
+    record.translational[c] = array_of(made.translational[c]);
+  }
+  record.radius = made.radius;
+  record.radius_unclamped = made.radius_unclamped;
+  record.expected_share = made.expected_share;
+  record.lit_share = made.lit_share;
+  record.further_share = made.further_share;
+  record.clearance_reach = made.clearance.reach;
+  record.clearance = std::bit_cast<std::array<std::uint8_t, 16>>(made.clearance.shares);
+}
+
+IrradianceRecord result_of(const formats::RadsamplesRecord& record) {
+  IrradianceRecord made;
+  made.position = vec_of(record.position);
+  made.normal = vec_of(record.normal);
+  made.object = record.object;
+  made.irradiance = rgb_of(record.irradiance);
+  for (std::size_t c = 0; c < 3; ++c) {
+    made.rotational[c] = vec_of(record.rotational[c]);
+    made.translational[c] = vec_of(record.translational[c]);
+  }
+  made.radius = record.radius;
+  made.radius_unclamped = record.radius_unclamped;
+  made.expected_share = record.expected_share;
+  made.lit_share = record.lit_share;
+  made.further_share = record.further_share;
+  made.clearance = {record.clearance_reach, std::bit_cast<Clearance::Shares>(record.clearance)};
+  return made;
+}
+
+formats::RadsamplesFile to_file(const KeptHemispheres& kept) {
+  formats::RadsamplesFile file;
+  std::size_t samples = 0;
+  for (const KeptHemisphere& k : kept.records) samples += k.samples.size();
+  file.records.reserve(kept.records.size());
+  file.samples.reserve(samples);
+  file.anchors.reserve(samples);
+  for (const KeptHemisphere& k : kept.records) {
+    file.records.push_back(k.record);
+    file.samples.insert(file.samples.end(), k.samples.begin(), k.samples.end());
+    file.anchors.insert(file.anchors.end(), k.anchors.begin(), k.anchors.end());
+  }
+  file.point_light.reserve(kept.point_light.size());
+  for (const Rgb& light : kept.point_light) file.point_light.push_back(array_of(light));
+  return file;
+}
+
+KeptHemispheres from_file(const formats::RadsamplesFile& file, Vec3d shift) {
+  KeptHemispheres kept;
+  std::size_t first = 0;
+  for (const formats::RadsamplesRecord& record : file.records) {
+    KeptHemisphere& k = kept.records.emplace_back();
+    k.record = record;
+    k.record.position = array_of(Vec3(Vec3d(vec_of(record.position)) + shift));
+    const auto begin = std::ptrdiff_t(first), end = std::ptrdiff_t(first += record.samples());
+    k.samples.assign(file.samples.begin() + begin, file.samples.begin() + end);
+    if (file.anchors.empty()) k.anchors.assign(record.samples(), kNone);
+    else k.anchors.assign(file.anchors.begin() + begin, file.anchors.begin() + end);
+  }
+  for (const auto& light : file.point_light) kept.point_light.push_back(rgb_of(light));
+  return kept;
+}
+
+}  // namespace tempolux

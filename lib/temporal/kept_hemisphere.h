@@ -1,0 +1,57 @@
+// lib/temporal/kept_hemisphere.h -- a record with the samples it was made from.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "formats/radsamples/radsamples.h"
+#include "lib/gather/final_gather.h"
+#include "lib/irradcache/records.h"
+
+namespace tempolux {
+
+/// A record and its hemisphere, one sample a cell. Positions are scene space.
+struct KeptHemisphere {
+  formats::RadsamplesRecord record;
+  std::vector<formats::RadianceSample> samples;
+  std::vector<std::uint32_t> anchors;   ///< kNone: none
+
+  Vec3 position() const { return {record.position[0], record.position[1], record.position[2]}; }
+  Vec3 normal() const { return {record.normal[0], record.normal[1], record.normal[2]}; }
+  /// Number of a cell's present ray (GatherDirections::aim).
+  std::uint32_t draw_of(std::uint32_t cell) const { return record.updates + 1 - formats::age_of(samples[cell]); }
+};
+
+/// What is kept of a segment between two frames.
+struct KeptHemispheres {
+  std::vector<KeptHemisphere> records;
+  std::vector<Rgb> point_light;         ///< W/m^2 of all kinds, of the points that anchors name
+};
+
+/// Distances are kept in this unit, m, over 1024.
+struct SampleUnits {
+  float diagonal = 1;
+  std::uint16_t encode(float distance) const { return formats::encode_half(distance * (1024 / diagonal)); }
+  float decode(std::uint16_t distance) const { return formats::decode_half(distance) * (diagonal * (1.0f / 1024)); }
+};
+
+/// Keeps a cell's radiance; random numbers for its rounding are those of key, cell and update.
+void keep_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance);
+/// Keeps what a ray brought, at the age that the sample has.
+void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float distance, const RadianceSource& source,
+              std::size_t anchored_points, SampleUnits units);
+
+/// Irradiance, gradients and radii, before they are limited, from the samples alone. `further_share` receives how many further
+/// rays per cell the unevenness of the light would call for, if asked for.
+IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& place, SampleUnits units, float* further_share = nullptr);
+
+/// Puts into the file's record what was made of it, and back.
+void keep_result(const IrradianceRecord& made, formats::RadsamplesRecord& record);
+IrradianceRecord result_of(const formats::RadsamplesRecord& record);
+
+formats::RadsamplesFile to_file(const KeptHemispheres& kept);
+/// `shift`: the file's origin minus the frame's.
+KeptHemispheres from_file(const formats::RadsamplesFile& file, Vec3d shift);
+
+}  // namespace tempolux

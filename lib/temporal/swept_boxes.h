@@ -1,0 +1,37 @@
+// lib/temporal/swept_boxes.h -- where something has moved between two frames.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lib/gather/gather_directions.h"
+#include "lib/scene/at_frame.h"
+
+namespace tempolux {
+
+/// Of each surface whose vertices differ between two frames of a segment the box around both, m, scene space, a little larger than
+/// that.
+std::vector<Box3> swept_boxes(const SceneFrame& before, const SceneFrame& now);
+
+/// Does the ray, up to `t` of its lengths (infinity: all of it), meet the box? True if rounding cannot tell.
+bool meets(const Ray& ray, float t, const Box3& box);
+
+/// Which cells of a hemisphere can a box be seen through? Those whose cone about the box's sphere may hold it: none is left out.
+class CellsTowards {
+ public:
+  CellsTowards(Vec3 position, const Frame& frame, const Box3& box, int rings, int sectors);
+
+  template <class Body>
+  void for_each(const Body& body) const {   // body(cell)
+    for (int j = first_ring_; j <= last_ring_; ++j)
+      for (int i = 0; i < sector_count_; ++i)
+        body(std::uint32_t(j * sectors_ + (first_sector_ + i) % sectors_));
+  }
+
+ private:
+  int sectors_;
+  int first_ring_ = 0, last_ring_ = -1, first_sector_ = 0, sector_count_ = 0;
+};
+
+}  // namespace tempolux

@@ -1,0 +1,370 @@
+#include "lib/temporal/temporal_gather.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "lib/core/check.h"
+#include "lib/core/parallel.h"
+#include "lib/scene/deform.h"
+#include "lib/temporal/swept_boxes.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kSteps = 26;             ///< of strata: 8 x 9 times the rays, in steps of 2^(1/4)
+constexpr float kLargestRatio = 2;     ///< of an anchor's light: beyond, and below its inverse, cells are traced again
+constexpr std::uint32_t kFixed = 0xffffffff;
+constexpr int kFadingFrames = 4;
+
+/// Why a cell is traced.
+enum Mark : std::uint8_t { unmarked = 0, moved, lost, unanchored, aged, all };
+
+Box3 grown(const Box3& box, float by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
+bool holds(const Box3& box, Vec3 p) {
+  return min(p, box.lower) == box.lower && max(p, box.upper) == box.upper;
+}
+
+/// Unit vectors along a triangle's first edge, across it and along its normal.
+std::array<Vec3, 3> edges_of(const Surface& surface, std::uint32_t triangle) {
+  const auto& t = surface.primitive->triangles[triangle];
+  const Vec3 a = surface.position(t[0]), along = normalize(surface.position(t[1]) - a);
+  const Vec3 normal = normalize(cross(surface.position(t[1]) - a, surface.position(t[2]) - a));
+  return {along, cross(normal, along), normal};
+}
+
+bool deforms(const SceneFrame& frame, std::uint32_t surface) {
+  return frame.scene && deforms(*frame.scene, frame.scene->nodes[frame.surfaces[surface].node]);
+}
+
+void add(const TemporalCounts& from, TemporalCounts& to) {
+  to.cells += from.cells, to.moved += from.moved, to.lost += from.lost, to.unanchored += from.unanchored, to.aged += from.aged;
+  to.scaled += from.scaled, to.kept += from.kept;
+  to.update += from.update;
+}
+
+}  // namespace
+
+/// What became of an anchor's light.
+struct TemporalGather::PointChange {
+  Rgb ratio{1.0f};
+  bool same = true, lost = false;
+};
+
+struct TemporalGather::Changes {
+  std::vector<Box3> boxes;            ///< m: what has moved
+  std::vector<PointChange> points;    ///< by anchor
+  bool anything = false, materials = false;
+};
+
+std::size_t anchored_points(const SceneFrame& frame, std::span<const IrradiancePoint> points) {
+  std::vector<bool> moves;
+  for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s) {
+    moves.resize(std::max<std::size_t>(moves.size(), frame.surfaces[s].object + 1));
+    moves[frame.surfaces[s].object] = true;
+  }
+  std::size_t count = 0;
+  while (count < points.size() && !(points[count].object < moves.size() && moves[points[count].object])) ++count;
+  return count;
+}
+
+TemporalGather::TemporalGather(const TemporalScene& scene, const GatherOptions& gather, const PlacementOptions& placement,
+                               const TemporalOptions& options, float diagonal)
+    : scene_(scene),
+      gather_options_(gather),
+      placement_(placement),
+      options_(options),
+      units_{diagonal},
+      gather_(scene.tracer, scene.lights, scene.lookup, gather) {
+  for (int step = 0; step < kSteps; ++step)
+    strata_.emplace_back(int(std::lround(double(gather.rays) * std::exp2(0.25 * step))));
+}
+
+const GatherStrata& TemporalGather::strata_of(int rings, int sectors) const {
+  for (const GatherStrata& strata : strata_)
+    if (strata.rings == rings && strata.sectors == sectors) return strata;
+  thread_local GatherStrata other;   // of a file made with another number of rays
+  if (other.rings != rings || other.sectors != sectors) other = GatherStrata(rings, sectors);
+  return other;
+}
+
+SurfacePoint TemporalGather::place_of(const KeptHemisphere& kept) const {
+  const auto& r = kept.record;
+  return scene_.tracer.surface_point({0, r.surface, r.triangle, r.barycentric[0], r.barycentric[1]});
+}
+
+/// Takes a record along with the triangle it lies on.
+void TemporalGather::ride(KeptHemisphere& kept) const {
+  formats::RadsamplesRecord& r = kept.record;
+  const auto before = edges_of(scene_.before->surfaces[r.surface], r.triangle);
+  const auto now = edges_of(scene_.tracer.frame().surfaces[r.surface], r.triangle);
+  const Vec3 normal = kept.normal();
+  Vec3 turned{};
+  for (std::size_t axis = 0; axis < 3; ++axis) turned = turned + now[axis] * dot(before[axis], normal);
+  turned = normalize(turned);
+  const Vec3 position = place_of(kept).position;
+  r.position = {position.x, position.y, position.z};
+  if (length2(turned) > 0) r.normal = {turned.x, turned.y, turned.z};
+}
+
+TemporalGather::Changes TemporalGather::changes(const KeptHemispheres& kept) const {
+  Changes changes;
+  const SceneFrame& now = scene_.tracer.frame();
+  changes.boxes = swept_boxes(*scene_.before, now);
+  changes.materials = now.hashes.materials != scene_.before->hashes.materials;
+  changes.anything = changes.materials || !changes.boxes.empty();
+  changes.points.resize(kept.point_light.size());
+  for (std::size_t i = 0; i < changes.points.size(); ++i) {
+    PointChange& change = changes.points[i];
+    const Rgb before = kept.point_light[i], light = scene_.points[i].total();
+    if (before == light) continue;
+    change.same = false;
+    changes.anything = true;
+    for (int c = 0; c < 3; ++c) {
+      if (before[c] == light[c]) continue;
+      change.ratio[c] = light[c] / before[c];   // infinite: the next line
+      change.lost |= !(change.ratio[c] <= kLargestRatio && change.ratio[c] * kLargestRatio >= 1);
+    }
+  }
+  return changes;
+}
+
+/// Marks the cells that are traced again along their old ray. False if nothing about the record's light has changed.
+bool TemporalGather::mark(const KeptHemisphere& kept, const Changes& changes, const GatherDirections& directions,
+                          std::vector<std::uint8_t>& marks) const {
+  const std::size_t cells = kept.samples.size();
+  bool changed = changes.materials;
+  marks.assign(cells, changes.materials ? std::uint8_t(moved) : std::uint8_t(unmarked));
+  for (std::size_t c = 0; c < cells; ++c) {
+    const std::uint16_t flags = kept.samples[c].flags;
+    if (!(flags & formats::sample_valid) || marks[c]) continue;
+    if (flags & formats::sample_dynamic) {
+      marks[c] = moved;
+    } else if (flags & formats::sample_anchored) {
+      const PointChange& change = changes.points[kept.anchors[c]];
+      if (change.lost) marks[c] = lost;
+      else changed |= !change.same;
+    } else if (flags & formats::sample_near) {   // what neither has an anchor nor more along it is black, whatever the light
+      marks[c] = unanchored;
+    }
+  }
+  for (const Box3& box : changes.boxes) {
+    const CellsTowards towards(kept.position(), directions.frame(), box, kept.record.rings, kept.record.sectors);
+    towards.for_each([&](std::uint32_t c) {
+      if (!(kept.samples[c].flags & formats::sample_valid) || marks[c] == moved) return;
+      const bool miss = kept.samples[c].flags & formats::sample_miss;
+      const float distance = miss ? INFINITY : units_.decode(kept.samples[c].distance) * (1 + 0x1p-10f);
+      Ray ray;
+      std::uint64_t key = 0;
+      if (directions.aim(c, kept.draw_of(c), ray, key) && meets(ray, distance, box)) marks[c] = moved;
+    });
+  }
+  for (const std::uint8_t mark : marks) changed |= mark != unmarked;
+  return changed;
+}
+
+/// Traces the marked cells along the rays that their ages say.
+void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
+                           const GatherStrata& strata, std::span<const std::uint8_t> marks, GatherCounts& counts) const {
+  thread_local std::vector<Ray> rays;
+  thread_local std::vector<std::uint64_t> keys;
+  thread_local std::vector<std::uint32_t> cells;
+  thread_local std::vector<Rgb> radiance;
+  thread_local std::vector<float> distance;
+  thread_local std::vector<RadianceSource> sources;
+  rays.clear(), keys.clear(), cells.clear();
+  for (const std::uint32_t c : strata.order) {
+    if (!marks[c]) continue;
+    Ray ray;
+    std::uint64_t key = 0;
+    if (directions.aim(c, kept.draw_of(c), ray, key)) {
+      rays.push_back(ray), keys.push_back(key), cells.push_back(c);
+      continue;
+    }
+    kept.samples[c] = {{}, 0, formats::age_of(kept.samples[c])};
+    kept.anchors[c] = kNone;
+  }
+  radiance.resize(rays.size()), distance.resize(rays.size()), sources.resize(rays.size());
+  gather_.incoming()(rays, keys, radiance, distance, counts, sources);
+  const Bsdf bsdf = gather_.incoming().bsdf_at(place, kept.normal());
+  const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (coated) radiance[i] *= bsdf.arrival_weight(dot(rays[i].direction, kept.normal()));
+    keep_ray(kept, cells[i], radiance[i], distance[i], sources[i], scene_.anchored_points, units_);
+  }
+}
+
+/// The record that the samples make.
+void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born) const {
+  float further = kept.record.further_share;
+  IrradianceRecord made = reconstruct(kept, place, units_, born ? &further : nullptr);
+  made.further_share = further;
+  limit_radius(made, kept.record.footprint, placement_);
+  made.clearance = result_of(kept.record).clearance;
+  if (look_again || made.radius * Clearance::kPerRadius > made.clearance.reach) gather_.look_around(place, made);
+  keep_result(made, kept.record);
+}
+
+KeptHemisphere TemporalGather::birth(const SeenPoint& seen, const RecordStore::Expected& expected, GatherCounts& counts) const {
+  KeptHemisphere kept;
+  formats::RadsamplesRecord& r = kept.record;
+  const SurfacePoint& place = seen.surface;
+  r.position = {place.position.x, place.position.y, place.position.z};
+  r.normal = {seen.normal.x, seen.normal.y, seen.normal.z};
+  r.key = gather_key(place.position, seen.normal, gather_options_.seed);
+  r.surface = place.surface;
+  r.triangle = place.triangle;
+  r.barycentric = {place.u, place.v};
+  r.set = place.surface < scene_.tracer.frame().static_count ? formats::SurfaceSet::static_set : formats::SurfaceSet::dynamic_set;
+  r.footprint = seen.footprint;
+  r.expected_share = expected.lit_share;
+  // As many cells as FinalGather::gather has rays: one each, so that each can be drawn again.
+  const float times = std::clamp(FinalGather::kEnoughLit / std::max(expected.lit_share, 1e-6f), 1.0f, 8.0f);
+  const double steps = 4 * (std::ceil(std::log2(double(times))) + std::log2(1 + double(expected.further_share)));
+  const GatherStrata& strata = strata_[std::size_t(std::clamp(std::lround(steps), 0l, long(kSteps) - 1))];
+  r.rings = std::uint16_t(strata.rings);
+  r.sectors = std::uint16_t(strata.sectors);
+  kept.samples.resize(strata.cells());
+  kept.anchors.assign(strata.cells(), kNone);
+  const std::vector<std::uint8_t> marks(strata.cells(), all);
+  shoot(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), strata, marks, counts);
+  finish(place, kept, true, true);
+  return kept;
+}
+
+bool TemporalGather::update(KeptHemisphere& kept, const Changes& changes, TemporalCounts& counts) const {
+  thread_local std::vector<std::uint8_t> marks;
+  thread_local std::vector<std::uint16_t> ages;
+  thread_local std::vector<std::uint32_t> drawn;
+  thread_local AgeDraw lot;
+  formats::RadsamplesRecord& r = kept.record;
+  counts.cells += kept.samples.size();
+  if (r.set == formats::SurfaceSet::dynamic_set) ride(kept);
+  const SurfacePoint place = place_of(kept);
+  const GatherDirections directions(place, kept.normal(), r.rings, r.sectors, r.key);
+  if (!mark(kept, changes, directions, marks)) {
+    ++counts.kept;
+    return false;
+  }
+  ++r.updates;
+  std::size_t marked = 0;
+  ages.resize(marks.size());
+  for (std::size_t c = 0; c < marks.size(); ++c) {
+    marked += marks[c] != unmarked;
+    ages[c] = formats::age_of(kept.samples[c]);
+    if (ages[c] < formats::kMaxAge) ++kept.samples[c].flags;
+  }
+  // From all cells, the marked ones too: were those left out, cells that have come to see what is always traced again would keep
+  // that direction for good, and others would join them.
+  const auto wanted = std::size_t(std::ceil(double(options_.refresh) * double(marks.size())));
+  lot.draw(ages, wanted - std::min(wanted, marked), options_.age_weight, mix64(r.key + r.updates), drawn);
+  for (const std::uint32_t c : drawn) {
+    marks[c] = aged;
+    kept.samples[c].flags = std::uint16_t((kept.samples[c].flags & ~formats::kMaxAge) | 1);
+  }
+  for (const std::uint8_t mark : marks)
+    counts.moved += mark == moved, counts.lost += mark == lost, counts.unanchored += mark == unanchored, counts.aged += mark == aged;
+  for (std::uint32_t c = 0; c < marks.size(); ++c) {
+    if (marks[c] || !(kept.samples[c].flags & formats::sample_anchored)) continue;
+    const PointChange& change = changes.points[kept.anchors[c]];
+    if (change.same) continue;
+    const std::array<float, 3> old = formats::decode_rgbe(kept.samples[c].rgbe);
+    keep_radiance(kept, c, Rgb(old[0], old[1], old[2]) * change.ratio);
+    ++counts.scaled;
+  }
+  shoot(place, kept, directions, strata_of(r.rings, r.sectors), marks, counts.update);
+  const bool beside = std::any_of(changes.boxes.begin(), changes.boxes.end(),
+                                  [&](const Box3& box) { return holds(grown(box, std::min(r.clearance_reach, 1e15f)), kept.position()); });
+  finish(place, kept, beside, false);
+  return true;
+}
+
+void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) const {
+  const SceneFrame& now = scene_.tracer.frame();
+  const std::size_t before = kept.records.size();
+  std::vector<bool> gone(before);
+  for (std::size_t i = 0; i < before; ++i) {
+    gone[i] = deforms(now, kept.records[i].record.surface) && kept.records[i].record.set == formats::SurfaceSet::dynamic_set;
+    counts.deforming += gone[i];
+  }
+  const Changes changes = this->changes(kept);
+  if (changes.anything) {
+    std::mutex mutex;
+    parallel_chunks(before, 16, [&](std::size_t first, std::size_t last) {
+      TemporalCounts local;
+      for (std::size_t i = first; i < last; ++i)
+        if (!gone[i]) update(kept.records[i], changes, local);
+      const std::lock_guard lock(mutex);
+      add(local, counts);
+    });
+    for (std::size_t i = 0; i < before; ++i) {
+      std::uint8_t& fading = kept.records[i].record.fading;
+      if (gone[i] || fading == 0) continue;
+      fading = std::uint8_t((fading + 1) % kFadingFrames);
+      if (fading == 0) gone[i] = true, ++counts.removed;
+    }
+  } else {
+    for (const KeptHemisphere& k : kept.records) counts.cells += k.samples.size();
+    counts.kept += before;
+  }
+  // Numbers of records before those that went.
+  std::vector<std::uint32_t> moved_to(before + 1, 0);
+  for (std::size_t i = 0; i < before; ++i) moved_to[i + 1] = moved_to[i] + !gone[i];
+  for (KeptHemisphere& k : kept.records)
+    if (k.record.narrows_from <= before) k.record.narrows_from = moved_to[k.record.narrows_from];
+  for (std::size_t i = 0; i < before; ++i)
+    if (!gone[i] && moved_to[i] != i) kept.records[moved_to[i]] = std::move(kept.records[i]);
+  kept.records.resize(moved_to[before]);
+  if (changes.anything) thin_out(kept, counts);
+  kept.point_light.clear();
+}
+
+/// Records begin to fade where those before them weigh by a whole record more than when they were placed.
+void TemporalGather::thin_out(KeptHemispheres& kept, TemporalCounts& counts) const {
+  RecordStore store({.least_cosine = least_cosine_of(placement_.error_bound)});
+  fill(kept, store);
+  std::vector<std::uint8_t> fades(kept.records.size());
+  for (std::uint32_t i = 0; i < kept.records.size(); ++i) {
+    std::uint8_t& fading = kept.records[i].record.fading;
+    if (fading == 0 && store.weight_of_earlier(i, fades) >= 1 + kept.records[i].record.birth_weight) fading = 1;
+    fades[i] = fading > 0;
+    counts.fading += fades[i];
+  }
+}
+
+void TemporalGather::fill(const KeptHemispheres& kept, RecordStore& store) const {
+  for (const KeptHemisphere& k : kept.records) {
+    IrradianceRecord record = result_of(k.record);
+    const std::size_t first = k.record.narrows_from == kFixed ? ~std::size_t(0) : k.record.narrows_from;
+    if (placement_.clamp_neighbours) store.clamp_with_neighbours(record, placement_.error_bound, first);
+    record.radius *= float(kFadingFrames - k.record.fading) / kFadingFrames;
+    TEMPOLUX_CHECK(store.add(record));
+  }
+}
+
+void TemporalGather::place(const PixelViews& views, int width, int height, KeptHemispheres& kept, RecordStore& store,
+                           TemporalCounts& counts, const std::function<void(double)>& progress) const {
+  fill(kept, store);
+  std::vector<KeptHemisphere> batch(kPlacedTogether);
+  RecordSource source;
+  source.gather = [&](const SeenPoint& seen, const RecordStore::Expected& expected, std::size_t slot, GatherCounts& gathered) {
+    batch[slot] = birth(seen, expected, gathered);
+    return result_of(batch[slot].record);
+  };
+  source.added = [&](std::size_t slot, std::size_t narrows_from) {
+    batch[slot].record.narrows_from = std::uint32_t(std::min<std::size_t>(narrows_from, kFixed));
+    batch[slot].record.birth_weight = store.weight_of_earlier(std::uint32_t(store.records().size() - 1), {});
+    kept.records.push_back(std::move(batch[slot]));
+  };
+  counts.born += place_records(gather_, views, width, height, placement_, store, counts.birth, progress, &source);
+  counts.records = kept.records.size();
+  for (std::size_t i = 0; i < scene_.anchored_points; ++i) kept.point_light.push_back(scene_.points[i].total());
+  for (const KeptHemisphere& k : kept.records)
+    for (const formats::RadianceSample& sample : k.samples) {
+      const std::size_t age = formats::age_of(sample);
+      if (age >= counts.ages.size()) counts.ages.resize(age + 1);
+      ++counts.ages[age];
+    }
+}
+
+}  // namespace tempolux

@@ -1,0 +1,88 @@
+// lib/temporal/temporal_gather.h -- records whose samples are kept from frame to frame: a frame shoots only what age or motion asks for.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lib/gather/place_records.h"
+#include "lib/temporal/ageing.h"
+#include "lib/temporal/kept_hemisphere.h"
+
+namespace tempolux {
+
+struct TemporalOptions {
+  float refresh = 0.1f;                       ///< of a record's cells, that get a ray in a frame in which its light changed
+  AgeWeight age_weight = AgeWeight::square;   ///< of cells that get a new ray
+};
+
+/// rays of gather: of new records and their continuations. Cells that were traced again: `moved` along their old ray, as what moves was
+/// or is in the way; `lost`: their anchor's light is more than twice or less than half of what it was; `unanchored`: nothing stands for
+/// what they met; `aged` got a new ray. `scaled` read their anchor's new light; `kept` records had no reason to change.
+struct TemporalCounts {
+  std::uint64_t cells = 0, moved = 0, lost = 0, unanchored = 0, aged = 0, scaled = 0;
+  std::uint64_t records = 0, kept = 0, born = 0, fading = 0, removed = 0, deforming = 0;
+  GatherCounts update, birth;
+  std::vector<std::uint64_t> ages;            ///< cells by age, after the frame
+};
+
+/// What a frame's temporal gathering reads; all of it must outlive it.
+struct TemporalScene {
+  const Tracer& tracer;
+  const Lights& lights;
+  const PointLookup& lookup;
+  std::span<const IrradiancePoint> points;    ///< of the lookup
+  std::size_t anchored_points = 0;            ///< the first of them, on what stands still, may be anchors
+  const SceneFrame* before = nullptr;         ///< the scene at the frame that was kept; null: nothing is kept
+};
+
+/// How many of a frame's first points lie on what stands still.
+std::size_t anchored_points(const SceneFrame& frame, std::span<const IrradiancePoint> points);
+
+/// One frame. Same records for any number of threads.
+class TemporalGather {
+ public:
+  TemporalGather(const TemporalScene& scene, const GatherOptions& gather, const PlacementOptions& placement,
+                 const TemporalOptions& options, float diagonal);
+
+  /// Brings what was kept to this frame. The records of what deforms are left out. Of the others a record changes where one of
+  /// these holds, else it stays to the bit:
+  /// - a cell's ray, from the place to what it met, meets a box in which something has moved, or what it met moves: traced again, *along
+  ///   its old direction*. Another direction would bring a bias: what hits the mover would be thrown away, what misses it kept;
+  /// - the point that stands for what it met has other light now: the cell's radiance is scaled by the ratio, per channel, or
+  ///   traced again along its old direction beyond 1/2 to 2;
+  /// - no point stands for what it met (mirrors, corners): traced again alike.
+  /// Of a record that changes, further cells get a new ray in their place of the hemisphere, drawn by age, up to `refresh` of all.
+  /// Then records fade away, in four frames, where those before them weigh by a whole record more than when they were placed.
+  void advance(KeptHemispheres& kept, TemporalCounts& counts) const;
+  /// The records of a store, and then new ones where they do not cover what the camera sees; those are kept, too.
+  void place(const PixelViews& views, int width, int height, KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts,
+             const std::function<void(double)>& progress = {}) const;
+
+ private:
+  struct PointChange;
+  struct Changes;
+  struct Shots;
+  const GatherStrata& strata_of(int rings, int sectors) const;
+  bool update(KeptHemisphere& kept, const Changes& changes, TemporalCounts& counts) const;
+  bool mark(const KeptHemisphere& kept, const Changes& changes, const GatherDirections& directions, std::vector<std::uint8_t>& marks) const;
+  void shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions, const GatherStrata& strata,
+             std::span<const std::uint8_t> marks, GatherCounts& counts) const;
+  void finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born) const;
+  KeptHemisphere birth(const SeenPoint& seen, const RecordStore::Expected& expected, GatherCounts& counts) const;
+  SurfacePoint place_of(const KeptHemisphere& kept) const;
+  void ride(KeptHemisphere& kept) const;
+  Changes changes(const KeptHemispheres& kept) const;
+  void thin_out(KeptHemispheres& kept, TemporalCounts& counts) const;
+  void fill(const KeptHemispheres& kept, RecordStore& store) const;
+
+  TemporalScene scene_;
+  GatherOptions gather_options_;
+  PlacementOptions placement_;
+  TemporalOptions options_;
+  SampleUnits units_;
+  FinalGather gather_;
+  std::vector<GatherStrata> strata_;   ///< steps of 2^(1/4) cells
+};
+
+}  // namespace tempolux

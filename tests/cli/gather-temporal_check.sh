@@ -1,0 +1,98 @@
+# gather-temporal: a range and single frames, threads, what stands, a run that is killed and goes on, what it must refuse.
+failed=0
+bad() { echo "$*"; failed=1; }
+refuses() {   # exit 2 and these words in one line; nothing is written
+  words=$1; shift
+  "$@" >out.txt 2>errors.txt
+  code=$?
+  [ $code = 2 ] || bad "exit $code, not 2: $*"
+  grep -q -- "$words" errors.txt && [ "$(wc -l <errors.txt)" = 1 ] || bad "does not say '$words': $(cat errors.txt)"
+  [ -e refused ] && bad "left an output: $*" && rm -f refused
+}
+moving=$HERE/../../pipelines/scenes/S2_cornell_moving.glb
+still=$HERE/../../pipelines/scenes/S1_cornell.glb
+for f in 0 1 2 3 4; do
+  photon-trace "$moving" --frame $f --photons 20k -o p.photons -q &&
+  irradcache-build points "$moving" --frame $f --photons p.photons --point-count 1k -o p.000$f.irradpoints -q || bad "points of frame $f"
+done
+temporal() { gather-temporal final "$moving" -q --size 48x27 --rays 64 "$@"; }
+range() { folder=$1; shift; mkdir -p "$folder"; temporal --frames 0-4 --points p.####.irradpoints -o "$folder/s.####.radsamples" --cache "$folder/c.####.irradcache" "$@"; }
+
+# A range, each frame alone, and any number of threads: the same files.
+range range --stats range.json || bad 'a range'
+mkdir alone
+for f in 0 1 2 3 4; do
+  previous=
+  [ $f -gt 0 ] && previous="--previous alone/s.000$((f - 1)).radsamples"
+  temporal --frame $f --points p.000$f.irradpoints $previous -o alone/s.000$f.radsamples --cache alone/c.000$f.irradcache || bad "frame $f alone"
+done
+diff -r range alone || bad 'frames alone differ from a range'
+for threads in 1 2 3 7; do
+  range threads$threads --threads $threads || bad "$threads threads"
+  diff -r range threads$threads || bad "$threads threads: other files"
+done
+tempolux-info --check range/* >/dev/null || bad 'not valid'
+frame-render "$moving" --frame 4 --size 48x27 --spp 1 --irradcache range/c.0004.irradcache --points p.0004.irradpoints -o f.exr -q || bad 'a frame from its cache'
+"${PYTHON:-python3}" - <<'END' || bad 'counts of a range'
+import json
+r = json.load(open("range.json"))["results"]
+assert r["retraced_share.1"] < 0.4 and r["mean_age.4"] > 2 and r["update_rays.0"] == 0 < r["update_rays.1"], r
+assert r["records.4"] < 1.3 * r["records.0"], r
+END
+
+# With one frame left out the next follows from the one before that; an earlier file is replaced by the one that follows from it.
+temporal --frame 2 --points p.0002.irradpoints --previous range/s.0000.radsamples -o over.radsamples --cache over.irradcache || bad 'from two frames before'
+cp range/s.0001.radsamples chain.radsamples
+temporal --frame 2 --points p.0002.irradpoints --previous chain.radsamples -o chain.radsamples --cache chain.irradcache || bad 'in place'
+cmp chain.radsamples range/s.0002.radsamples || bad 'in place: another file'
+
+# Where nothing moves no ray is sent, and all frames have one digest.
+photon-trace "$still" --photons 20k -o p.photons -q && irradcache-build points "$still" --photons p.photons --point-count 1k -o still.irradpoints -q || bad still
+for f in 0 1 2; do cp still.irradpoints still.$f.irradpoints; done
+mkdir still
+gather-temporal final "$still" -q --size 48x27 --rays 64 --frames 0-2 --points still.#.irradpoints -o still/s.#.radsamples --cache still/c.#.irradcache \
+  --stats still.json || bad 'what stands'
+[ "$(tempolux-info --digest still/s.* | cut -d' ' -f1 | sort -u | wc -l)" = 1 ] || bad 'what stands: other samples'
+[ "$(tempolux-info --digest still/c.* | cut -d' ' -f1 | sort -u | wc -l)" = 1 ] || bad 'what stands: other records'
+"${PYTHON:-python3}" -c 'import json
+r = json.load(open("still.json"))["results"]
+assert all(r[name] == 0 for f in "12" for name in (f"update_rays.{f}", f"birth_rays.{f}"))' || bad 'what stands: rays'
+
+# Killed at any moment and resumed: the bytes of an undisturbed run. What is whole is not made again; what is damaged is.
+begin=$(date +%s%N)
+range timed
+span=$((($(date +%s%N) - begin) / 1000000))
+for part in 1 2 3 4 5 6 7 8; do
+  rm -rf killed
+  mkdir killed
+  gather-temporal final "$moving" -q --size 48x27 --rays 64 --frames 0-4 --points p.####.irradpoints -o killed/s.####.radsamples --cache killed/c.####.irradcache &
+  process=$!
+  sleep "$(awk -v s="$span" -v p="$part" 'BEGIN { printf "%.3f", s * p / 9000 }')"
+  kill -9 $process 2>/dev/null
+  wait $process 2>/dev/null
+  range killed --resume || bad 'resume'
+  diff -r range killed || bad "killed after $part/9 and resumed: other files"
+done
+touch -d '2001-01-01' killed/*
+printf x >>killed/s.0002.radsamples
+rm killed/c.0004.irradcache
+range killed --resume || bad 'resume after damage'
+diff -r range killed || bad 'damaged and resumed: other files'
+[ "$(find killed -newermt 2002-01-01 | grep -c samples)" = 2 ] || bad "made again: $(find killed -newermt 2002-01-01)"
+gather-temporal final "$moving" -q --size 48x27 --rays 65 --frames 0-4 --points p.####.irradpoints --resume -o killed/s.####.radsamples --cache killed/c.####.irradcache || bad 'other options'
+cmp -s killed/s.0000.radsamples range/s.0000.radsamples && bad 'files of other options are taken for these'
+
+# Refused: with what to do.
+points='--points p.0001.irradpoints'
+refuses 'not a way to gather' gather-temporal often "$moving" $points -o refused --cache refused.c
+refuses 'not a way to gather' gather-temporal "$moving" $points -o refused --cache refused.c
+refuses 'several frames need a pattern' temporal --frames 0-1 --points p.####.irradpoints -o refused --cache refused.c
+refuses 'of one frame' temporal --frames 0-1 --points p.####.irradpoints --previous a -o s.####.radsamples --cache c.####.irradcache
+refuses 'name them upwards' temporal --frames 1-0 --points p.####.irradpoints -o s.####.radsamples --cache c.####.irradcache
+refuses 'moving_geometry' temporal --frame 0 $points -o refused --cache refused.c
+refuses 'not a .radsamples file' temporal --frame 1 $points --previous range/c.0000.irradcache -o refused --cache refused.c
+irradcache-build points "$moving" --frame 1 --photons p.photons --allow-stale --point-count 900 -o fewer.irradpoints -q 2>/dev/null
+refuses 'its points lay elsewhere' temporal --frame 1 --points fewer.irradpoints --allow-stale --previous range/s.0000.radsamples -o refused --cache refused.c
+refuses 'in another segment' temporal --frame 1 $points --segment 12 --previous range/s.0000.radsamples -o refused --cache refused.c
+refuses '0.5 not in' temporal --frame 1 $points --age-weight 0.5 -o refused --cache refused.c
+exit $failed

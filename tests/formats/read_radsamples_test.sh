@@ -1,0 +1,41 @@
+#!/bin/sh
+# The second reader (read_radsamples.py, written from the page) and the C++ agree: on files that the C++ wrote, on bytes when it writes them
+# again, and on the folders accept and refuse.
+#
+#     read_radsamples_test.sh PATH-OF-THE-TEST       in the folder tests
+program=$1
+here=$(pwd)/formats
+folder=$(mktemp -d) || exit 3
+export PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$here
+trap 'rm -rf "$folder"' EXIT
+bad=0
+fail() { echo "read_radsamples_test: $*"; bad=1; }
+TEMPOLUX_SECOND_READER=$folder "$program" --gtest_filter='*.FilesForTheSecondReader' >"$folder/log" 2>&1 || { cat "$folder/log"; fail "the C++ failed"; }
+for name in example many empty; do
+  file=$folder/$name.radsamples
+  python3 "$here/read_radsamples.py" "$file" "$folder/copy" >"$folder/json" || fail "$name not read"
+  python3 -c 'import json, sys
+j, e = json.load(open(sys.argv[1])), list(map(float, open(sys.argv[2]).read().split()))
+found = [j["points"], j["records"], j["samples"], j["radiance"], j["mean_age"] * j["samples"]]
+sys.exit(any(abs(a - b) > 1e-9 * abs(b) for a, b in zip(found, e)))' "$folder/json" "$file.expected" || fail "$name: other numbers"
+  cmp "$file" "$folder/copy" || fail "$name: written again, other bytes"
+done
+python3 - "$here"/radsamples/*/* <<'END' || fail "folders accept and refuse"
+import sys
+from read_radsamples import read_radsamples
+wrong = 0
+for path in sys.argv[1:]:
+    try:
+        read_radsamples(path)
+        good = True
+    except (ValueError, OSError):
+        good = False
+    if good != ("/accept/" in path):
+        print(path, "was read" if good else "was refused")
+        wrong = 1
+sys.exit(wrong)
+END
+# The files in the repository are those that make_radsamples_files.py makes.
+python3 "$here/make_radsamples_files.py" "$folder/made" || fail "make_radsamples_files.py"
+diff -r "$folder/made/radsamples" "$here/radsamples" || fail "make_radsamples_files.py makes other files"
+exit $bad

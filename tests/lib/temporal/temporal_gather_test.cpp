@@ -1,0 +1,263 @@
+// Kept hemispheres over time: what must follow, what must stay, and that nothing is lost on the way.
+#include "lib/temporal/temporal_gather.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "tests/support/scenes.h"
+
+namespace tempolux {
+namespace {
+
+using test::HandMadeScene;
+using test::matte;
+
+/// A floor, 4 m wide, above which a flat square of half-width `half` m, 0.6 m high, turns about its axis, z. All of it shines back
+/// radiance 1 where it is seen: reflectance 1, irradiance pi. Otherwise all is black.
+struct Turning {
+  HandMadeScene scene;
+  std::vector<IrradiancePoint> points;
+
+  Turning(float angle, float half) {
+    scene.add_quad({-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}, matte(Rgb(0.0f)));
+    const float c = half * std::cos(angle), s = half * std::sin(angle);
+    scene.add_quad({-c, 0.6f - s, half}, {c, 0.6f + s, half}, {c, 0.6f + s, -half}, {-c, 0.6f - s, -half}, matte(Rgb(1.0f)), true);
+    for (const float side : {1.0f, -1.0f}) {
+      IrradiancePoint point;
+      point.position = {0, 0.6f, 0};
+      point.normal = Vec3{-std::sin(angle), std::cos(angle), 0} * side;
+      point.object = 1;
+      point.indirect = Rgb(kPi);
+      points.push_back(point);
+    }
+  }
+};
+
+/// One frame's gathering; points may stand for all that faces their way.
+struct Gathering {
+  const SceneFrame& frame;
+  Tracer tracer;
+  Lights lights;
+  PointLookup lookup;
+  TemporalGather gather;
+
+  Gathering(HandMadeScene& scene, std::span<const IrradiancePoint> points, const SceneFrame* before, const GatherOptions& rays,
+            const PlacementOptions& placement, const TemporalOptions& options = {})
+      : frame(scene.frame()), tracer(frame), lights(frame, EmissionTable{}), lookup(points, 1),
+        gather({tracer, lights, lookup, points, anchored_points(frame, points), before}, rays, placement, options, 8) {}
+
+  /// What pixel (x, y) of a picture of the floor near the origin sees: places `step` m apart.
+  PixelViews floor(float step) const {
+    return [this, step](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+      for (std::size_t i = 0; i < looks.size(); ++i) {
+        Hit hit;
+        seen[i].reset();
+        if (tracer.intersect({{0.3f + step * looks[i].x, 0.1f, step * looks[i].y}, {0, -1, 0}}, hit))
+          seen[i] = SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
+      }
+    };
+  }
+};
+
+/// Radii so small that each place gets a record of its own.
+PlacementOptions everywhere() {
+  PlacementOptions options;
+  options.error_bound = 1e-6f;
+  options.clamp_neighbours = false;
+  return options;
+}
+
+struct Mean {
+  double mean = 0, error = 0;   ///< of the mean
+};
+Mean mean_of(const KeptHemispheres& kept) {
+  double sum = 0, square = 0;
+  for (const KeptHemisphere& k : kept.records) {
+    const double e = double(k.record.irradiance[1]);
+    sum += e, square += e * e;
+  }
+  const double n = double(kept.records.size());
+  return {sum / n, std::sqrt(std::max(0.0, square / n - sum / n * (sum / n)) / n)};
+}
+
+// A square that turns by 1.5 degrees a frame for 200 frames over 1000 places side by side: their mean irradiance is that of fresh gathering
+// within 3 standard errors of both. It fails if cells that are traced again get another direction (what hits the square is thrown away: 29 to
+// 75 % of its light is lost), or if they are left out where cells are drawn by age (what has come to hit it stays: 33 to 70 % too much).
+TEST(TemporalGather, ASlowlyTurningObjectKeepsItsShare) {
+  constexpr int kWidth = 40, kHeight = 25, kFrames = 200;
+  for (const float half : {0.06f, 0.15f}) {
+    const GatherOptions rays{.rays = 64};
+    KeptHemispheres kept;
+    std::uint64_t aged = 0;
+    std::unique_ptr<Turning> before;
+    for (int f = 0; f <= kFrames; ++f) {
+      auto now = std::make_unique<Turning>(float(f) * 0.026f, half);
+      const Gathering gathering(now->scene, now->points, before ? &before->scene.frame() : nullptr, rays, everywhere());
+      TemporalCounts counts;
+      if (before) gathering.gather.advance(kept, counts);
+      if (f == 0 || f == kFrames) {
+        RecordStore store;
+        gathering.gather.place(gathering.floor(1e-4f), f == 0 ? kWidth : 1, f == 0 ? kHeight : 1, kept, store, counts);
+      }
+      before = std::move(now);
+      ASSERT_GE(kept.records.size(), std::size_t(kWidth * kHeight));
+      aged += counts.aged;
+    }
+    Turning last(float(kFrames) * 0.026f, half);
+    GatherOptions other = rays;
+    other.seed = 99;
+    const Gathering fresh(last.scene, last.points, nullptr, other, everywhere());
+    KeptHemispheres anew;
+    RecordStore store;
+    TemporalCounts counts;
+    fresh.gather.place(fresh.floor(1e-4f), kWidth, kHeight, anew, store, counts);
+    const Mean a = mean_of(kept), b = mean_of(anew);
+    EXPECT_NEAR(a.mean, b.mean, 3 * std::hypot(a.error, b.error)) << half;
+    EXPECT_GT(aged, 0u);
+  }
+}
+
+/// A closed room, 2 m wide, reflectance 1/2, whose points all say the same irradiance: each ray brings its half over pi.
+struct Room {
+  HandMadeScene scene;
+  std::vector<IrradiancePoint> points;
+  explicit Room(float irradiance) {
+    scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
+    for (const Vec3 n : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
+      IrradiancePoint point;
+      point.position = n * -1.0f;
+      point.normal = n;
+      point.indirect = Rgb(irradiance, 2 * irradiance, 0);
+      points.push_back(point);
+    }
+  }
+};
+
+KeptHemispheres kept_in(Room& room, TemporalCounts& counts) {
+  const Gathering gathering(room.scene, room.points, nullptr, {.rays = 200}, everywhere());
+  KeptHemispheres kept;
+  RecordStore store;
+  gathering.gather.place([&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      Hit hit;
+      gathering.tracer.intersect({{0.1f * looks[i].x, 0, 0.1f * looks[i].y}, {0, -1, 0}}, hit);
+      seen[i] = SeenPoint{gathering.tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
+    }
+  }, 4, 4, kept, store, counts);
+  return kept;
+}
+
+KeptHemispheres advanced(Room& before, Room& now, KeptHemispheres kept, TemporalCounts& counts, const TemporalOptions& options = {}) {
+  const Gathering gathering(now.scene, now.points, &before.scene.frame(), {.rays = 200}, everywhere(), options);
+  gathering.gather.advance(kept, counts);
+  RecordStore store;
+  gathering.gather.place([](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+    for (std::size_t i = 0; i < looks.size(); ++i) seen[i].reset();
+  }, 1, 1, kept, store, counts);
+  return kept;
+}
+
+TEST(TemporalGather, WhatStandsStaysToTheBitWithoutARay) {
+  Room room(3), same(3);
+  TemporalCounts counts, later;
+  const KeptHemispheres kept = kept_in(room, counts);
+  ASSERT_EQ(kept.records.size(), 16u);
+  const KeptHemispheres next = advanced(room, same, kept, later);
+  EXPECT_EQ(later.update.rays + later.birth.rays, 0u);
+  EXPECT_EQ(later.kept, 16u);
+  ASSERT_EQ(next.records.size(), 16u);
+  for (std::size_t i = 0; i < 16; ++i) {
+    EXPECT_EQ(next.records[i].record, kept.records[i].record);
+    EXPECT_EQ(next.records[i].samples, kept.records[i].samples);
+    EXPECT_EQ(next.records[i].anchors, kept.records[i].anchors);
+  }
+}
+
+// Light that grows by 1/2 % a frame for 24 frames: E grows by 1.005^24 = 1.127 (each step is far below a mantissa's, 1/128 to 1/256: rounded
+// down, cells would stay as they are for the ten frames they live). 16 records of 200 cells, whose 24 roundings are off by up to half a
+// step each: 0.4 % x sqrt(24 / 3200) = 0.03 %. Only a tenth of the cells is traced. Where nothing is refreshed, too.
+TEST(TemporalGather, AnchoredCellsFollowTheirPointsLittleByLittle) {
+  for (const float refresh : {0.1f, 0.0f}) {
+    auto before = std::make_unique<Room>(3.0f);
+    TemporalCounts counts;
+    KeptHemispheres kept = kept_in(*before, counts);
+    const double first = mean_of(kept).mean;
+    EXPECT_NEAR(first, 3, 3 * 0.0005);   // rho E = 0.5 x 6
+    for (int f = 1; f <= 24; ++f) {
+      auto now = std::make_unique<Room>(3 * std::pow(1.005f, float(f)));
+      TemporalCounts later;
+      kept = advanced(*before, *now, std::move(kept), later, {.refresh = refresh});
+      EXPECT_EQ(later.moved + later.lost + later.unanchored, 0u);
+      EXPECT_NEAR(double(later.aged), double(refresh) * double(later.cells), 16);
+      before = std::move(now);
+    }
+    EXPECT_NEAR(mean_of(kept).mean / first, std::pow(1.005, 24), 0.001) << refresh;
+    for (const KeptHemisphere& k : kept.records) EXPECT_EQ(k.record.irradiance[2], 0);   // black stays black
+  }
+}
+
+// Light that is three times as strong at once: cells are traced again along their old rays, age as they are, and are right at once.
+TEST(TemporalGather, BeyondHalfAndTwiceCellsAreTracedAgain) {
+  Room room(1), brighter(3), dark(0);
+  TemporalCounts counts, later, black, back;
+  const KeptHemispheres kept = kept_in(room, counts);
+  const KeptHemispheres next = advanced(room, brighter, kept, later, {.refresh = 0});
+  EXPECT_EQ(later.lost, later.cells);
+  EXPECT_NEAR(mean_of(next).mean, 3, 3 * 0.0005);
+  for (const KeptHemisphere& k : next.records)
+    for (std::uint32_t c = 0; c < k.samples.size(); ++c) {
+      EXPECT_EQ(formats::age_of(k.samples[c]), 2);
+      EXPECT_EQ(k.draw_of(c), 0u);
+    }
+  // Lights out, and on again: nothing scaled from 0 stays 0.
+  const KeptHemispheres out = advanced(brighter, dark, next, black, {.refresh = 0});
+  EXPECT_EQ(mean_of(out).mean, 0);
+  EXPECT_NEAR(mean_of(advanced(dark, room, out, back, {.refresh = 0})).mean, 1, 0.0005);
+}
+
+// A record on the square itself: it keeps its place in the triangle and its key, its normal turns with it.
+TEST(TemporalGather, RecordsRideOnWhatMoves) {
+  Turning before(0, 0.4f), now(0.5f, 0.4f);
+  const Gathering first(before.scene, before.points, nullptr, {.rays = 64}, everywhere());
+  KeptHemispheres kept;
+  RecordStore store;
+  TemporalCounts counts, later;
+  first.gather.place([&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      Hit hit;
+      first.tracer.intersect({{0.2f, 2, 0.1f}, {0, -1, 0}}, hit);
+      seen[i] = SeenPoint{first.tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
+    }
+  }, 1, 1, kept, store, counts);
+  ASSERT_EQ(kept.records.size(), 1u);
+  const formats::RadsamplesRecord old = kept.records[0].record;
+  EXPECT_EQ(old.set, formats::SurfaceSet::dynamic_set);
+  const Gathering second(now.scene, now.points, &before.scene.frame(), {.rays = 64}, everywhere());
+  second.gather.advance(kept, later);
+  const formats::RadsamplesRecord& r = kept.records[0].record;
+  EXPECT_EQ(r.key, old.key);
+  EXPECT_NEAR(r.position[0], 0.2f * std::cos(0.5f), 1e-6);
+  EXPECT_NEAR(r.position[1], 0.6f + 0.2f * std::sin(0.5f), 1e-6);
+  EXPECT_NEAR(r.position[2], 0.1f, 1e-6);
+  EXPECT_NEAR(r.normal[0], -std::sin(0.5f), 1e-6);
+  EXPECT_NEAR(r.normal[1], std::cos(0.5f), 1e-6);
+  EXPECT_EQ(later.moved, kept.records[0].samples.size());   // its surroundings pass by: all anew
+}
+
+// Coming back from a file: the same, and going on from it, too.
+TEST(TemporalGather, AFileHoldsAllThatCounts) {
+  Room room(1), brighter(1.3f);
+  TemporalCounts counts, a, b;
+  const KeptHemispheres kept = kept_in(room, counts), again = from_file(to_file(kept), {});
+  const KeptHemispheres next = advanced(room, brighter, kept, a), from = advanced(room, brighter, again, b);
+  ASSERT_EQ(next.records.size(), from.records.size());
+  for (std::size_t i = 0; i < next.records.size(); ++i) {
+    EXPECT_EQ(next.records[i].record, from.records[i].record);
+    EXPECT_EQ(next.records[i].samples, from.records[i].samples);
+  }
+}
+
+}  // namespace
+}  // namespace tempolux

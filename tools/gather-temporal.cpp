@@ -1,0 +1,209 @@
+// gather-temporal -- irradiance records whose incoming light is kept from frame to frame.
+//
+//     gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 960x540 -o s.0000.radsamples --cache c.0000.irradcache
+//     gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 960x540 --previous s.0000.radsamples ...
+//     gather-temporal final room.glb --frames 0-47 --points p.####.irradpoints --size 960x540 -o s.####.radsamples --cache c.####.irradcache
+//
+// Formats: formats/radsamples/radsamples.md, formats/irradcache/irradcache.md.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "formats/error.h"
+#include "lib/gather/cache_files.h"
+#include "lib/render/known_light.h"
+#include "tools/common/kept_files.h"
+#include "tools/common/option_words.h"
+#include "tools/common/tool_main.h"
+
+using namespace tempolux;
+
+namespace {
+
+/// Of min_weight: what covers a pixel once there are records, as of irradcache-build for the frames after the first: a stricter first
+/// frame keeps the others from adding a few everywhere.
+constexpr float kLaterWeight = 0.5f;
+
+struct Options {
+  std::vector<std::string> inputs;   // final SCENE
+  std::string points, previous, output, cache, age_weight = "2";
+  int width = 640, height = 360;
+  bool resume = false, free_radii = false;
+  GatherOptions gather;
+  PlacementOptions placement;
+  TemporalOptions temporal;
+
+  const std::string& scene() const { return inputs.back(); }
+};
+
+/// The frame before, in memory: what was kept, and the scene it was kept of.
+struct Chain {
+  KeptHemispheres kept;
+  std::optional<SceneFrame> before;   ///< none: nothing is kept
+};
+
+void write_cache(const Options& options, const SceneFrame& frame, const RecordStore& store, const std::string& history, tools::Output& output) {
+  formats::IrradcacheHeader header;
+  header.identity = tools::identity_of(frame);
+  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  header.columns = formats::column_clearance;
+  header.rays = std::uint32_t(options.gather.rays);
+  header.error_bound = double(options.placement.error_bound);
+  header.least_cosine = double(store.least_cosine());
+  for (const IrradianceRecord& record : store.records()) {
+    header.min_radius = header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
+    header.max_radius = std::max(header.max_radius, double(record.radius));
+  }
+  header.placed_frames = {{frame.frame, frame.frame}};
+  header.history = history;
+  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  writer.write(to_file(store.records(), frame));
+  writer.finish();
+  output.commit();
+}
+
+void count(tools::Tool& tool, const TemporalCounts& counts, int frame, bool first) {
+  const auto set = [&](const char* name, std::uint64_t value) {
+    tool.stats().set(std::string(name) + "." + std::to_string(frame), double(value));
+    tool.stats().count(name, double(value));
+  };
+  set("records", counts.records);
+  set("records_born", counts.born);
+  set("records_removed", counts.removed + counts.deforming);
+  set("records_unchanged", counts.kept);
+  set("cells", counts.cells);
+  set("cells_moved", counts.moved);
+  set("cells_lost", counts.lost);
+  set("cells_unanchored", counts.unanchored);
+  set("cells_aged", counts.aged);
+  set("cells_scaled", counts.scaled);
+  set("birth_rays", counts.birth.rays);
+  set("update_rays", counts.update.rays);
+  set("near_hits", counts.birth.near_hits + counts.update.near_hits);
+  set("unanswered", counts.birth.unanswered + counts.update.unanswered);
+  double cells = 0, ages = 0;
+  for (std::size_t age = 0; age < counts.ages.size(); ++age) cells += double(counts.ages[age]), ages += double(age) * double(counts.ages[age]);
+  if (cells > 0) tool.stats().set("mean_age." + std::to_string(frame), ages / cells);
+  if (!first && counts.cells > 0)
+    tool.stats().set("retraced_share." + std::to_string(frame),
+                     double(counts.moved + counts.lost + counts.unanchored + counts.aged) / double(counts.cells));
+}
+
+/// One frame, after that in `chain`, which receives it.
+void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing, Chain& chain,
+                  bool resume) {
+  const bool single = !options.previous.empty();
+  const std::string samples = tools::frame_name(options.output, number), cache = tools::frame_name(options.cache, number);
+  tool.stats().phase("evaluate");
+  SceneFrame frame = input.at(number);
+  tool.stats().phase("read points");
+  const tools::FramePoints points = tools::read_frame_points(tool, tools::frame_name(options.points, number), frame);
+  const std::string history = points.read.history + tool.history_line(number);
+  if (resume && std::filesystem::is_regular_file(cache))
+    if (std::optional<KeptHemispheres> found = tools::find_kept(samples, frame, points, history)) {
+      chain = {std::move(*found), std::move(frame)};
+      tool.say("frame " + std::to_string(number) + ": found");
+      return;
+    }
+  tools::Output kept_output(samples, tool.common().no_clobber), cache_output(cache, tool.common().no_clobber);
+  if (single && !chain.before) {
+    tool.stats().phase("read samples");
+    chain.kept = tools::read_kept(tool, input, options.previous, frame, points, chain.before).kept;
+  }
+  if (chain.before && chain.before->segment.first != frame.segment.first) chain = {};
+  tool.stats().phase("build");
+  const Tracer tracer(frame, standing);
+  const Lights lights(frame, input.emission(frame.frame));
+  const PointLookup lookup(points.read.points, points.read.spacing, point_clearance(tracer));
+  const TemporalScene scene{tracer, lights, lookup, points.read.points, points.anchored, chain.before ? &*chain.before : nullptr};
+  GatherOptions rays = options.gather;
+  rays.seed = tool.common().seed_for_frame(number);
+  PlacementOptions placement = options.placement;
+  if (chain.before) placement.min_weight *= kLaterWeight;
+  const TemporalGather gather(scene, rays, placement, options.temporal, tools::sample_unit(frame));
+  const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width, options.height);
+  const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+    seen_through(tracer, view, looks, seen);
+  };
+  tool.stats().phase("records", true);
+  TemporalCounts counts;
+  if (chain.before) gather.advance(chain.kept, counts);
+  RecordStore store({.least_cosine = least_cosine_of(placement.error_bound)});
+  gather.place(views, options.width, options.height, chain.kept, store, counts, [&](double done) { tool.progress(done); });
+  tool.stats().phase("write");
+  write_cache(options, frame, store, history, cache_output);
+  tools::write_kept(chain.kept, frame, points, history, kept_output);
+  tool.stats().end_phase();
+  count(tool, counts, number, !chain.before);
+  chain.before.emplace(std::move(frame));
+}
+
+void check(const Options& options, const std::vector<int>& frames) {
+  if (options.inputs.size() != 2 || options.inputs[0] != "final")
+    throw InputError("'" + options.inputs[0] + "' is not a way to gather over time: final, then the scene");
+  if (frames.size() > 1) {
+    if (!options.previous.empty()) throw InputError("--previous: of one frame; with --frames each follows the one before");
+    for (const std::string* name : {&options.output, &options.cache, &options.points})
+      if (!tools::has_frame_pattern(*name)) throw InputError("'" + *name + "': several frames need a pattern, for example f.####.irradcache");
+    if (!std::is_sorted(frames.begin(), frames.end())) throw InputError("--frames: each frame follows the one before; name them upwards");
+  }
+  if (options.resume && options.previous.empty() == false) throw InputError("--resume: of a range; with --previous a frame is made anew");
+}
+
+void add_options(tools::Tool& tool, Options& options) {
+  CLI::App& app = tool.app();
+  app.add_option("scene", options.inputs, "final, and a glTF 2.0 scene")->required()->expected(1, 2)->type_name("final SCENE");
+  app.add_option("--points", options.points, ".irradpoints file of the frame, or a pattern")->required()->type_name("FILE");
+  tool.leave_out_of_history(app.add_option("--previous", options.previous,
+                                           ".radsamples file of an earlier frame of the same segment, from which this frame follows; "
+                                           "without it the frame is gathered anew")->type_name("FILE"));
+  app.add_option("--rays", options.gather.rays,
+                 "gather rays per record, one a cell; up to 72 times as many cells where neighbours found light uneven or small")
+      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
+  app.add_option("--refresh", options.temporal.refresh, "share of a record's cells that get a ray in a frame in which its light changed")
+      ->capture_default_str()->check(tools::number_between(0, 1));
+  app.add_option("--age-weight", options.age_weight, "cells get new rays with probability as their age, 1, or its square, 2; or the oldest first")
+      ->capture_default_str()->check(CLI::IsMember({"1", "2", "oldest"}));
+  app.add_option("--error-bound", options.placement.error_bound,
+                 "radius of a record / harmonic mean distance to what it sees: smaller is finer")
+      ->capture_default_str()->check(tools::number_between(1e-3, 2.0));
+  app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
+      ->capture_default_str()->check(tools::number_above(0));
+  app.add_option("--min-weight", options.placement.min_weight,
+                 "sum of records' weights at which a pixel is covered; in frames after the first half of it")
+      ->capture_default_str()->check(tools::number_between(1e-6, 0.99));
+  app.add_flag("--free-radii", options.free_radii, "leave radii as each record's own rays tell");
+  tool.leave_out_of_history(app.add_flag("--resume", options.resume, "take frames that an earlier run of this command has finished as they are"));
+  tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
+  tool.output_option(options.cache, ".irradcache file, or a pattern: the records of the frame", "--cache")->required();
+  tool.output_option(options.output, ".radsamples file, or a pattern: what the next frame needs")->required();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  tools::Tool tool("gather-temporal", "Gather indirect light in records that keep their incoming light from frame to frame.", argc, argv);
+  Options options;
+  add_options(tool, options);
+  tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera | tools::uses_frames);
+
+  return tool.run([&] {
+    const std::vector<int>& frames = tool.common().frames;
+    check(options, frames);
+    options.placement.clamp_neighbours = !options.free_radii;
+    options.temporal.age_weight = options.age_weight == "1"   ? AgeWeight::linear
+                                  : options.age_weight == "2" ? AgeWeight::square
+                                                              : AgeWeight::oldest;
+    tool.stats().phase("load");
+    tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | tools::SceneInput::a_camera);
+    StandingTree standing;
+    Chain chain;
+    bool resume = options.resume;
+    for (const int frame : frames) {
+      gather_frame(tool, input, options, frame, standing, chain, resume);
+    }
+    return tools::exit_ok;
+  });
+}
