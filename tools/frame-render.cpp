@@ -89,6 +89,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   const RenderScene scene{tracer, lights};
   const tools::IndirectLight light(tool, options.light, tracer, number);
 
+  if (options.integrator != "path" || options.learn_lights) lights.weigh_sky_by_cosine();
   std::unique_ptr<LightGrid> grid;
   if (options.learn_lights) {
     tool.stats().phase("learn lights", true);

@@ -110,7 +110,8 @@ void build_points(tools::Tool& tool, tools::SceneInput& input, const Options& op
   const SceneFrame frame = input.at(number);
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
-  const Lights lights(frame, input.emission(frame.frame));
+  Lights lights(frame, input.emission(frame.frame));
+  lights.weigh_sky_by_cosine();
   const tools::GatherPoints points =
       points_of_photons(tool, tools::frame_name(options.photons, number), tracer, lights, options.point);
   tool.stats().phase("write");

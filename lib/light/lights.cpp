@@ -34,6 +34,7 @@ LightBounds bounds_of(const TriangleLight& t, const Ball& shell) {
   b.weight = double(max_component(t.radiance)) * t.area;
   b.two_sided = t.two_sided;
   b.shell = shell;
+  b.corners = {t.corner, t.corner + t.edge1, t.corner + t.edge2};
   return b;
 }
 
@@ -139,6 +140,9 @@ Lights::~Lights() = default;
 Lights::Lights(Lights&&) noexcept = default;
 
 void Lights::use(const LightGrid* grid) { impl_->grid = grid; }
+void Lights::weigh_sky_by_cosine() {
+  if (impl_->environment_weight > 0) impl_->sky_by_normal = std::make_unique<SkyByNormal>(*impl_->environment);
+}
 bool Lights::has_distant() const { return impl_->any_distant; }
 bool Lights::has_placed() const { return !impl_->tree.empty(); }
 

@@ -91,6 +91,9 @@ class Lights {
   /// From now on samples are drawn by what the grid has learned of what reaches a place, where it knows the place; nullptr: no
   /// more. The grid must outlive this. Probabilities alone change: no bias.
   void use(const LightGrid* grid);
+  /// From now on directions of the environment are drawn by radiance and by the cosine (SkyByNormal), where sample() is told a
+  /// normal and no grid knows the place. No bias. Some milliseconds.
+  void weigh_sky_by_cosine();
   /// Directional lights that shine, and the environment: is there light from far away?
   bool has_distant() const;
   /// Is there light from somewhere: a lamp that shines?

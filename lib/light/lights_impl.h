@@ -11,6 +11,7 @@
 #include "lib/core/sampling.h"
 #include "lib/light/light_tree.h"
 #include "lib/light/lights.h"
+#include "lib/light/sky_by_normal.h"
 #include "lib/light/triangle_light.h"
 
 namespace tempolux {
@@ -30,6 +31,7 @@ struct Lights::Impl {
   std::vector<std::uint32_t> tree_slot;   // and back
   std::vector<std::uint32_t> suns;        // indices of directional lights that shine
   std::shared_ptr<const EnvironmentLight> environment;
+  std::unique_ptr<SkyByNormal> sky_by_normal;   // if directions of the environment are drawn by the cosine, too
   double environment_weight = 0;  // irradiance by the environment, the mean over all normals; 0: none or black
   Aim aim;                                // of the photons of suns and environment
   bool any_distant = false;       // an environment that is not black, or a sun
@@ -51,11 +53,11 @@ struct Lights::Impl {
   double sum_distant(Vec3 normal) const;
   double distant_irradiance(Vec3 normal) const { return any_distant ? sum_distant(normal) : 0; }
   double distant_share(Vec3 point, Vec3 normal, double& total) const;
-  bool sample_slot(std::uint32_t slot, Vec3 point, double probability, double left, Vec2 u, bool joint,
+  bool sample_slot(std::uint32_t slot, Vec3 point, Vec3 normal, double probability, double left, Vec2 u, bool joint,
                    LightSample& sample) const;
   bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
                       LightSample& s) const;
-  bool sample_environment(Vec3 point, Vec2 u_float, double u, double probability, LightSample& s) const;
+  bool sample_environment(Vec3 point, Vec3 normal, Vec2 u_float, double u, double probability, LightSample& s) const;
   double disc_area() const { return std::numbers::pi * sphere_radius * sphere_radius; }
   float distance_beyond() const { return float(sphere_radius > 0 ? 2 * sphere_radius : 1); }
   bool sample_placed(const PlacedLight& placed, Vec3 point, double probability, LightSample& s) const;

@@ -6,6 +6,7 @@
 
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
+#include "lib/light/spherical_triangle.h"
 #include "lib/scene/texture_lookup.h"
 
 namespace tempolux {
@@ -38,29 +39,23 @@ struct View {
     return adjacent > 0 ? opposite > kTangent * adjacent : opposite > -kTangent * adjacent;
   }
   float solid_angle() const { return 2 * std::atan2(opposite, adjacent); }
+
+  /// For samples by solid angle: the cosines.
+  BilinearWarp cosines(const SphericalTriangle& t, Vec3 normal) const {
+    const Vec3d n(normal);
+    const double at1 = dot(t[1], n);
+    return BilinearWarp({at1, at1, dot(t[0], n), dot(t[2], n)});
+  }
+  /// For samples by area, Heitz' map: cosine over distance^3, as the triangle's own cosine is height / distance.
+  BilinearWarp factors(Vec3 normal) const {
+    const auto factor = [normal](Vec3 v, double l) { return (normal == Vec3{} ? l : double(dot(v, normal))) / (l * l * l * l); };
+    const Vec3 middle = (v1 + v2) * 0.5f;
+    return BilinearWarp({factor(v0, l0), factor(v1, l1), factor(v2, l2), factor(middle, length(middle))});
+  }
 };
 
-Vec3d unit(Vec3d v) { return v * (1 / std::sqrt(std::max(1e-300, length2(v)))); }
-/// Unit vector along v less its part along the unit vector w.
-Vec3d reject(Vec3d v, Vec3d w) { return unit(v - w * dot(v, w)); }
-
-/// Direction uniform in the spherical triangle abc of the given solid angle [Arvo 1995]. In double: thin
-/// triangles cancel most digits.
-Vec3d sample_spherical_triangle(Vec3d a, Vec3d b, Vec3d c, double area, Vec2 u) {
-  const Vec3d toward_b = reject(b, a), toward_c = reject(c, a);
-  const double cos_alpha = std::clamp(dot(toward_b, toward_c), -1.0, 1.0);
-  const double sin_alpha = length(cross(toward_b, toward_c));
-  // phi = part of the area - alpha; sine and cosine of the difference
-  const double part = u.x * area, sin_part = std::sin(part), cos_part = std::cos(part);
-  const double s = sin_part * cos_alpha - cos_part * sin_alpha;
-  const double t = cos_part * cos_alpha + sin_part * sin_alpha;
-  const double p = t - cos_alpha, q = s + sin_alpha * dot(a, b);
-  const double below = (q * s + p * t) * sin_alpha;
-  const double cos_b = below != 0 ? std::clamp(((q * t - p * s) * cos_alpha - q) / below, -1.0, 1.0) : 1.0;
-  const Vec3d c2 = a * cos_b + toward_c * std::sqrt(1 - cos_b * cos_b);
-  const double omc = u.y * (1 - std::min(1.0, dot(c2, b)));
-  return b * (1 - omc) + reject(c2, b) * std::sqrt(omc * (2 - omc));
-}
+/// Heitz' map from the square to barycentrics, turned round.
+Vec2 find_in_triangle(Vec2 b) { return {b.x + std::min(b.x, b.y), b.y + std::min(b.x, b.y)}; }
 
 /// Barycentrics (b1, b2) where the ray from the view's point along w meets the triangle, held inside.
 Vec2 project(const TriangleLight& t, const View& view, Vec3d w) {
@@ -119,18 +114,26 @@ Vec3 TriangleLight::point(double b1, double b2) const {
   return Vec3(Vec3d(corner) + Vec3d(edge1) * b1 + Vec3d(edge2) * b2);
 }
 
-bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoint& sample) {
+bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample) {
   const View view(light, from);
   if (!view.visible) return false;
   const bool large = view.large();
   Vec2 b;
-  float omega = 0;
+  double density = 1;
   if (large) {
-    omega = view.solid_angle();
-    b = project(light, view,
-                sample_spherical_triangle(unit(Vec3d(view.v0)), unit(Vec3d(view.v1)), unit(Vec3d(view.v2)),
-                                          omega, u));
+    const SphericalTriangle seen = as_seen(view.v0, view.v1, view.v2);
+    const double omega = view.solid_angle();
+    if (normal != Vec3{}) {
+      const BilinearWarp warp = view.cosines(seen, normal);
+      u = warp(u);
+      density = warp.density(u);
+    }
+    density /= omega;
+    b = project(light, view, sample_spherical_triangle(seen, omega, u));
   } else {
+    const BilinearWarp warp = view.factors(normal);
+    u = warp(u);
+    density = warp.density(u);
     b = sample_triangle(u);
   }
   const Vec3 offset = light.edge1 * b.x + light.edge2 * b.y, to = view.v0 + offset;
@@ -140,16 +143,27 @@ bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoin
   if (!(distance > 0)) return false;
   sample.wi = to / distance;
   const double d = distance;
-  sample.pdf_solid_angle = large ? 1.0 / omega : d * d * d / (light.area * view.height);
+  sample.pdf_solid_angle = large ? density : density * d * d * d / (light.area * view.height);
   return sample.pdf_solid_angle < INFINITY;
 }
 
-double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 position) {
+double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position) {
   const View view(light, from);
   if (!view.visible) return 0;
-  if (view.large()) return 1.0 / view.solid_angle();
-  const double d = length(position - from);
-  const double pdf = d * d * d / (light.area * view.height);
+  const Vec3d to = Vec3d(position) - Vec3d(from);
+  const double d = length(to);
+  if (view.large()) {
+    const double omega = view.solid_angle();
+    if (normal == Vec3{} || !(d > 0)) return 1 / omega;
+    const SphericalTriangle seen = as_seen(view.v0, view.v1, view.v2);
+    return view.cosines(seen, normal).density(find_in_spherical_triangle(seen, omega, to / d)) / omega;
+  }
+  const Vec3d at = Vec3d(position) - Vec3d(light.corner), edge1(light.edge1), edge2(light.edge2);
+  const Vec3d across = cross(edge1, edge2);
+  const double twice2 = length2(across);
+  const Vec2 b{float(std::clamp(dot(cross(at, edge2), across) / twice2, 0.0, 1.0)),
+               float(std::clamp(dot(cross(edge1, at), across) / twice2, 0.0, 1.0))};
+  const double pdf = view.factors(normal).density(find_in_triangle(b)) * d * d * d / (light.area * view.height);
   return pdf < INFINITY ? pdf : 0;
 }
 

@@ -52,12 +52,13 @@ struct TrianglePoint {
 
 /// A point of the triangle as seen from `from`; false if it shows no emitting side there, or lies edge-on.
 ///
-/// Where the triangle fills between 0.02 sr and all but 0.02 sr of the half sphere, uniform in solid angle:
-/// Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995; elsewhere uniform in area, by Heitz'
+/// Where the triangle fills between 0.02 sr and all but 0.02 sr of the half sphere, in solid angle:
+/// Arvo, "Stratified Sampling of Spherical Triangles", SIGGRAPH 1995; uniform, or nearly in proportion to the cosine at a
+/// surface of this unit normal, if it is not zero. Elsewhere uniform in area, by Heitz'
 /// map. pdf_triangle takes the same decision from the same numbers.
-bool sample_triangle(const TriangleLight& light, Vec3 from, Vec2 u, TrianglePoint& sample);
+bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample);
 /// Density per solid angle of sample_triangle at `position`; 0 where it would have returned false.
-double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 position);
+double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position);
 
 /// Solid angle [sr] that the triangle fills seen from `from`, either side. Van Oosterom & Strackee, "The
 /// Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.

@@ -22,8 +22,8 @@ class KnownLight {
   const PointLookup* points = nullptr;    ///< all kinds where a ray from a matte surface ends
   const PhotonLight* photons = nullptr;   ///< kind caustic; indirect, too, if it has it and there are no records
   /// Do eye paths fork at the first Lambert lobe under a gloss, to follow both? A gloss reflects 4 % as a rule: one ray in 25 that
-  /// meets something bright makes a dot.
-  bool forks = true;
+  /// meets something bright makes a dot. Where nothing is known both would be whole paths: a fork costs as much as it gains then.
+  bool forks() const { return records || localised || points || photons; }
 
   /// Irradiance of kind indirect at the first Lambert lobe of an eye path; both normals are unit and on the side seen. None where no
   /// record is near: a ray of the hemisphere is to find it. `direct_view`: the camera ray itself met the place; then records with

@@ -292,7 +292,7 @@ void EyeTracer::follow(Walk walk) const {
       here = add_known_light(*known_, x, walk.beyond, walk.throughput, path, random_.get1(bounce, Purpose::gather), result_, counts_);
     SampledLobes lobes{!here.direct, !(walk.beyond.matte && walk.beyond.caustic_known)};
     float diffuse = 0;
-    const bool forks = known_ && known_->forks && !forked && path.sharp() && x.bsdf.forks();
+    const bool forks = known_ && known_->forks() && !forked && path.sharp() && x.bsdf.forks();
     if (forks) {
       diffuse = std::clamp(x.bsdf.diffuse_probability(x.wo_local), 0x1p-20f, 1 - 0x1p-20f);
       lobes.times_diffuse = 1 / diffuse;

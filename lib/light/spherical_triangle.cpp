@@ -1,0 +1,87 @@
+#include "lib/light/spherical_triangle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/sampling.h"
+
+namespace tempolux {
+namespace {
+
+Vec3d unit(Vec3d v) { return v * (1 / std::sqrt(std::max(1e-300, length2(v)))); }
+/// Unit vector along v less its part along the unit vector w.
+Vec3d reject(Vec3d v, Vec3d w) { return unit(v - w * dot(v, w)); }
+
+/// Where u of a density lies that goes from at0 to at1 over [0, 1].
+double linear(double u, double at0, double at1) {
+  return u * (at0 + at1) / (at0 + std::sqrt(at0 * at0 + u * (at1 * at1 - at0 * at0)));
+}
+
+double mix(double t, double a, double b) { return a + (b - a) * t; }
+
+/// Below this the corners' cosines say little of what lies between.
+constexpr double kLeast = 0.01;
+
+}  // namespace
+
+SphericalTriangle as_seen(Vec3 to0, Vec3 to1, Vec3 to2) { return {unit(Vec3d(to0)), unit(Vec3d(to1)), unit(Vec3d(to2))}; }
+
+Vec3d sample_spherical_triangle(const SphericalTriangle& t, double solid_angle, Vec2 u) {
+  const auto& [a, b, c] = t;
+  const Vec3d toward_b = reject(b, a), toward_c = reject(c, a);
+  const double cos_alpha = std::clamp(dot(toward_b, toward_c), -1.0, 1.0);
+  const double sin_alpha = length(cross(toward_b, toward_c));
+  // phi = part of the area - alpha; sine and cosine of the difference
+  const double part = u.x * solid_angle, sin_part = std::sin(part), cos_part = std::cos(part);
+  const double s = sin_part * cos_alpha - cos_part * sin_alpha;
+  const double r = cos_part * cos_alpha + sin_part * sin_alpha;
+  const double p = r - cos_alpha, q = s + sin_alpha * dot(a, b);
+  const double below = (q * s + p * r) * sin_alpha;
+  const double cos_b = below != 0 ? std::clamp(((q * r - p * s) * cos_alpha - q) / below, -1.0, 1.0) : 1.0;
+  const Vec3d c2 = a * cos_b + toward_c * std::sqrt(1 - cos_b * cos_b);
+  const double omc = u.y * (1 - std::min(1.0, dot(c2, b)));
+  return b * (1 - omc) + reject(c2, b) * std::sqrt(omc * (2 - omc));
+}
+
+Vec2 find_in_spherical_triangle(const SphericalTriangle& t, double solid_angle, Vec3d w) {
+  const auto& [a, b, c] = t;
+  // The arc from b through w meets the arc from a to c in c2.
+  Vec3d c2 = cross(cross(b, w), cross(c, a));
+  if (!(length2(c2) > 0)) return {0, 0};
+  c2 = unit(dot(c2, a + c) < 0 ? -c2 : c2);
+  const double part = 2 * std::atan2(std::abs(dot(a, cross(b, c2))), 1 + dot(a, b) + dot(b, c2) + dot(c2, a));
+  const double whole = length2(b - c2);   // twice 1 - b.c2, with its digits
+  return {float(std::clamp(part / solid_angle, 0.0, 1.0)), float(whole > 0 ? std::clamp(length2(b - w) / whole, 0.0, 1.0) : 0)};
+}
+
+double solid_angle(Vec3 to0, Vec3 to1, Vec3 to2) {
+  const float l0 = length(to0), l1 = length(to1), l2 = length(to2);
+  const float opposite = std::abs(dot(to0, cross(to1, to2)));
+  return 2 * std::atan2(opposite, l0 * l1 * l2 + dot(to0, to1) * l2 + dot(to1, to2) * l0 + dot(to2, to0) * l1);
+}
+
+double cosine_solid_angle(const std::array<Vec3, 3>& to, Vec3 normal) {
+  double cosine = 1;
+  if (normal != Vec3{}) {
+    cosine = 0;
+    for (const Vec3& v : to) cosine += std::max(0.0, double(dot(v, normal)) / std::max(1e-30, double(length(v)))) / 3;
+  }
+  return solid_angle(to[0], to[1], to[2]) * std::max(kLeast, cosine);
+}
+
+BilinearWarp::BilinearWarp(std::array<double, 4> values) : w_(values) {
+  const double least = std::max(1e-300, kLeast * *std::max_element(w_.begin(), w_.end()));
+  for (double& w : w_) w = std::max(w, least);
+}
+
+Vec2 BilinearWarp::operator()(Vec2 u) const {
+  const double y = linear(u.y, w_[0] + w_[1], w_[2] + w_[3]);
+  const double x = linear(u.x, mix(y, w_[0], w_[2]), mix(y, w_[1], w_[3]));
+  return {std::min(float(x), kOneMinusEpsilon), std::min(float(y), kOneMinusEpsilon)};
+}
+
+double BilinearWarp::density(Vec2 u) const {
+  return 4 * mix(u.y, mix(u.x, w_[0], w_[1]), mix(u.x, w_[2], w_[3])) / (w_[0] + w_[1] + w_[2] + w_[3]);
+}
+
+}  // namespace tempolux
