@@ -50,7 +50,8 @@ bool write_if_changed(const std::string& path, const std::string& content) {
 
 struct Options {
   std::string scene, folder = "plan", tidy_folder, indirect = "auto", moving = "auto";
-  double tidy_hours = 24;
+  double tidy_hours = 24, pixel_error = 0.016;
+  int rays = 500;
   bool estimate = false, json = false;
   int jobs = 1;
   tools::RunOptions run;
@@ -85,13 +86,16 @@ void write_plan(tools::Tool& tool, const Plan& plan, const std::vector<std::stri
 /// Decides how indirect light is to be found: as asked, or by a pilot of the middle one of the frames asked for.
 void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options& options, int camera, Plan& plan) {
   if (plan.photon_kinds.empty()) return;
+  plan.record_rays = options.rays;
   if (options.indirect != "auto") return use_indirect(plan, options.indirect, "--indirect " + options.indirect);
   tool.stats().phase("pilot", true);
   const SceneFrame frame = input.at(plan.frames[plan.frames.size() / 2]);
   const CameraView view(frame.camera(camera), frame.origin, options.run.width, options.run.height);
   const Tracer tracer(frame);
   const Lights lights(frame, input.emission(frame.frame));
-  const IndirectChoice choice = choose_indirect(pilot_indirect({tracer, lights}, view, 0));
+  const IndirectPilot pilot = pilot_indirect({tracer, lights}, view, options.pixel_error, 0);
+  plan.record_rays = record_rays(pilot, options.rays);
+  const IndirectChoice choice = choose_indirect(pilot);
   const std::string method = kIndirectMethods[std::size_t(choice.method)];
   if (plan.media && method == "paths") return use_indirect(plan, "gather", "photons light the media, points read them, too");
   use_indirect(plan, method, choice.because);
@@ -179,6 +183,13 @@ int main(int argc, char** argv) {
                  "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "records", "gather", "paths"}));
+  app.add_option("--pixel-error", options.pixel_error,
+                 "of the frames (frame-render --pixel-error): records get as many gather rays as leave their light about a tenth of that")
+      ->capture_default_str()
+      ->check(tools::number_between(1e-6, 10));
+  app.add_option("--rays", options.rays, "gather rays of a record (irradcache-build records --rays) at most")
+      ->capture_default_str()
+      ->check(tools::number_between(1, 1 << 20));
   app.add_option("--moving", options.moving,
                  "what of a frame's light follows from that of what stands, where something moves: anew (nothing), light (photons and "
                  "points), records (they, too); auto: the cheapest by a pilot")

@@ -122,6 +122,7 @@ std::string plan_json(const Plan& plan, const std::string& scene_name, const std
                {"frames", plan.frames},
                {"photon_kinds", plan.photon_kinds},
                {"indirect", photons ? plan.indirect : "paths"},
+               {"rays", plan.record_rays},
                {"moving", photons ? plan.moving : "anew"}};
   if (!plan.environment.empty()) json["environment"] = std::filesystem::path(plan.environment).filename().string();
   json["stages"] = Json::array();
@@ -154,6 +155,7 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   text += variable("plan_frames", plan.frames) + variable("plan_pictures", pictures);
   text += variable("plan_photons", photon_frames) + "plan_kinds := " + plan.photon_kinds + "\n";
   text += "plan_indirect := " + (photons ? plan.indirect : "paths") + "\n";
+  text += "plan_rays := " + std::to_string(plan.record_rays) + "\n";
   text += "plan_moving := " + (photons ? plan.moving : "anew") + "\n";
   text += std::string("plan_method := ") + (plan.walkthrough ? "walkthrough" : "frames") + "\n";
   if (plan.media) text += "plan_media := 1\n";

@@ -1,10 +1,13 @@
 #include "lib/render/choose_indirect.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <vector>
 
 #include "lib/core/parallel.h"
 #include "lib/core/sobol.h"
+#include "lib/render/pixel_noise.h"
 #include "lib/render/places_seen.h"
 
 namespace tempolux {
@@ -14,20 +17,36 @@ constexpr int kPlaces = 2048, kPathsEach = 4, kLightsEach = 4;
 constexpr double kLittle = 0.05;   ///< of the light
 constexpr double kOpen = 0.35;     ///< of the rays: between rooms (0 to .15) and the open air (.4 and more)
 
+constexpr double kShare = 0.1;     ///< of the pixels' other squared error, that records may add
+/// Squared error of records is this x a path's variance / rays: .052, .035, .036 in S2, S1, S4 (docs/pixels.md).
+constexpr double kRaysPerPath = 0.04;
+
 std::string per_cent(double share) {
   char text[16];
   std::snprintf(text, sizeof text, "%.0f %%", 100 * share);
   return text;
 }
 
+/// Of a pixel's error after as many samples as PixelNoise asks for, 4 at least: they are stratified.
+double error_left(double variance, double level, double picture, double pixel_error) {
+  const double wanted = wanted_samples(std::sqrt(variance), level, picture, pixel_error);
+  return variance * std::pow(std::max(4.0, wanted), -5.0 / 3);
+}
+
 double mean(const Layers& layers, Layer layer) { return double(channel_mean(layers[layer])); }
+double mean_of_all(const Layers& layers) {
+  double sum = 0;
+  for (const Rgb& layer : layers.value) sum += double(channel_mean(layer));
+  return sum;
+}
 
 }  // namespace
 
-IndirectPilot pilot_indirect(const RenderScene& scene, const CameraView& view, std::uint64_t seed) {
+IndirectPilot pilot_indirect(const RenderScene& scene, const CameraView& view, double pixel_error, std::uint64_t seed) {
   struct Sums {
     double indirect = 0, all = 0, lamps = 0, lights = 0;
     int places = 0, open = 0;
+    double level = 0, indirect_variance = 0, other_variance = 0;
   };
   const SeenPlaces seen = places_seen(scene, view, kPlaces, seed ^ 0x70696c6f74ull);
   std::vector<Sums> sums(kPlaces);
@@ -36,12 +55,22 @@ IndirectPilot pilot_indirect(const RenderScene& scene, const CameraView& view, s
     for (std::size_t i = first; i < last; ++i) {
       Sums& sum = sums[i];
       const Vec2 at = sobol_owen_2d(std::uint32_t(i), seed ^ 0x7061746873ull);
-      const Ray ray = view.ray(at.x * float(view.width()), at.y * float(view.height()));
+      const float x = std::floor(at.x * float(view.width())), y = std::floor(at.y * float(view.height()));
+      double others = 0, others2 = 0, indirect2 = 0;
       for (std::uint32_t s = 0; s < kPathsEach; ++s) {
-        const Layers layers = trace_eye_path(scene, ray, PixelRandom(seed ^ 0x70696c6f74ull, i, s), nullptr, counts, view.cone());
+        const PixelRandom random(seed ^ 0x70696c6f74ull, i, s);
+        const Vec2 in_pixel = random.get2(0, Purpose::pixel);
+        const Layers layers = trace_eye_path(scene, view.ray(x + in_pixel.x, y + in_pixel.y), random, nullptr, counts, view.cone());
         sum.indirect += mean(layers, Layer::indirect);
         sum.all += mean(layers, Layer::direct) + mean(layers, Layer::caustic) + mean(layers, Layer::indirect);
+        const double indirect = mean(layers, Layer::indirect), other = mean_of_all(layers) - indirect;
+        indirect2 += indirect * indirect;
+        others += other;
+        others2 += other * other;
       }
+      sum.level = (others + sum.indirect) / kPathsEach;
+      sum.indirect_variance = sample_variance(kPathsEach, sum.indirect, indirect2);
+      sum.other_variance = sample_variance(kPathsEach, others, others2);
       const SeenPlace& place = seen.places[i];
       if (!place.exists()) continue;
       sum.places = 1;
@@ -59,7 +88,11 @@ IndirectPilot pilot_indirect(const RenderScene& scene, const CameraView& view, s
     }
   });
   Sums all;
+  for (const Sums& sum : sums) all.level += sum.level / kPlaces;
+  double error2 = 0;
   for (const Sums& sum : sums) {
+    all.indirect_variance += sum.indirect_variance / kPlaces;
+    error2 += error_left(sum.other_variance, sum.level, all.level, pixel_error) / kPlaces;
     all.indirect += sum.indirect;
     all.all += sum.all;
     all.lamps += sum.lamps;
@@ -68,7 +101,14 @@ IndirectPilot pilot_indirect(const RenderScene& scene, const CameraView& view, s
     all.open += sum.open;
   }
   return {all.all > 0 ? all.indirect / all.all : 0, all.places > 0 ? double(all.open) / all.places : 0,
-          all.lights > 0 ? all.lamps / all.lights : 1, all.places};
+          all.lights > 0 ? all.lamps / all.lights : 1, all.places,
+          all.indirect_variance, error2};
+}
+
+int record_rays(const IndirectPilot& pilot, int most) {
+  if (!(pilot.other_error2 > 0)) return most;
+  const double rays = kRaysPerPath * pilot.indirect_variance / (kShare * pilot.other_error2);
+  return std::clamp(int(std::min(rays, 1e6)), std::max(1, most / 10), most);
 }
 
 IndirectChoice choose_indirect(const IndirectPilot& pilot) {

@@ -20,10 +20,18 @@ struct IndirectPilot {
   double open_share = 0;       ///< of the rays of their hemispheres: leave the scene
   double lamp_share = 0;       ///< of the light that comes straight from lights: not from the sky or a sun
   int places = 0;              ///< seen; 0: nothing is
+  /// Means over the picture, of the square of radiance (mean of channels): the variance of a path's indirect light, and the squared error
+  /// that all other light has left when frame-render has spent the samples that `pixel_error` asks for.
+  double indirect_variance = 0, other_error2 = 0;
 };
 
 /// 2048 places and 8192 paths: some hundredths of a second. Same result for any number of threads.
-IndirectPilot pilot_indirect(const RenderScene& scene, const CameraView& view, std::uint64_t seed);
+IndirectPilot pilot_indirect(const RenderScene& scene, const CameraView& view, double pixel_error, std::uint64_t seed);
+
+/// Gather rays of a record, `most` at most, that leave its light about a tenth of the squared error that the pixels have otherwise: then the
+/// picture is within 5 % of the error that any number of rays would give. At least a tenth of `most`: records of few rays place badly.
+/// docs/pixels.md has the measurements.
+int record_rays(const IndirectPilot& pilot, int most);
 
 struct IndirectChoice {
   IndirectMethod method;

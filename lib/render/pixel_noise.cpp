@@ -8,10 +8,14 @@ namespace {
 constexpr double kBetween = 0.1, kSharp = 0.5;   // of its variance: more samples there make less of the picture's error
 constexpr double kStratified = 0.75, kTypical = 12;
 
-/// Variance of what n, sum and square are of.
-double variance(double n, double sum, double square) { return n > 1 ? std::max(0.0, square - sum * sum / n) / (n - 1) : 0; }
-
 }  // namespace
+
+double sample_variance(double n, double sum, double square) { return n > 1 ? std::max(0.0, square - sum * sum / n) / (n - 1) : 0; }
+
+double wanted_samples(double sigma, double level, double picture, double pixel_error) {
+  const double error = pixel_error * (std::min(level, picture) + 0.1 * picture);
+  return error > 0 ? kTypical * std::pow(sigma / (kTypical * error), kStratified) : 0;
+}
 
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
     : view_(view), options_(options), first_half_((options.samples + 1) / 2),
@@ -23,7 +27,7 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
   Pixel& state = pixels_[pixel];
   state.mean = (first.value() + second.value()) / n;
   state.sharp = sharp / n;
-  state.sharp_variance = variance(n, sharp, first.sharp_square + second.sharp_square);
+  state.sharp_variance = sample_variance(n, sharp, first.sharp_square + second.sharp_square);
   state.smooth_difference = (first.value() - first.sharp) / a - (b > 0 ? (second.value() - second.sharp) / b : 0);
 }
 
@@ -48,7 +52,7 @@ double PixelNoise::smooth_variance(int x, int y) const {
     sum += pixel.smooth_difference;
     square += pixel.smooth_difference * pixel.smooth_difference;
   });
-  if (b == 0) return variance(n, sum, square);
+  if (b == 0) return sample_variance(n, sum, square);
   return n > 0 ? square / n * a * b / (a + b) : 0;
 }
 
@@ -65,7 +69,7 @@ double PixelNoise::sharp_variance(int x, int y) const {
   });
   if (n == 0) return 0;
   within /= n;
-  const double between = variance(n, sum, square) - within / options_.samples;
+  const double between = sample_variance(n, sum, square) - within / options_.samples;
   return within + (options_.samples == 1 ? 1 : kBetween) * std::max(0.0, between);
 }
 
@@ -79,11 +83,6 @@ double PixelNoise::level_around(int x, int y) const {
   return n > 0 ? level / n : 0;
 }
 
-double PixelNoise::wanted_samples(double sigma, double level) const {
-  const double error = options_.pixel_error * (std::min(level, picture_) + 0.1 * picture_);
-  return error > 0 ? kTypical * std::pow(sigma / (kTypical * error), kStratified) : 0;
-}
-
 std::vector<int> PixelNoise::missing_samples() {
   double all = 0;
   for (const Pixel& pixel : pixels_) all += pixel.mean;
@@ -92,7 +91,7 @@ std::vector<int> PixelNoise::missing_samples() {
   RayCounts none;
   for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) {
     const double sigma = std::sqrt(smooth_variance(x, y) + kSharp * sharp_variance(x, y));
-    const double wanted = std::min(wanted_samples(sigma, level_around(x, y)), double(options_.adaptive_limit));
+    const double wanted = std::min(wanted_samples(sigma, level_around(x, y), picture_, options_.pixel_error), double(options_.adaptive_limit));
     missing[pixel] = std::max(0, int(wanted) - options_.samples);
   });
   return missing;

@@ -9,6 +9,12 @@
 
 namespace tempolux {
 
+/// Variance of what n, sum and sum of squares are of; 0 of one.
+double sample_variance(double n, double sum, double square);
+/// Samples of a pixel that are to leave it the error pixel_error x (min(level, picture) + picture / 10), if sigma is the noise of one,
+/// level the radiance around it and picture the picture's mean (docs/pixels.md); 0 if no error is asked for.
+double wanted_samples(double sigma, double level, double picture, double pixel_error);
+
 /// Noise of a picture whose pixels have their first samples, and what more they need. With sigma the standard deviation of a
 /// sample as far as stratification leaves it and L the radiance, both around a pixel, L at most the picture's mean, it needs
 ///
@@ -41,7 +47,6 @@ class PixelNoise {
   double smooth_variance(int x, int y) const;
   double sharp_variance(int x, int y) const;
   double level_around(int x, int y) const;
-  double wanted_samples(double sigma, double level) const;
 
   const CameraView& view_;
   const FrameOptions& options_;

@@ -290,6 +290,7 @@ TEST(PlanMakefile, SaysWhichPhotonsHoldForAFrameAndWhatTheyDependOn) {
             "plan_photons := 0001\n"
             "plan_kinds := indirect\n"
             "plan_indirect := records\n"
+            "plan_rays := 500\n"
             "plan_moving := anew\n"
             "plan_method := frames\n"
             "out/plan/plan.mk: room.glb\n"
