@@ -62,7 +62,8 @@ bool SceneInput::has_distant_light() const {
 }
 
 /// Light from far away is sent through a sphere around all that it can meet: media of the frame belong to that. So with both each
-/// frame has bounds of its own, the same whether it is made alone or as one of a range.
+/// frame has bounds of its own, the same whether it is made alone or as one of a range; under frozen majorants the box of these
+/// takes the media's place, so that photons of all frames of the segment start alike.
 void SceneInput::enter_segment(int frame, bool read_volumes) {
   const bool inside = segment_ && frame >= segment_->segment().first && frame <= segment_->segment().last;
   const bool adds_media = read_volumes && volumes_->any() && has_distant_light();
@@ -70,9 +71,12 @@ void SceneInput::enter_segment(int frame, bool read_volumes) {
   Segment segment = segment_of(scene_, frame, time_);
   bounds_of_.reset();
   if (adds_media) {
-    if (const auto media = volumes_->at(frame, segment.origin))
-      for (const Medium& medium : media->all())
-        segment.world_bounds.add({medium.bounds().lower + segment.origin, medium.bounds().upper + segment.origin});
+    const auto add = [&](const Box3d& box) { segment.world_bounds.add({box.lower + segment.origin, box.upper + segment.origin}); };
+    if (const auto media = volumes_->at(frame, segment.origin)) {
+      const Box3& frozen = media->majorants().box();
+      if (volumes_->frozen()) add({Vec3d(frozen.lower), Vec3d(frozen.upper)});
+      else for (const Medium& medium : media->all()) add(medium.bounds());
+    }
     bounds_of_ = frame;
   }
   segment_ = std::make_unique<SegmentScene>(scene_, segment, time_);

@@ -86,7 +86,7 @@ FrozenMajorants VolumeInput::freeze(int first, int last) {
   return frozen;
 }
 
-const MajorantGrid* VolumeInput::frozen(int frame, Vec3d origin) {
+const MajorantGrid* VolumeInput::majorants_for(int frame, Vec3d origin) {
   const std::string& file = tool_.common().volume.majorants;
   if (file.empty()) return nullptr;
   if (!majorants_) {
@@ -123,7 +123,7 @@ std::shared_ptr<const Media> VolumeInput::at(int frame, Vec3d origin) {
   if (!any()) return nullptr;
   if (has_last_ && last_at_ == frame && last_origin_ == origin) return last_;
   std::vector<Medium> media = read(frame, origin);
-  if (const MajorantGrid* const majorants = frozen(frame, origin)) {
+  if (const MajorantGrid* const majorants = majorants_for(frame, origin)) {
     try {
       last_ = majorants->empty() && media.empty() ? nullptr : std::make_shared<const Media>(std::move(media), *majorants);
     } catch (const std::invalid_argument& error) {

@@ -20,6 +20,8 @@ class VolumeInput {
   VolumeInput(Tool& tool, const Scene& scene);
 
   bool any() const { return !sources_.empty(); }
+  /// Are the majorants those of a file, --majorants?
+  bool frozen() const { return !tool_.common().volume.majorants.empty(); }
   /// Last frame that has a file, if all say; -1: not known.
   int last_frame() const;
   /// The media of a frame in scene space; nullptr: none there. Their files are dependencies of the tool.
@@ -37,7 +39,7 @@ class VolumeInput {
   Tool& tool_;
   std::vector<VolumeSource> sources_;
   std::vector<std::string> files_;
-  const MajorantGrid* frozen(int frame, Vec3d origin);
+  const MajorantGrid* majorants_for(int frame, Vec3d origin);
   std::vector<Medium> parse(int frame, Vec3d origin);
   struct Kept {
     Vec3d origin;
