@@ -1,4 +1,4 @@
-// lib/core/parallel.h -- deterministic parallel loops; the only user of TBB.
+// lib/core/parallel.h -- deterministic parallel loops; the only user of TBB (parallel_threads.cpp: without it).
 //
 // Work is cut into chunks by count alone, never by the number of threads, and results are joined in chunk
 // order: the same numbers come out for any --threads.

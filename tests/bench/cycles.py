@@ -11,7 +11,7 @@ import exr
 import pixels
 from measure import Missing, figure, percent, quantity
 from references import Reference
-from shipped import Side, yardstick
+from shipped import YARDSTICK, Side
 
 SCENES = ("S2", "S3", "S4", "S8")
 SAMPLES = 64
@@ -50,7 +50,7 @@ def cycles(bench, _):
     if bench.tiny:
         raise Missing("short form")
     for case in (case for case in cases.ours(bench) if case.name in SCENES):
-        side, reference = Side(bench, case, bench.size, 10**4), Reference(bench, case, bench.size, yardstick(bench))
+        side, reference = Side(bench, case, bench.size, 10**4), Reference(bench, case, bench.size, YARDSTICK)
         reference.until(lambda a, b: reference.facts["spp"] >= 512, 10**4)
         a, b = reference.halves
         mean, _ = pixels.mean_of_halves(a, b)

@@ -31,7 +31,7 @@ import pixels
 from comparing import compared
 from measure import Bench, figure, machine, percent, quantity, walk_speed
 from references import Law, Reference
-from shipped import STAGES, Side, Unfinished, frames_without_camera, yardstick
+from shipped import STAGES, YARDSTICK, Side, Unfinished, frames_without_camera
 
 PILOT = 16                       # samples per pixel of the first path-traced picture
 OF_PICTURE, OF_LAYER, TENTH = 0.01, 0.02, 0.1
@@ -80,7 +80,7 @@ def measure(bench, case, size, seeds, patience, reference_cpu):
     side = Side(bench, case, size, patience)
     row = {"scene": case.name, "size": size, "kind": case.kind, "note": case.note, "seeds": seeds}
     picture, fixed, rate = side.paths(PILOT, 1)
-    reference = Reference(bench, case, size, yardstick(bench))
+    reference = Reference(bench, case, size, YARDSTICK)
     if not reference.agrees_with(picture):
         reference.forget()
     path_images, fixeds, rates = [(PILOT, picture)], [fixed], [rate]

@@ -17,10 +17,8 @@ class Unfinished(Exception):
     """A run was refused or took longer than it may."""
 
 
-def yardstick(bench):
-    """Options of the path tracer that is compared with: without what has been added to it since it became the yardstick."""
-    known = bench.run([bench.bin / "frame-render", "--help"]).stdout
-    return ["--integrator", "path", *(["--visibility-grid", "off"] if "--visibility-grid" in known else [])]
+# The path tracer that is compared with: without what adaptive frames learn of lights or draw of the sky by the cosine.
+YARDSTICK = ["--integrator", "path"]
 
 
 def frames_without_camera(bench):
@@ -73,7 +71,7 @@ class Side:
     def paths(self, spp, seed):
         """(picture, CPU seconds that do not depend on the samples, those of a sample per pixel)"""
         image, stats = self.bench.out / "tmp" / f"path-{os.getpid()}.exr", self.bench.out / "tmp" / f"path-{os.getpid()}.json"
-        cpu = self.spend([self.bench.bin / "frame-render", self.case.file, *self.case.options(), *yardstick(self.bench), "--size", self.size,
+        cpu = self.spend([self.bench.bin / "frame-render", self.case.file, *self.case.options(), *YARDSTICK, "--size", self.size,
                           "--spp", spp, "--seed", seed, "--channels", *CHANNELS, "--compression", "none", "-q", "-o", image, "--stats", stats])
         render = sum(p["cpu_s"] for p in json.loads(stats.read_text())["phases"] if p["name"] == "render")
         return exr.read(image), cpu - render, render / spp
