@@ -8,7 +8,9 @@ void render_adaptive(const RenderScene& scene, const CameraView& view, const Fra
   LayerImage& image = frame.mean;
   PixelNoise noise(view, options);
   const int first = options.samples;
-  for_each_pixel(view, options, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+  FrameOptions around = options;
+  around.mask = noise.looked_at();
+  for_each_pixel(view, around, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     PixelSum half[2];
     for_each_sample(scene, view, options.seed, options.known, pixel, x, y, 0, first, image.halves_of(pixel), counts,
                     [&](int s, const Layers& sample) { half[s < noise.first_half() ? 0 : 1].add(sample); });

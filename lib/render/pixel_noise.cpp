@@ -19,7 +19,25 @@ double wanted_samples(double sigma, double level, double picture, double pixel_e
 
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
     : view_(view), options_(options), first_half_((options.samples + 1) / 2),
-      pixels_(std::size_t(view.width()) * std::size_t(view.height())) {}
+      lattice_(std::max(1, int(std::sqrt(double(view.width()) * view.height() / kOnLattice)))),
+      pixels_(std::size_t(view.width()) * std::size_t(view.height())) {
+  lattice_ = std::min({lattice_, view.width(), view.height()});
+  if (!options.mask.empty()) look_around_mask();
+}
+
+void PixelNoise::look_around_mask() {
+  const int width = view_.width(), height = view_.height();
+  looked_at_.assign(options_.mask.size(), 0);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const std::size_t at = std::size_t(y) * std::size_t(width) + std::size_t(x);
+      if (on_lattice(x, y)) looked_at_[at] = 1;
+      if (!options_.mask[at]) continue;
+      for (int j = std::max(0, y - kNear); j <= std::min(height - 1, y + kNear); ++j)
+        for (int i = std::max(0, x - kNear); i <= std::min(width - 1, x + kNear); ++i)
+          looked_at_[std::size_t(j) * std::size_t(width) + std::size_t(i)] = 1;
+    }
+}
 
 void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& second) {
   const double n = options_.samples, a = first_half_, b = n - a;
@@ -31,13 +49,13 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
   state.smooth_difference = (first.value() - first.sharp) / a - (b > 0 ? (second.value() - second.sharp) / b : 0);
 }
 
-/// body(pixel) for the neighbours of a pixel, at most `near` away, that are rendered.
+/// body(pixel) for the neighbours of a pixel, at most `near` away.
 template <class Body>
 void PixelNoise::for_each_neighbour(int x, int y, int near, const Body& body) const {
   for (int j = std::max(0, y - near); j <= std::min(view_.height() - 1, y + near); ++j)
     for (int i = std::max(0, x - near); i <= std::min(view_.width() - 1, x + near); ++i) {
       const std::size_t at = std::size_t(j) * std::size_t(view_.width()) + std::size_t(i);
-      if ((i != x || j != y) && (options_.mask.empty() || options_.mask[at])) body(pixels_[at]);
+      if (i != x || j != y) body(pixels_[at]);
     }
 }
 
@@ -84,9 +102,13 @@ double PixelNoise::level_around(int x, int y) const {
 }
 
 std::vector<int> PixelNoise::missing_samples() {
-  double all = 0;
-  for (const Pixel& pixel : pixels_) all += pixel.mean;
-  picture_ = all / double(std::max<std::size_t>(1, pixels_.size()));
+  double all = 0, n = 0;
+  for (int y = lattice_ / 2; y < view_.height(); y += lattice_)
+    for (int x = lattice_ / 2; x < view_.width(); x += lattice_) {
+      all += pixels_[std::size_t(y) * std::size_t(view_.width()) + std::size_t(x)].mean;
+      ++n;
+    }
+  picture_ = all / std::max(1.0, n);
   std::vector<int> missing(pixels_.size());
   RayCounts none;
   for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) {

@@ -27,6 +27,9 @@ class PixelNoise {
  public:
   PixelNoise(const CameraView& view, const FrameOptions& options);
 
+  /// Pixels whose first samples are needed: all, or of a masked frame those that say what a masked pixel needs: so it gets as many
+  /// samples as in the whole frame. As FrameOptions::mask; empty: all.
+  const std::vector<std::uint8_t>& looked_at() const { return looked_at_; }
   int first_half() const { return first_half_; }   ///< of the first samples: the others are the second half
   /// The two halves of a pixel's first samples. Thread-safe for different pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second);
@@ -39,6 +42,7 @@ class PixelNoise {
     double smooth_difference = 0;          ///< of layer direct: mean over half of them less that over the others
     double sharp = 0, sharp_variance = 0;  ///< of one of them, of all other layers
   };
+  static constexpr double kOnLattice = 4096;   ///< pixels, about: their mean errs by 1 % where they differ by 60 %
   // Pixels: one is judged by the 24 around it; by 8 for what has edges, which are narrow: all that see one pay for it.
   static constexpr int kNear = 2, kNearSharp = 1;
 
@@ -47,11 +51,15 @@ class PixelNoise {
   double smooth_variance(int x, int y) const;
   double sharp_variance(int x, int y) const;
   double level_around(int x, int y) const;
+  bool on_lattice(int x, int y) const { return x % lattice_ == lattice_ / 2 && y % lattice_ == lattice_ / 2; }
+  void look_around_mask();
 
   const CameraView& view_;
   const FrameOptions& options_;
   int first_half_;
-  double picture_ = 0;   ///< mean of all pixels' first samples
+  double picture_ = 0;   ///< mean of the first samples of the pixels of a lattice
+  int lattice_;          ///< pixels from one of them to the next
+  std::vector<std::uint8_t> looked_at_;
   ParallelArray<Pixel> pixels_;
 };
 

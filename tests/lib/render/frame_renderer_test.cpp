@@ -74,6 +74,26 @@ TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
   EXPECT_NEAR(one.own_rmse / rmse, 1, 0.3);
 }
 
+/// What a pixel needs is told by those around it and by the picture's mean, masked or not: single pixels, a row and a block come out
+/// with the bytes they have in the whole frame. (By the masked pixels alone every sixth differed.)
+TEST(FrameRenderer, MaskedPixelsAreThoseOfTheWholeFrame) {
+  const Cornell c;
+  FrameOptions options;
+  options.samples = 4;
+  options.pixel_error = 0.02;
+  const RenderedFrame full = render_frame(c.render_scene(), c.view, options);
+  ASSERT_GT(full.samples_per_pixel, 6);
+  options.mask.assign(64 * 36, 0);
+  for (std::size_t p = 0; p < options.mask.size(); ++p)
+    options.mask[p] = p % 97 == 0 || p / 64 == 20 || (p / 64 < 8 && p % 64 > 50);
+  const RenderedFrame part = render_frame(c.render_scene(), c.view, options);
+  EXPECT_LT(part.rays.camera, full.rays.camera);
+  for (std::size_t p = 0; p < options.mask.size(); ++p) {
+    if (!options.mask[p]) continue;
+    for (std::size_t l = 0; l < kLayerCount; ++l) ASSERT_EQ(part.mean.pixels[p].value[l], full.mean.pixels[p].value[l]) << p;
+  }
+}
+
 TEST(FrameRenderer, PixelsOutsideTheMaskAreTheBasesToTheBit) {
   const Cornell c;
   FrameOptions options;
