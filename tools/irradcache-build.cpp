@@ -85,10 +85,11 @@ void build_updated_points(tools::Tool& tool, tools::SceneInput& input, const Opt
   tool.stats().phase("read points");
   tools::GatherPoints points = tools::read_points(tool, tools::frame_name(options.update, number), standing);
   tool.stats().phase("read photons");
-  const formats::PhotonMap fixed = tools::read_photons(tool, tools::frame_name(options.photons, number), standing,
-                                                       tools::LightNeeded::all, "static");
   const formats::PhotonMap moved = tools::read_photons(tool, tools::frame_name(options.dynamic.front(), number), frame,
                                                        tools::LightNeeded::all, "dynamic");
+  const formats::PhotonMap fixed =
+      tools::read_photons(tool, tools::frame_name(options.photons, number), standing, tools::LightNeeded::all, "static",
+                          static_photons_read(frame, options.point, points.points, moved.photons));
   if (moved.header.emitted_count != fixed.header.emitted_count || moved.header.group_count != fixed.header.group_count)
     throw InputError(options.dynamic.front() + ": of " + std::to_string(moved.header.emitted_count) + " paths, and the static map of " +
                      std::to_string(fixed.header.emitted_count) + "; trace it with the .paths file of that map");

@@ -158,5 +158,7 @@ struct PhotonMap {
   std::vector<Photon> photons;
 };
 PhotonMap load_photons(const std::string& path);
+/// The same with those photons only that `keep` takes; all of the file is read and checked, and totals are of all.
+PhotonMap load_photons(const std::string& path, const std::function<bool(const PhotonHeader&, const Photon&)>& keep);
 
 }  // namespace tempolux::formats

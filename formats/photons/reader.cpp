@@ -1,5 +1,6 @@
 // formats/photons/reader.cpp -- PhotonReader: an overlay and its base as one map; the digest; load_photons.
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 #include "formats/hash.h"
@@ -191,6 +192,18 @@ PhotonMap load_photons(const std::string& path) {
   PhotonBlock block;
   while (reader.read_block(block))
     map.photons.insert(map.photons.end(), block.photons.begin(), block.photons.end());
+  map.totals = reader.totals();
+  return map;
+}
+
+PhotonMap load_photons(const std::string& path, const std::function<bool(const PhotonHeader&, const Photon&)>& keep) {
+  PhotonReader reader(path, {.digest = false});
+  PhotonMap map;
+  map.header = reader.header();
+  PhotonBlock block;
+  while (reader.read_block(block))
+    for (const Photon& photon : block.photons)
+      if (keep(map.header, photon)) map.photons.push_back(photon);
   map.totals = reader.totals();
   return map;
 }

@@ -34,17 +34,37 @@ bool lights_change(const SceneFrame& frame) {
   return false;
 }
 
+bool any_caustic(std::span<const Photon> photons) {
+  return std::any_of(photons.begin(), photons.end(), [](const Photon& photon) { return photon.kind == PathKind::caustic; });
+}
+
+/// m: the largest radius of an estimate, as far as points tell; 0 if they do not.
+float largest_radius(const PointOptions& options, std::span<const IrradiancePoint> points) {
+  float largest = options.max_radius;
+  if (!(largest > 0))
+    for (const IrradiancePoint& point : points) largest = std::max(largest, point.radius);
+  return largest;
+}
+
 Rgb not_negative(const Rgbd& sum) { return Rgb(Rgbd{std::max(0.0, sum.r), std::max(0.0, sum.g), std::max(0.0, sum.b)}); }
 
 }  // namespace
+
+std::function<bool(Vec3, const Photon&)> static_photons_read(const SceneFrame& frame, const PointOptions& options,
+                                                            std::span<const IrradiancePoint> points,
+                                                            std::span<const Photon> dynamic_photons) {
+  // Points whose disc what moves may cut are anew: of a radius or less from it, and their photons as far again.
+  const float reach = 2 * largest_radius(options, points);
+  return [boxes = moving_boxes(frame), reach, caustic = any_caustic(dynamic_photons)](Vec3 place, const Photon& photon) {
+    return !(reach > 0) || (caustic && photon.kind == PathKind::caustic) || near_any(boxes, place, reach);
+  };
+}
 
 PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& options, std::vector<IrradiancePoint>& points) {
   PointUpdateCounts counts;
   const SceneFrame& frame = in.whole.frame();
   // Points that found fewer static photons than they wanted have the largest radius of all.
-  DensityOptions density{options.neighbours, options.max_radius, options.area_probes};
-  if (!(density.max_radius > 0))
-    for (const IrradiancePoint& point : points) density.max_radius = std::max(density.max_radius, point.radius);
+  DensityOptions density{options.neighbours, largest_radius(options, points), options.area_probes};
   const SignedDensity density_of_change(in.standing, in.dynamic_photons, density, in.dynamic_shift);
   density.max_radius = density_of_change.max_radius();
   const MovingBoxes boxes = moving_boxes(frame);
@@ -89,9 +109,7 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   if (!anew.empty()) estimate_points(in.whole, in.lights, near, {}, limited, anew, points);
 
   // Caustic light has footprints instead of discs: all of it anew if any is another.
-  const bool caustics_change = std::any_of(in.dynamic_photons.begin(), in.dynamic_photons.end(),
-                                           [](const Photon& photon) { return photon.kind == PathKind::caustic; });
-  if (caustics_change) {
+  if (any_caustic(in.dynamic_photons)) {
     const std::vector<Photon> all = whole_photons(maps, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
     const FootprintDensity footprints(in.whole, all, {options.neighbours, options.max_radius, 0}, kind_bit(PathKind::caustic), {});
     parallel_chunks(points.size(), 256, [&](std::size_t first, std::size_t last) {

@@ -1,6 +1,7 @@
 // lib/gather/update_points.h -- irradiance points of a frame from those of what stands (docs/methods/dynamic.md).
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,12 @@ struct PointUpdateCounts {
   std::size_t changed = 0;    ///< points to whose indirect light dynamic photons were added
   std::size_t anew = 0;       ///< points beside what moves, estimated anew
 };
+
+/// Which static photons update_points() reads: those near what moves, and caustic ones if any dynamic one is caustic. The others need
+/// not be in memory. `points` as they come to update_points(); places in scene space.
+std::function<bool(Vec3, const formats::Photon&)> static_photons_read(const SceneFrame& frame, const PointOptions& options,
+                                                                      std::span<const IrradiancePoint> points,
+                                                                      std::span<const formats::Photon> dynamic_photons);
 
 /// Points on static surfaces, first as they were estimated in the standing scene, with these options, from the static photons:
 /// - indirect: E = max(0, E_static + sum of signed flux of the dynamic photons nearer than the point's radius / area), the

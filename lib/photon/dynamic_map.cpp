@@ -41,20 +41,27 @@ formats::Photon negative(formats::Photon photon) {
 }  // namespace
 
 PhotonBatch difference_of(const PhotonTracer& standing, const PhotonTracer& whole, std::span<const std::uint64_t> paths) {
-  const PhotonBatch before = standing.trace_paths(paths), after = whole.trace_paths(paths);
-  const ByPath old(before, paths.size()), now(after, paths.size());
+  // A path that meets nothing that moves in the whole scene is the same without it.
+  const PhotonBatch after = whole.trace_paths(paths);
+  std::vector<std::uint64_t> others;
+  std::vector<std::uint32_t> number_of;   // in `paths`
+  for (std::uint32_t path = 0; path < paths.size(); ++path)
+    if (after.moved[path]) others.push_back(paths[path]), number_of.push_back(path);
+  const PhotonBatch before = standing.trace_paths(others);
+  const ByPath old(before, others.size()), now(after, paths.size());
   PhotonBatch result;
   result.block.group = std::uint32_t(paths[0] % standing.group_count());
-  for (std::size_t path = 0; path < paths.size(); ++path) {
-    const auto a = old.of(path), b = now.of(path);
+  for (std::size_t path = 0; path < others.size(); ++path) {
+    const auto a = old.of(path), b = now.of(number_of[path]);
     std::size_t common = 0;
     while (common < std::min(a.size(), b.size()) && before.block.photons[a[common]] == after.block.photons[b[common]]) ++common;
     for (const std::uint32_t p : a.subspan(common)) result.block.photons.push_back(negative(before.block.photons[p]));
     for (const std::uint32_t p : b.subspan(common)) result.block.photons.push_back(after.block.photons[p]);
+    const FluxBalance &was = before.balance_of[path], &is = after.balance_of[number_of[path]];
+    result.emitted += is.emitted - was.emitted;
+    result.escaped += is.escaped - was.escaped;
+    result.absorbed += is.absorbed - was.absorbed;
   }
-  result.emitted = after.emitted - before.emitted;
-  result.escaped = after.escaped - before.escaped;
-  result.absorbed = after.absorbed - before.absorbed;
   result.path_count = before.path_count + after.path_count;
   result.ray_count = before.ray_count + after.ray_count;
   result.specular_ray_count = before.specular_ray_count + after.specular_ray_count;

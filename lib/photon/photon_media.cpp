@@ -26,7 +26,7 @@ std::size_t PhotonTracer::fly(std::uint32_t bounce, std::size_t count, Path* pat
     if (flown == Flown::scattered) scattered[scattered_count++] = alive[i];
     if (flown != Flown::through) continue;
     if (meets) alive[arrived++] = alive[i];
-    else batch.escaped += Rgbd(path.flux);
+    else path.balance->escaped += Rgbd(path.flux);
   }
   return arrived;
 }
@@ -55,7 +55,7 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
         std::min(kLargestPhotonSurvival, max_component(scattered) / std::max(max_component(flux), 1e-37f));
     const bool survives = random.get1(bounce, Purpose::roulette) < survival;
     const Rgb left = scattered * (survives ? 1 / survival : 0);
-    batch.absorbed += Rgbd(path.flux) - Rgbd(left);
+    path.balance->absorbed += Rgbd(path.flux) - Rgbd(left);
     path.flux = left;
     if (!survives) return Flown::ended;
     path.diffuse_seen = true;

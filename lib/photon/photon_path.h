@@ -13,6 +13,7 @@ struct PhotonTracer::Path {
   PathRandom random{0, 0};
   Ray ray;
   Rgb flux;
+  FluxBalance* balance = nullptr;   ///< of all paths, or its own
   bool diffuse_seen = false, specular_seen = false;
   Inside inside;
 };

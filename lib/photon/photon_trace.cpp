@@ -171,6 +171,13 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
     varies_.push_back(material.textures || lets_rays_pass(material));
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
   }
+  const SceneFrame& frame = tracer.frame();
+  for (const EmissionSlot& slot : lights.slots()) {
+    const bool surface_moves = slot.surface != kNone && slot.surface >= frame.static_count;
+    const bool light_moves = slot.light != kNone && frame.lights[slot.light].node < frame.segment.node_moves.size() &&
+                             frame.segment.node_moves[frame.lights[slot.light].node];
+    slot_moves_.push_back(surface_moves || light_moves);
+  }
 }
 
 PhotonBatch PhotonTracer::trace(std::size_t number) const {
@@ -195,6 +202,8 @@ PhotonBatch PhotonTracer::trace(std::size_t number) const {
 PhotonBatch PhotonTracer::trace_paths(std::span<const std::uint64_t> paths) const {
   PhotonBatch batch;
   batch.by_path = true;
+  batch.balance_of.resize(paths.size());
+  batch.moved.resize(paths.size());
   if (paths.empty() || lights_.empty()) return batch;
   batch.block.group = std::uint32_t(paths[0] % group_count_);
   for (std::size_t first = 0; first < paths.size(); first += kWave)
@@ -202,18 +211,7 @@ PhotonBatch PhotonTracer::trace_paths(std::span<const std::uint64_t> paths) cons
   return batch;
 }
 
-void PhotonTracer::watch(const MoverWatch* watch) {
-  watch_ = watch;
-  slot_moves_.clear();
-  if (!watch) return;
-  const SceneFrame& frame = tracer_.frame();
-  for (const EmissionSlot& slot : lights_.slots()) {
-    const bool surface_moves = slot.surface != kNone && slot.surface >= frame.static_count;
-    const bool light_moves = slot.light != kNone && frame.lights[slot.light].node < frame.segment.node_moves.size() &&
-                             frame.segment.node_moves[frame.lights[slot.light].node];
-    slot_moves_.push_back(surface_moves || light_moves);
-  }
-}
+void PhotonTracer::watch(const MoverWatch* watch) { watch_ = watch; }
 
 /// Random numbers of a scattering event.
 struct PhotonTracer::Draw {
@@ -241,7 +239,9 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
     paths[i].random = PathRandom(options_.seed, path_numbers[i]);
     paths[i].flux = e.flux * share;
     paths[i].ray = {e.origin + e.normal * e.origin_offset, e.travel, 0, INFINITY};
-    batch.emitted += Rgbd(paths[i].flux);
+    paths[i].balance = batch.by_path ? &batch.balance_of[first_path + i] : &batch;
+    if (batch.by_path) [[unlikely]] batch.moved[first_path + i] = std::uint8_t(slot_moves_[e.slot]);
+    paths[i].balance->emitted += Rgbd(paths[i].flux);
     if (!is_black(paths[i].flux)) alive[count++] = std::uint32_t(i);   // lamps that are off send none
   }
   batch.path_count += started;
@@ -258,11 +258,14 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
       const Path& path = paths[alive[i]];
       const bool meets = tracer_.intersect(path.ray, hits[arrived]);
       if (watch_) [[unlikely]] touched[alive[i]] |= watch_->touching(path.ray, meets ? hits[arrived].t : INFINITY);
+      if (meets && batch.by_path) [[unlikely]] batch.moved[first_path + alive[i]] |= std::uint8_t(moves(hits[arrived]));
       if (meets) alive[arrived++] = alive[i];
-      else batch.escaped += Rgbd(path.flux);
+      else path.balance->escaped += Rgbd(path.flux);
     }
     tracer_.surface_points({hits, arrived}, points);
-    if (bounce == 0 && has_point_lights_) arrived = leave_planes_of_lights(emissions, arrived, paths, alive, hits, points, touched, batch);
+    if (bounce == 0 && has_point_lights_)
+      arrived = leave_planes_of_lights(emissions, arrived, paths, alive, hits, points, touched,
+                                       batch.by_path ? &batch.moved[first_path] : nullptr, batch);
     for (std::size_t i = 0; i < arrived; ++i) numbers[i] = paths[alive[i]].random.get2(bounce, Purpose::scatter);
     sample_hemisphere_cos({numbers, arrived}, directions);
     count = 0;
@@ -285,7 +288,7 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
 /// how many still arrive.
 std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths, std::uint32_t* alive,
                                                  Hit* hits, SurfacePoint* points, std::uint64_t* touched,
-                                                 PhotonBatch& batch) const {
+                                                 std::uint8_t* moved, PhotonBatch& batch) const {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < arrived; ++i) {
     const PhotonEmission& e = emissions[alive[i]];
@@ -299,8 +302,9 @@ std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions
       ++batch.ray_count;
       meets = tracer_.intersect(path.ray, hits[i]);
       if (watch_) touched[alive[i]] |= watch_->touching(path.ray, meets ? hits[i].t : INFINITY);
+      if (meets && moved) moved[alive[i]] |= std::uint8_t(moves(hits[i]));
       if (meets) points[i] = tracer_.surface_point(hits[i]);
-      else batch.escaped += Rgbd(path.flux);
+      else path.balance->escaped += Rgbd(path.flux);
     }
     if (!meets) continue;
     alive[kept] = alive[i];
@@ -328,7 +332,7 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   Rgb flux = path.flux;
   if (path.inside.any() || (solid && !front)) {
     flux *= path.inside.transmittance_to(tracer_.frame().materials, point.material, front, distance);
-    batch.absorbed += Rgbd(path.flux) - Rgbd(flux);
+    path.balance->absorbed += Rgbd(path.flux) - Rgbd(flux);
   }
 
   // Record.
@@ -378,7 +382,7 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
       std::min(kLargestPhotonSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
   const bool survives = cos_geometric > 0 && random.get1(draw.bounce, Purpose::roulette) < survival;
   path.flux = reflected * (survives ? 1 / survival : 0);
-  batch.absorbed += Rgbd(flux) - Rgbd(path.flux);
+  path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
   (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;
   if (solid && !next.diffuse) path.inside.scatter(point.material, front, next.transmitted);

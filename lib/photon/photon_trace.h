@@ -37,17 +37,23 @@ struct PhotonOptions {
 /// are shot again one by one, at 64 photons, a wave, or more, and from 2520 = 2^3 3^2 5 7 down.
 std::uint32_t automatic_group_count(std::uint64_t photon_count, bool media);
 
+/// Where flux came from and went, W: emitted = escaped + absorbed up to rounding.
+struct FluxBalance {
+  Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
+};
+
 /// What a batch of photon paths left behind.
-struct PhotonBatch {
+struct PhotonBatch : FluxBalance {           ///< of all paths; if by_path see balance_of
   formats::PhotonBlock block;                ///< of one group
-  Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};   ///< W; emitted = escaped + absorbed up to rounding
   std::uint64_t medium_steps = 0;            ///< tentative collisions
   std::uint64_t ray_count = 0, path_count = 0;
   std::uint64_t specular_ray_count = 0;      ///< of the rays: those that an event S sent
   std::uint64_t seen_count = 0;              ///< photons stored in the spheres of Lights::aim()
   std::vector<formats::TouchedPath> touched; ///< if movers are watched: those that they can touch, in order
-  bool by_path = false;                      ///< fill in:
-  std::vector<std::uint32_t> path_of;        ///< by photon: number of its path in the list given to trace_paths
+  bool by_path = false;                      ///< fill in, by number of the path in the list given to trace_paths:
+  std::vector<std::uint32_t> path_of;        ///< of each photon
+  std::vector<FluxBalance> balance_of;       ///< of each path
+  std::vector<std::uint8_t> moved;           ///< of each path: it met something that moves, or its light does
 };
 
 /// Traces photons through one frame. Photon i starts at point i of a scrambled Halton sequence and draws all
@@ -113,7 +119,8 @@ class PhotonTracer {
   /// Photons of these numbers to their ends; at most kWave. first_path: the number of the first in the caller's list.
   void follow(std::span<const std::uint64_t> numbers, std::uint32_t first_path, PhotonBatch& batch) const;
   std::size_t leave_planes_of_lights(const PhotonEmission* emissions, std::size_t arrived, Path* paths, std::uint32_t* alive,
-                                     Hit* hits, SurfacePoint* points, std::uint64_t* touched, PhotonBatch& batch) const;
+                                     Hit* hits, SurfacePoint* points, std::uint64_t* touched, std::uint8_t* moved, PhotonBatch& batch) const;
+  bool moves(const Hit& hit) const { return hit.surface >= tracer_.frame().static_count; }
   std::size_t fly(std::uint32_t bounce, std::size_t count, Path* paths, std::uint32_t* alive, Hit* hits, std::uint32_t* scattered,
                   std::size_t& scattered_count, PhotonBatch& batch) const;
   enum class Flown { through, scattered, ended };
@@ -135,7 +142,7 @@ class PhotonTracer {
   std::vector<std::uint8_t> varies_;         ///< by material: textures decide at each hit
   std::uint64_t group_count_, members_, batches_per_group_;
   const MoverWatch* watch_ = nullptr;
-  std::vector<char> slot_moves_;             ///< by slot of the emission table, while movers are watched
+  std::vector<char> slot_moves_;             ///< by slot of the emission table: the light moves or changes
 };
 
 }  // namespace tempolux

@@ -39,6 +39,18 @@ void refuse_part(const std::string& file, const std::string& part) {
     throw InputError(file + ": holds the " + part + " part of the light alone (photonmap-split); give the whole");
 }
 
+void check_photons(Tool& tool, const std::string& file, const formats::PhotonHeader& header, const SceneFrame& frame, LightNeeded needed,
+                   const std::string& wanted) {
+  if (header.map != wanted)
+    throw InputError(file + ": a " + header.map + " map" + (header.map == "global" ? "" : " is a part of the scene's light") +
+                     "; give a " + wanted + " one, as photon-trace writes it with --map " + wanted);
+  refuse_part(file, header.part);
+  check_identity(tool, file, header.identity, frame);
+  const std::vector<std::string> kinds = needed == LightNeeded::all ? std::vector<std::string>{"indirect", "caustic"}
+                                                                    : std::vector<std::string>{"caustic"};
+  check_kinds(tool, file, header.kinds, kinds, frame, "trace it with --kinds caustic,indirect");
+}
+
 }  // namespace
 
 GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame) {
@@ -55,15 +67,18 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
                                 const std::string& wanted) {
   tool.depends_on(file);
   formats::PhotonMap map = formats::load_photons(file);
-  if (map.header.map != wanted)
-    throw InputError(file + ": a " + map.header.map + " map" +
-                     (map.header.map == "global" ? "" : " is a part of the scene's light") + "; give a " + wanted +
-                     " one, as photon-trace writes it with --map " + wanted);
-  refuse_part(file, map.header.part);
-  check_identity(tool, file, map.header.identity, frame);
-  const std::vector<std::string> kinds = needed == LightNeeded::all ? std::vector<std::string>{"indirect", "caustic"}
-                                                                    : std::vector<std::string>{"caustic"};
-  check_kinds(tool, file, map.header.kinds, kinds, frame, "trace it with --kinds caustic,indirect");
+  check_photons(tool, file, map.header, frame, needed, wanted);
+  return map;
+}
+
+formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
+                                const std::string& wanted, const std::function<bool(Vec3, const formats::Photon&)>& keep) {
+  tool.depends_on(file);
+  formats::PhotonMap map = formats::load_photons(file, [&](const formats::PhotonHeader& header, const formats::Photon& photon) {
+    const Vec3d place{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])};
+    return keep(Vec3(place + shift_of(header.origin, frame)), photon);
+  });
+  check_photons(tool, file, map.header, frame, needed, wanted);
   return map;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,9 @@ enum class LightNeeded { all, caustic };
 /// there is a warning.
 formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
                                 const std::string& map = "global");
+/// The same with those photons only that `keep` takes, told by place (scene space) and photon.
+formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed, const std::string& map,
+                                const std::function<bool(Vec3, const formats::Photon&)>& keep);
 
 /// The dynamic map of another frame of the same segment: what stands must be the same, what moves not.
 formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, const SceneFrame& frame);

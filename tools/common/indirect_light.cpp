@@ -37,11 +37,10 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
     map = read_photons(tool, name, frame, needed);
     moved = shift(map);
   } else {
-    map = read_photons(tool, name, standing_scene(frame), needed, "static");
-    const formats::PhotonMap dynamic = read_photons(tool, frame_name(options.dynamic, number), frame, needed, "dynamic");
-    map.photons = whole_photons({map.photons, dynamic.photons, shift(map), shift(dynamic)}, [&](Vec3, const formats::Photon& photon) {
-      return alone || photon.kind == formats::PathKind::caustic;
-    });
+    const auto wanted = [alone](Vec3, const formats::Photon& photon) { return alone || photon.kind == formats::PathKind::caustic; };
+    map = read_photons(tool, name, standing_scene(frame), needed, "static", wanted);
+    const formats::PhotonMap dynamic = read_photons(tool, frame_name(options.dynamic, number), frame, needed, "dynamic", wanted);
+    map.photons = whole_photons({map.photons, dynamic.photons, shift(map), shift(dynamic)}, wanted);
     map.header.history += dynamic.header.history;
   }
   history_ = map.header.history;
