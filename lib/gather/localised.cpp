@@ -12,11 +12,11 @@ namespace {
 
 constexpr float kLeastShare = 0.01f;   ///< of the mean irradiance: what is darker is not told apart from black
 
-/// Dynamic photons are asked for in a disc as wide as the record is valid, but at most this much wider than the one that k static
-/// photons fill, k = 50 as a rule. At the lower threshold, a share of .06 of the static light, it holds .06 x 50 x 7^2 = 150 of
-/// them, and their scatter is sqrt(150) / (50 x 7^2) = .5 % of the static light, which is about what gather rays leave. In the
-/// narrow disc it were 3 photons and 3.5 %: boiling. (docs/methods/dynamic.md)
-constexpr float kWidest = 7;
+/// Dynamic photons are asked for in a disc this much wider than the one that k static photons fill, k = 50 as a rule. At the lower
+/// threshold, a share of .06 of the static light, it holds .06 x 50 x 7^2 = 150 of them, and their scatter is sqrt(150) / (50 x
+/// 7^2) = .5 % of the static light, which is about what gather rays leave. In the narrow disc it were 3 photons and 3.5 %:
+/// boiling. (docs/methods/dynamic.md)
+constexpr float kWider = 7;
 
 PathRandom random_at(Vec3 p, std::uint64_t seed) {
   std::uint64_t key = seed;
@@ -41,8 +41,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
       const IrradianceRecord& record = records[i];
       changes[i].update = record.irradiance;
       const PointLookup::Light* point = points.find(record.position, record.normal);
-      const float narrow = point ? points.point(*point).radius : 0;
-      const float radius = std::clamp(record.radius, narrow, kWidest * narrow);
+      const float radius = point ? kWider * points.point(*point).radius : 0;
       const PathRandom random = random_at(record.position, seed);
       SignedDensity::Area area;
       for (std::size_t m = 0; m < maps.size(); ++m) {

@@ -31,8 +31,8 @@ struct RecordChange {
 };
 
 /// E_t of each record from the first of `maps`, its influence the largest over all of them (the frame's own and those before it: the
-/// region grows at once and shrinks over frames). The disc is as wide as the record is valid, but at least that of the irradiance
-/// point nearest to the record, which k static photons fill, and at most seven times that.
+/// region grows at once and shrinks over frames). The disc is seven times as wide as that of the irradiance point nearest to the
+/// record, which k static photons fill.
 std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> records, std::span<const SignedDensity> maps,
                                          const PointLookup& points, std::uint64_t seed);
 

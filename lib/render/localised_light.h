@@ -28,6 +28,7 @@ class LocalisedLight {
   float gathered_share(const SurfacePoint& surface, Vec3 shading) const;
   /// Influence in the thresholds' terms (InfluenceField::at); infinity on what moves and where nothing is known.
   float influence(const SurfacePoint& surface, Vec3 shading) const;
+  const InfluenceThresholds& thresholds() const { return influence_.thresholds(); }
 
  private:
   bool moves(const SurfacePoint& surface) const { return surface.object < moves_.size() && moves_[surface.object]; }

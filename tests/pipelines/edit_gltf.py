@@ -8,6 +8,8 @@ OUT may be a .glb, or a .gltf that gets its buffer as a .bin file beside it.
   emission FACTOR       all emissive materials are FACTOR times as bright
   lamp [FRAME]          a lamp that moves through frames 0 to 5; one centimetre higher at FRAME
   still                 no animation
+  event KIND            of frames 0 to 8 at frame 4 the moving box is elsewhere (teleports), larger (grows), there from then on (born), there no
+                        more (gone), or the lamp has no area (lamp-off); else all stands
   mirror                the first material that emits nothing is a perfect mirror
   drop NAME             without the key NAME at the top level (cameras, for example)
 """
@@ -50,13 +52,13 @@ def add_accessor(gltf, binary, values, kind):
     return len(gltf["accessors"]) - 1
 
 
-def animate(gltf, binary, node, keys):
-    """keys: {frame: translation}, linear between them."""
+def animate(gltf, binary, node, keys, path="translation", interpolation="LINEAR"):
+    """keys: {frame: value}."""
     times = add_accessor(gltf, binary, [(frame / FPS,) for frame in keys], "SCALAR")
     places = add_accessor(gltf, binary, list(keys.values()), "VEC3")
     gltf.setdefault("animations", []).append({
-        "samplers": [{"input": times, "output": places, "interpolation": "LINEAR"}],
-        "channels": [{"sampler": 0, "target": {"node": node, "path": "translation"}}]})
+        "samplers": [{"input": times, "output": places, "interpolation": interpolation}],
+        "channels": [{"sampler": 0, "target": {"node": node, "path": path}}]})
 
 
 def same(gltf, binary):
@@ -95,6 +97,17 @@ def still(gltf, binary):
     gltf.pop("animations", None)
 
 
+def event(gltf, binary, kind):
+    gltf.pop("animations", None)
+    name = "Emitter" if kind == "lamp-off" else "MovingBox"
+    node = next(i for i, n in enumerate(gltf["nodes"]) if n.get("name") == name)
+    here, size = gltf["nodes"][node].get("translation", [0, 0, 0]), gltf["nodes"][node].get("scale", [1, 1, 1])
+    none = [0, 0, 0]
+    path, before, at, after = {"teleports": ("translation", here, [here[0] + 0.6, *here[1:]], here), "grows": ("scale", size, [1.5 * x for x in size], size),
+                               "born": ("scale", none, size, size), "gone": ("scale", size, none, none), "lamp-off": ("scale", size, none, size)}[kind]
+    animate(gltf, binary, node, {f: before if f < 4 else at if f == 4 else after for f in range(9)}, path, "STEP")
+
+
 def mirror(gltf, binary):
     material = next(m for m in gltf["materials"] if not any(m.get("emissiveFactor", [0])))
     material["pbrMetallicRoughness"] |= {"metallicFactor": 1, "roughnessFactor": 0}
@@ -111,7 +124,7 @@ def main():
     source, target, edit, *arguments = sys.argv[1:]
     gltf, binary = read_glb(source)
     edits = {"same": same, "camera-from": camera_from, "emission": emission, "lamp": lamp, "still": still,
-             "mirror": mirror, "drop": drop}
+             "mirror": mirror, "event": event, "drop": drop}
     edits[edit](gltf, binary, *arguments)
     if target.endswith(".gltf"):
         buffer = target[:-5] + ".bin"
