@@ -45,6 +45,7 @@ std::vector<RecordChange> record_changes(std::span<const IrradianceRecord> recor
       const PathRandom random = random_at(record.position, seed);
       SignedDensity::Area area;
       for (std::size_t m = 0; m < maps.size(); ++m) {
+        if (m > 0 && !(maps[m].most_influence(record.position, record.normal, radius, random, area) > double(changes[i].influence))) continue;
         const auto change = maps[m].at(record.position, record.normal, radius, random, area);
         if (!change) continue;
         changes[i].influence = std::max(changes[i].influence, float(change->influence));

@@ -7,6 +7,11 @@
 #include "lib/density/photon_reach.h"
 
 namespace tempolux {
+namespace {
+
+double largest(Rgb flux) { return double(std::max({std::abs(flux.r), std::abs(flux.g), std::abs(flux.b)})); }
+
+}  // namespace
 
 SignedDensity::SignedDensity(const Tracer& standing, std::span<const formats::Photon> photons, const DensityOptions& options,
                              Vec3d shift)
@@ -15,19 +20,32 @@ SignedDensity::SignedDensity(const Tracer& standing, std::span<const formats::Ph
     options_.max_radius = PointDensity::kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening);
 }
 
+void SignedDensity::find(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area, NeighbourList& found) const {
+  index_.find_within({position, normal, radius, kMinCos, kFlattening, kAllKinds}, found);
+  if (found.count() == 0 || area.known) return;
+  area.known = true;
+  area.whole = area_.whole(position, normal, radius, random.get1(2, Purpose::points));
+  area.inverse = area.whole || !(radius > 4 * area_.offset())
+                     ? 1 / (double(kPi) * double(radius) * double(radius))
+                     : area_.inverse(position, normal, radius, options_.area_probes, ReachableArea::Kernel::flat, random);
+}
+
+double SignedDensity::most_influence(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const {
+  thread_local NeighbourList found;
+  if (!(radius > 0 && std::isfinite(radius))) radius = options_.max_radius;
+  find(position, normal, radius, random, area, found);
+  double sum = 0;
+  for (std::size_t i = 0; i < found.count(); ++i)
+    if (found.distance2()[i] < radius * radius) sum += largest(index_.flux(found.photons()[i]));
+  return sum * area.inverse;
+}
+
 std::optional<SignedDensity::Change> SignedDensity::at(Vec3 position, Vec3 normal, float radius, const PathRandom& random,
                                                        Area& area) const {
   thread_local NeighbourList found;
   if (!(radius > 0 && std::isfinite(radius))) radius = options_.max_radius;
-  index_.find_within({position, normal, radius, kMinCos, kFlattening, kAllKinds}, found);
+  find(position, normal, radius, random, area, found);
   if (found.count() == 0) return std::nullopt;
-  if (!area.known) {
-    area.known = true;
-    area.whole = area_.whole(position, normal, radius, random.get1(2, Purpose::points));
-    area.inverse = area.whole || !(radius > 4 * area_.offset())
-                       ? 1 / (double(kPi) * double(radius) * double(radius))
-                       : area_.inverse(position, normal, radius, options_.area_probes, ReachableArea::Kernel::flat, random);
-  }
   Change change;
   for (std::size_t i = 0; i < found.count(); ++i) {
     if (!(found.distance2()[i] < radius * radius)) continue;   // the static estimate leaves out the one that it touches
@@ -37,7 +55,7 @@ std::optional<SignedDensity::Change> SignedDensity::at(Vec3 position, Vec3 norma
     if (!flat && !area_.reach()(position, normal, place, index_.normal(photon))) continue;
     const Rgb flux = index_.flux(photon);
     change.irradiance += Rgbd(flux);
-    change.influence += double(std::max({std::abs(flux.r), std::abs(flux.g), std::abs(flux.b)}));
+    change.influence += largest(flux);
   }
   change.irradiance *= area.inverse;
   change.influence *= area.inverse;

@@ -41,8 +41,13 @@ class SignedDensity {
   };
   /// The same; `area` is found if it is not known yet and needed.
   std::optional<Change> at(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;
+  /// What Change::influence is at most, reached or not: no ray is traced for the photons. 0 if there are none.
+  double most_influence(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area) const;
 
  private:
+  /// Photons within `radius`, with the area in which they lie; none: area stays as it is.
+  void find(Vec3 position, Vec3 normal, float radius, const PathRandom& random, Area& area, NeighbourList& found) const;
+
   DensityOptions options_;
   ReachableArea area_;
   PhotonIndex index_;
