@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""What updates cost and err where something moves: a segment's frames anew and by what movers change, as Markdown.
+
+    python3 tests/bench/moving.py BIN FOLDER [--scene room.glb] [--frames 8-13] [--photons 1M] [--size 320x180] [--reference]
+
+BIN: folder of the tools. FOLDER: for their files. Without --scene the furnished room of moving_room.py. Both chains run in the same order, frame
+by frame, with one seed; with --reference (slow: 4 times the photons, points and rays of another seed) flicker and errors against it,
+and flicker of a chain with a seed for each frame. CPU seconds are those of `--stats`, all phases.
+"""
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "formats"))
+sys.dont_write_bytecode = True
+import moving_room
+from read_irradcache import read_irradcache
+
+LOW = 0.06                                   # lower threshold of influence, frame-render --influence-low
+
+
+class Chain:
+    def __init__(self, options):
+        self.bin, self.out, self.scene = Path(options.bin), Path(options.folder), Path(options.scene or Path(options.folder) / "room.glb")
+        first, last = map(int, options.frames.split("-"))
+        self.frames, self.photons, self.size = range(first, last + 1), options.photons, options.size
+        self.cost = {}
+
+    def file(self, *parts):
+        return self.out / ".".join(str(p) for p in parts)
+
+    def run(self, stage, tool, *arguments):
+        stats = self.out / "stats.json"
+        subprocess.run([self.bin / tool, *map(str, arguments), "-q", "--stats", stats], check=True)
+        found = json.loads(stats.read_text())
+        self.cost.setdefault(stage, []).append(found)
+        return found
+
+    def render(self, kind, frame, *arguments):
+        self.run(f"{kind} pixels", "frame-render", self.scene, "--frame", frame, "--irradcache", self.file(kind, frame, "irradcache"), "--points",
+                 self.file(kind, frame, "irradpoints"), "--size", self.size, "--spp", 16, "--pixel-error", 0, "--channels", "indirect",
+                 "-o", self.out / f"{kind}.{frame:04d}.exr", *arguments)
+
+    def stands(self):
+        f = self.frames[0]
+        self.run("stands photons", "photon-trace", self.scene, "--frame", f, "--map", "static", "--photons", self.photons, "--kinds", "indirect",
+                 "-o", self.file("s.photons"), "--paths", self.file("s.paths"))
+        self.run("stands points", "irradcache-build", "points", self.scene, "--frame", f, "--map", "static", "--photons", self.file("s.photons"),
+                 "-o", self.file("s.irradpoints"))
+        self.run("stands records", "irradcache-build", "records", self.scene, "--frame", f, "--map", "static", "--points",
+                 self.file("s.irradpoints"), "--size", self.size, "-o", self.file("s.irradcache"))
+
+    def updated(self, f):
+        dynamic = [self.file("u", g, "photons") for g in (f, f - 1, f - 2) if g in self.frames]
+        self.run("u photons", "photon-trace", self.scene, "--frame", f, "--map", "dynamic", "--static", self.file("s.paths"), "-o", dynamic[0])
+        self.run("u points", "irradcache-build", "points", self.scene, "--frame", f, "--update", self.file("s.irradpoints"), "--photons",
+                 self.file("s.photons"), "--dynamic", dynamic[0], "-o", self.file("u", f, "irradpoints"))
+        self.run("u records", "irradcache-build", "records", self.scene, "--frame", f, "--update", self.file("s.irradcache"), "--points",
+                 self.file("u", f, "irradpoints"), "--dynamic", *dynamic, "--size", self.size, "-o", self.file("u", f, "irradcache"))
+        self.render("u", f)
+
+    def anew(self, kind, f, photons, points=(), records=(), common=()):
+        self.run(f"{kind} photons", "photon-trace", self.scene, "--frame", f, "--photons", photons, "--kinds", "indirect", *common,
+                 "-o", self.file("all.photons"))
+        self.run(f"{kind} points", "irradcache-build", "points", self.scene, "--frame", f, "--photons", self.file("all.photons"), *points, *common,
+                 "-o", self.file(kind, f, "irradpoints"))
+        self.run(f"{kind} records", "irradcache-build", "records", self.scene, "--frame", f, "--points", self.file(kind, f, "irradpoints"),
+                 "--size", self.size, *records, *common, "-o", self.file(kind, f, "irradcache"))
+        self.render(kind, f, *common)
+
+    def mean(self, stage, value):
+        runs = self.cost[stage][min(2, len(self.cost[stage]) - 1):] if stage[0] in "ua" else self.cost[stage]   # with two frames before
+        return sum(map(value, runs)) / len(runs)
+
+    def compare(self, kind):
+        pattern = [self.out / f"{k}.%04d.exr" for k in (kind, "r")]
+        subprocess.run([self.bin / "aqm-compare", *pattern, "--frames", f"{self.frames[0]}-{self.frames[-1]}", "--layer", "indirect", "--allow-stale",
+                        "--json", self.out / "c.json", "-q"], check=True, stdout=subprocess.DEVNULL)
+        return json.loads((self.out / "c.json").read_text())["total"]
+
+
+def cpu(stats):
+    return sum(p["cpu_s"] for p in stats["phases"])
+
+
+def update_error(chain):
+    """E_t against E_y at places of both kinds of records where influence is low: mean of the ratio - 1, and 99 % of its size."""
+    ratios, weights = [], []
+    for f in chain.frames:
+        gathered = {tuple(r.position): r for r in read_irradcache(str(chain.file("a", f, "irradcache"))).records}
+        for r in read_irradcache(str(chain.file("u", f, "irradcache"))).records:
+            twin = gathered.get(tuple(r.position))
+            if r.set == 0 and twin and r.influence <= LOW * max(r.irradiance):
+                ratios.append(sum(r.update) / sum(twin.irradiance) - 1)
+                weights.append(sum(twin.irradiance))
+    size = sorted(map(abs, ratios))
+    return sum(r * w for r, w in zip(ratios, weights)) / sum(weights), size[int(0.99 * len(size))], len(size)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin")
+    parser.add_argument("folder")
+    parser.add_argument("--scene")
+    parser.add_argument("--frames", default="8-13")
+    parser.add_argument("--photons", default="1M")
+    parser.add_argument("--size", default="320x180")
+    parser.add_argument("--reference", action="store_true")
+    options = parser.parse_args()
+    Path(options.folder).mkdir(parents=True, exist_ok=True)
+    chain = Chain(options)
+    if not options.scene:
+        moving_room.make(chain.scene)
+    chain.stands()
+    for f in chain.frames:
+        chain.updated(f)
+        chain.anew("a", f, options.photons)
+    touched = chain.mean("u photons", lambda s: s["counts"]["touched_paths"]) / chain.mean("a photons", lambda s: s["counts"]["paths"])
+    print(f"{100 * touched:.1f} % of the paths are touched\n")
+    print("| CPU s a frame | photons | points | phase `records` | records |\n|---|---|---|---|---|")
+
+    def phase(stats):
+        return next(p["cpu_s"] for p in stats["phases"] if p["name"] == "records")
+    rows = {name: [chain.mean(f"{k} photons", cpu), chain.mean(f"{k} points", cpu), chain.mean(f"{k} records", phase),
+                   chain.mean(f"{k} records", lambda s: s["counts"]["records"])] for k, name in (("a", "anew"), ("u", "updated"), ("stands", "what stands, once"))}
+    for name, row in rows.items():
+        print(f"| {name} | " + " | ".join(f"{x:.2f}" for x in row[:3]) + f" | {row[3]:.0f} |")
+    print("| updated / anew | " + " | ".join(f"{u / a:.2f}" for u, a in zip(rows["updated"], rows["anew"])) + " |\n")
+    bias, worst, count = update_error(chain)
+    print(f"E_t / E_y - 1 at {count} places of low influence: mean {100 * bias:.2f} %, 99 % of them within {100 * worst:.1f} %")
+    if not options.reference:
+        return
+    for f in chain.frames:
+        chain.anew("r", f, "4M", ("--point-count", "80k"), ("--rays", 2400, "--error-bound", 0.14), ("--seed", 1000))
+        chain.anew("f", f, options.photons, common=("--seed", f))
+    print("\n| against the reference, indirect light | relMSE | bias | flicker |\n|---|---|---|---|")
+    for kind, name in (("u", "updated"), ("a", "anew, one seed"), ("f", "anew, a seed for each frame")):
+        total = chain.compare(kind)
+        print(f"| {name} | {total['relmse']:.6f} | {100 * total['bias']:.2f} % | {total['flicker']:.6f} |")
+
+
+if __name__ == "__main__":
+    main()
