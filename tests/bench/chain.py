@@ -23,10 +23,12 @@ class Settings:
 
 
 def final(project):
-    """Those of Makefile.example with QUALITY=final."""
+    """Those of Makefile.example with QUALITY=final, records with the rays that they get at most."""
     text = (project / "Makefile.example").read_text()
     block = re.search(r"^else\n((?:[A-Z]+ *=.*\n)+)endif", text, re.M).group(1)
     values = dict(re.findall(r"^([A-Z]+) *= *([^#\n]*?) *(?:#.*)?$", block, re.M))
+    for name, value in values.items():
+        values[name] = value.replace("$(or $(plan_rays),$(RAYS))", values["RAYS"]).replace("$(ERROR)", values["ERROR"])
     count = values["PHOTONS"]
     photons = int(count.rstrip("kM")) * {"k": 10**3, "M": 10**6}.get(count[-1], 1)
     return Settings(photons, *(tuple(values.get(name, "").split()) for name in ("POINTS", "CACHE", "PIXELS")), steps=True)

@@ -85,6 +85,9 @@ Tool::Tool(std::string name, std::string what, int argc, char** argv) {
   flush_denormals_to_zero();
   keep_freed_memory();
   hold_standard_streams();
+  // All of a help text is written at its end, where a failure still has its reason.
+  static char text[1 << 16];
+  if (!isatty(STDOUT_FILENO)) std::setvbuf(stdout, text, _IOFBF, sizeof text);
   install_signal_handlers();
   state_ = std::make_unique<State>(std::move(name), std::move(what), argc, argv);
   CLI::App& app = state_->app;
