@@ -122,12 +122,12 @@ def bounds(gltf):
                   2 * (y * z + x * w), 2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)]
         return [v for j, s in enumerate(node.get("scale", [1, 1, 1])) for v in (*(s * turned[3 * j + i] for i in range(3)), 0)] + [
             *node.get("translation", [0, 0, 0]), 1]
-    todo = [(i, [float(i % 5 == 0) for i in range(16)]) for i in gltf.get("scenes", [{}])[gltf.get("scene", 0)].get("nodes", [])]
-    while todo:
-        index, above = todo.pop()
+    pending = [(i, [float(i % 5 == 0) for i in range(16)]) for i in gltf.get("scenes", [{}])[gltf.get("scene", 0)].get("nodes", [])]
+    while pending:
+        index, above = pending.pop()
         node = gltf["nodes"][index]
         place = times(above, local(node))
-        todo += [(child, place) for child in node.get("children", [])]
+        pending += [(child, place) for child in node.get("children", [])]
         for primitive in gltf["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []:
             corners = gltf["accessors"][primitive["attributes"]["POSITION"]]
             for corner in range(8):

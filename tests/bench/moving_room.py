@@ -5,14 +5,11 @@
 
 What stands: floor, ceiling and four walls, three tables, two cupboards, six bumpy cushions. The ball glides over the floor past a table.
 """
-import json
 import math
-import struct
 import sys
 from array import array
-from pathlib import Path
 
-from wavy import Mesh, unit
+from wavy import Mesh, unit, write_glb
 
 SIZE = (8.0, 3.0, 6.0)                       # m; x along, y up, z across
 LAST_S = 47 / 24                             # the ball's last key
@@ -102,11 +99,7 @@ def make(path, triangles=200_000):
     gltf["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.95, "znear": 0.01}}]
     gltf["nodes"].append({"name": "Camera", "camera": 0, "translation": [0.3, 1.7, 3.9], "rotation": [-0.084, -0.4826, -0.0466, 0.871]})
     gltf["scenes"] = [{"nodes": list(range(len(gltf["nodes"])))}]
-    gltf["buffers"] = [{"byteLength": len(binary)}]
-    text = json.dumps(gltf).encode()
-    text += b" " * (-len(text) % 4)
-    header = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary)) + struct.pack("<I4s", len(text), b"JSON")
-    Path(path).write_bytes(header + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
+    write_glb(path, gltf, binary)
     return count
 
 

@@ -86,6 +86,15 @@ def meshes(triangles):
     yield "Ball", (0.7, 0.6, 0.2), mesh
 
 
+def write_glb(path, gltf, binary):
+    """The scene as a .glb file, with its one buffer."""
+    gltf["buffers"] = [{"byteLength": len(binary)}]
+    text = json.dumps(gltf).encode()
+    text += b" " * (-len(text) % 4)
+    header = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary)) + struct.pack("<I4s", len(text), b"JSON")
+    Path(path).write_bytes(header + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
+
+
 def make(path, triangles=10**6):
     """Writes the hall as .glb; the number of triangles it has."""
     gltf = {"asset": {"version": "2.0"}, "scene": 0, "nodes": [], "meshes": [], "materials": [], "accessors": [],
@@ -128,11 +137,7 @@ def make(path, triangles=10**6):
     gltf["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.9, "znear": 0.01}}]
     gltf["nodes"].append({"name": "Camera", "camera": 0, "translation": [0.7, 3, 7], "rotation": [-0.05, -0.46, -0.026, 0.886]})
     gltf["scenes"] = [{"nodes": list(range(len(gltf["nodes"])))}]
-    gltf["buffers"] = [{"byteLength": len(binary)}]
-    text = json.dumps(gltf).encode()
-    text += b" " * (-len(text) % 4)
-    header = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(binary)) + struct.pack("<I4s", len(text), b"JSON")
-    Path(path).write_bytes(header + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary)
+    write_glb(path, gltf, binary)
     return count
 
 

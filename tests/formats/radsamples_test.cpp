@@ -200,7 +200,7 @@ TEST(RadianceSample, HalvesComeBackAndStayInTheirRange) {
 // For read_radsamples_test.sh: files to read a second time in Python, and what must come out.
 TEST(Radsamples, FilesForTheSecondReader) {
   const char* folder = std::getenv("TEMPOLUX_SECOND_READER");
-  if (!folder) GTEST_SKIP();
+  if (!folder) GTEST_SKIP() << "only for read_radsamples_test.sh";
   const auto give = [&](const std::string& name, const RadsamplesFile& file) {
     save(std::string(folder) + "/" + name, bytes_of(file));
     double radiance = 0, ages = 0;

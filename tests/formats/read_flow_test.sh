@@ -14,22 +14,7 @@ for format in flow mask; do
   page=../formats/$format/$format.md
   python3 formats/read_$format.py formats/$format/accept/worked-example.exr | sed 's/^/    /' > "$folder/printed" || fail "$format: not read"
   sed -n '/^prints$/,/^The file\|^`tempolux/p' "$page" | grep '^    ' | cmp - "$folder/printed" || fail "$page: prints something else"
-  python3 - "$format" formats/"$format"/*/* <<'END' || fail "$format: folders accept and refuse"
-import importlib, sys
-sys.path.insert(0, "formats")
-read = getattr(importlib.import_module("read_" + sys.argv[1]), "read_" + sys.argv[1])
-wrong = 0
-for path in sys.argv[2:]:
-    try:
-        read(path)
-        good = True
-    except (ValueError, OSError):
-        good = False
-    if good != ("/accept/" in path):
-        print(path, "was read" if good else "was refused")
-        wrong = 1
-sys.exit(wrong)
-END
+  python3 formats/accept_and_refuse.py "$format" formats/"$format"/*/* || fail "$format: folders accept and refuse"
 done
 
 "$bin/tempolux-info" --json formats/mask/accept/worked-example.exr | python3 -c '

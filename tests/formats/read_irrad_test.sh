@@ -47,23 +47,7 @@ cpp
 half=$(($(cut -d' ' -f1 "$folder/rich.$format.expected") / 2))
 [ "$(cat "$folder/count")" = "$half" ] || fail "filter: $(cat "$folder/count") instead of $half"
 
-python3 - "$format" "$here/$format"/*/* <<'END' || fail "folders accept and refuse"
-import importlib
-import sys
-name = sys.argv[1]
-read = getattr(importlib.import_module("read_" + name), "read_" + name)
-wrong = 0
-for path in sys.argv[2:]:
-    try:
-        read(path)
-        good = True
-    except (ValueError, OSError):
-        good = False
-    if good != ("/accept/" in path):
-        print(path, "was read" if good else "was refused")
-        wrong = 1
-sys.exit(wrong)
-END
+python3 "$here/accept_and_refuse.py" "$format" "$here/$format"/*/* || fail "folders accept and refuse"
 
 # The files in the repository are those that make_irrad_files.py makes.
 python3 "$here/make_irrad_files.py" "$folder/made" || fail "make_irrad_files.py"

@@ -20,21 +20,7 @@ found = [j["points"], j["records"], j["samples"], j["radiance"], j["mean_age"] *
 sys.exit(any(abs(a - b) > 1e-9 * abs(b) for a, b in zip(found, e)))' "$folder/json" "$file.expected" || fail "$name: other numbers"
   cmp "$file" "$folder/copy" || fail "$name: written again, other bytes"
 done
-python3 - "$here"/radsamples/*/* <<'END' || fail "folders accept and refuse"
-import sys
-from read_radsamples import read_radsamples
-wrong = 0
-for path in sys.argv[1:]:
-    try:
-        read_radsamples(path)
-        good = True
-    except (ValueError, OSError):
-        good = False
-    if good != ("/accept/" in path):
-        print(path, "was read" if good else "was refused")
-        wrong = 1
-sys.exit(wrong)
-END
+python3 "$here/accept_and_refuse.py" radsamples "$here"/radsamples/*/* || fail "folders accept and refuse"
 # The files in the repository are those that make_radsamples_files.py makes.
 python3 "$here/make_radsamples_files.py" "$folder/made" || fail "make_radsamples_files.py"
 diff -r "$folder/made/radsamples" "$here/radsamples" || fail "make_radsamples_files.py makes other files"
