@@ -138,6 +138,15 @@ PhotonMapResult update_map(tools::Tool& tool, const Options& options, const Phot
                            output != "-" && folder(output) == folder(previous_name), sink);
 }
 
+PhotonOptions photon_options_of(const tools::Tool& tool, const Options& options, int frame_number) {
+  PhotonOptions photon_options;
+  photon_options.seed = tool.common().seed_for_frame(frame_number);
+  photon_options.photon_count = tools::parse_count(options.photons);
+  photon_options.group_count = group_count(options.groups);
+  photon_options.set_kinds(options.kinds);
+  return photon_options;
+}
+
 void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options,
                  const std::vector<formats::ViewSphere>& view, int frame_number,
                  StandingTree& standing) {
@@ -150,11 +159,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   const Tracer tracer(frame, standing);
   const Lights lights(frame, emission);
 
-  PhotonOptions photon_options;
-  photon_options.seed = tool.common().seed_for_frame(frame_number);
-  photon_options.photon_count = tools::parse_count(options.photons);
-  photon_options.group_count = group_count(options.groups);
-  photon_options.set_kinds(options.kinds);
+  PhotonOptions photon_options = photon_options_of(tool, options, frame_number);
   photon_options.volume_share = options.volume_share;
   const formats::PhotonHeader header = header_of(tool, frame, emission, frame_number);
 
@@ -215,11 +220,7 @@ void trace_standing(tools::Tool& tool, tools::SceneInput& input, const Options& 
   const Tracer tracer(frame);
   const Lights lights(frame, emission);
 
-  PhotonOptions photon_options;
-  photon_options.seed = tool.common().seed_for_frame(frame_number);
-  photon_options.photon_count = tools::parse_count(options.photons);
-  photon_options.group_count = group_count(options.groups);
-  photon_options.set_kinds(options.kinds);
+  PhotonOptions photon_options = photon_options_of(tool, options, frame_number);
   formats::PhotonHeader header = header_of(tool, frame, emission, frame_number);
   header.map = "static";
   header.identity.first_frame = segment.first;

@@ -5,22 +5,13 @@
 #include <numbers>
 
 #include "lib/core/parallel.h"
+#include "lib/light/linear_density.h"
 
 namespace tempolux {
 namespace {
 
 constexpr double kPiD = std::numbers::pi;
 constexpr double kUnits = 4294967295.0;  ///< what cells of a row share, less one each
-
-double lerp(double a, double b, double t) { return a + (b - a) * t; }
-
-/// x in [0, 1] with density in proportion to a (1 - x) + b x; uniform if both are 0.
-double sample_linear(double a, double b, double u) {
-  if (!(a + b > 0)) return u;
-  // The root of (b - a) x^2 / 2 + a x = u (a + b) / 2 in the form that does not cancel.
-  const double x = u * (a + b) / (a + std::sqrt(lerp(a * a, b * b, u)));
-  return std::clamp(x, 0.0, 1.0);
-}
 
 /// The u for which sample_linear gives x.
 double linear_number(double a, double b, double x) { return a + b > 0 ? x * (2 * a + (b - a) * x) / (a + b) : x; }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/core/sampling.h"
+#include "lib/light/linear_density.h"
 
 namespace tempolux {
 namespace {
@@ -11,13 +12,6 @@ namespace {
 Vec3d unit(Vec3d v) { return v * (1 / std::sqrt(std::max(1e-300, length2(v)))); }
 /// Unit vector along v less its part along the unit vector w.
 Vec3d reject(Vec3d v, Vec3d w) { return unit(v - w * dot(v, w)); }
-
-/// Where u of a density lies that goes from at0 to at1 over [0, 1].
-double linear(double u, double at0, double at1) {
-  return u * (at0 + at1) / (at0 + std::sqrt(at0 * at0 + u * (at1 * at1 - at0 * at0)));
-}
-
-double mix(double t, double a, double b) { return a + (b - a) * t; }
 
 /// Below this the corners' cosines say little of what lies between.
 constexpr double kLeast = 0.01;
@@ -75,13 +69,13 @@ BilinearWarp::BilinearWarp(std::array<double, 4> values) : w_(values) {
 }
 
 Vec2 BilinearWarp::operator()(Vec2 u) const {
-  const double y = linear(u.y, w_[0] + w_[1], w_[2] + w_[3]);
-  const double x = linear(u.x, mix(y, w_[0], w_[2]), mix(y, w_[1], w_[3]));
+  const double y = sample_linear(w_[0] + w_[1], w_[2] + w_[3], u.y);
+  const double x = sample_linear(lerp(w_[0], w_[2], y), lerp(w_[1], w_[3], y), u.x);
   return {std::min(float(x), kOneMinusEpsilon), std::min(float(y), kOneMinusEpsilon)};
 }
 
 double BilinearWarp::density(Vec2 u) const {
-  return 4 * mix(u.y, mix(u.x, w_[0], w_[1]), mix(u.x, w_[2], w_[3])) / (w_[0] + w_[1] + w_[2] + w_[3]);
+  return 4 * lerp(lerp(w_[0], w_[1], u.x), lerp(w_[2], w_[3], u.x), u.y) / (w_[0] + w_[1] + w_[2] + w_[3]);
 }
 
 }  // namespace tempolux
