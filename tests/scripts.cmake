@@ -43,6 +43,9 @@ add_test(NAME pipelines.plan_refuses COMMAND sh tests/pipelines/plan_refuses.sh 
 add_test(NAME pipelines.walkthrough COMMAND sh tests/pipelines/walkthrough.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.walkthrough PROPERTIES TIMEOUT 300)
+add_test(NAME pipelines.filter COMMAND sh tests/pipelines/filter.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.filter PROPERTIES TIMEOUT 300)
 add_test(NAME pipelines.dynamic COMMAND sh tests/pipelines/dynamic.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.dynamic PROPERTIES TIMEOUT 300)

@@ -216,6 +216,8 @@ void add_options(tools::Tool& tool, Options& options) {
       ->check(tools::number_between(-1.0, 1.0));
   app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
+  app.add_flag("--for-filter", options.frame.for_filter,
+               "the frame will be filtered by st-filter: --pixel-error counts noise of the layer specular alone, which passes it");
   add_light_options(tool, options);
   app.add_flag("--learn-lights", options.learn_lights,
                "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that");

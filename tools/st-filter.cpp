@@ -13,8 +13,10 @@
 
 #include "formats/error.h"
 #include "lib/filter/filter_frame.h"
+#include "lib/image/channel_groups.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
+#include "tools/common/keep_memory.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 
@@ -24,6 +26,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> frames, flow;
+  std::vector<std::string> channels;
   std::string output, range, compression = "zip";
   int width = 5, position = 0;
   FilterOptions filter;
@@ -43,7 +46,9 @@ struct LoadedFrame {
 
 class FilterRun {
  public:
-  FilterRun(tools::Tool& tool, const Options& options, std::vector<Names> names) : tool_(tool), options_(options), names_(std::move(names)) {}
+  /// sequence: each frame is filtered in its turn, with those around it; else one is.
+  FilterRun(tools::Tool& tool, const Options& options, std::vector<Names> names, bool sequence)
+      : tool_(tool), options_(options), names_(std::move(names)), sequence_(sequence) {}
 
   /// Filters frame `at` of the list with those from `first` to `last`.
   void run(std::size_t first, std::size_t at, std::size_t last, const std::string& file, std::optional<int> number) {
@@ -51,13 +56,14 @@ class FilterRun {
     loaded_.erase(loaded_.begin(), loaded_.lower_bound(first));
     std::vector<WindowFrame> window;
     for (std::size_t i = first; i <= last; ++i) {
-      const LoadedFrame& loaded = load(i);
+      const LoadedFrame& loaded = load(i, i == at || sequence_);
       window.push_back({loaded.light.get(), &loaded.flow});
     }
     tool_.stats().phase("filter", true);
     Image image;
     try {
-      image = filter_frame(loaded_.at(at).image, window, at - first, options_.filter);
+      image = filter_frame(std::move(loaded_.at(at).image), window, at - first, options_.filter);
+      if (!options_.channels.empty()) keep_channels(options_.channels, image);
     } catch (const InputError& error) {
       throw InputError(names_[at].frame + ": " + error.what());
     }
@@ -72,14 +78,16 @@ class FilterRun {
   }
 
  private:
-  const LoadedFrame& load(std::size_t index) {
+  /// to_filter: the frame is filtered itself, now or later; else no more of it is read and kept than others take from it.
+  const LoadedFrame& load(std::size_t index, bool to_filter) {
     const auto [found, is_new] = loaded_.try_emplace(index);
     LoadedFrame& loaded = found->second;
     if (!is_new) return loaded;
     const Names& names = names_[index];
     tool_.stats().phase("read");
-    loaded.image = read(names.frame, true);
-    const Image flow = names.flow.empty() ? Image{} : read(names.flow, false);
+    loaded.image = read(names.frame, true, to_filter);
+    Image flow;
+    if (!names.flow.empty()) flow = read(names.flow, false, true);
     tool_.stats().phase("prepare", true);
     try {
       loaded.light = std::make_unique<LightFrame>(loaded.image);
@@ -90,11 +98,20 @@ class FilterRun {
     else if (loaded.image.find("forward.u") || loaded.image.find("backward.u"))
       loaded.flow = FlowFrame(loaded.image, loaded.image.width, loaded.image.height, names.frame);
     explain(names, loaded);
+    if (!to_filter) loaded.image = {};
     return loaded;
   }
 
-  Image read(const std::string& file, bool colour) {
-    Image image = load_exr(file, {.allow_nan = colour});   // pixels that hold no numbers are filled from those around
+  /// colour: pixels may hold no numbers, they are filled from those around. all: every channel, or those that --channels and the filter need.
+  Image read(const std::string& file, bool colour, bool all) {
+    const auto is_named = [&](const std::string& channel) {
+      return std::any_of(options_.channels.begin(), options_.channels.end(), [&](const std::string& group) { return is_in_group(channel, group); });
+    };
+    const auto wanted = [&](const std::string& channel) {
+      if (all && (options_.channels.empty() || is_named(channel))) return true;
+      return all ? is_read_to_filter(channel) : is_read_by_others(channel);
+    };
+    Image image = load_exr(file, {.allow_nan = colour, .wanted = wanted});
     tool_.depends_on(file);
     return image;
   }
@@ -119,6 +136,7 @@ class FilterRun {
   tools::Tool& tool_;
   const Options& options_;
   std::vector<Names> names_;
+  bool sequence_;
   std::map<std::size_t, LoadedFrame> loaded_;   ///< of the current window
   std::map<std::string, bool> warned_;
 };
@@ -133,7 +151,7 @@ void filter_files(tools::Tool& tool, const Options& options) {
   std::vector<Names> names;
   for (std::size_t i = 0; i < count; ++i) names.push_back({options.frames[i], options.flow.empty() ? "" : options.flow[i]});
   const std::size_t at = options.position > 0 ? std::size_t(options.position) - 1 : (count - 1) / 2;
-  FilterRun(tool, options, std::move(names)).run(0, at, count - 1, options.output, std::nullopt);
+  FilterRun(tool, options, std::move(names), false).run(0, at, count - 1, options.output, std::nullopt);
 }
 
 void filter_range(tools::Tool& tool, const Options& options) {
@@ -146,7 +164,7 @@ void filter_range(tools::Tool& tool, const Options& options) {
   std::vector<Names> names;
   for (const int number : numbers)
     names.push_back({tools::frame_name(options.frames[0], number), options.flow.empty() ? "" : tools::frame_name(options.flow[0], number)});
-  FilterRun run(tool, options, std::move(names));
+  FilterRun run(tool, options, std::move(names), true);
   const int reach = (options.width - 1) / 2;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     // Flow leads to the next frame: the window ends where a number is missing.
@@ -178,10 +196,14 @@ int main(int argc, char** argv) {
   app.add_option("--pixels-per-degree", options.filter.pixels_per_degree,
                  "of the viewer's sight, for frames that know neither variance nor samples")
       ->capture_default_str()->check(tools::number_between(1.0, 1000.0));
+  app.add_option("--channels", options.channels,
+                 "channels of the output, by groups: RGBA, layers, Z, N, id, albedo, motion ...; without: all that the frame has")
+      ->delimiter(',')->type_name("NAMES");
   app.add_option("--compression", options.compression, "EXR compression")->capture_default_str()->check(CLI::IsMember({"zip", "none"}));
   tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
   tool.common_options(0);
   return tool.run([&] {
+    tools::keep_freed_memory();
     if (options.width % 2 == 0) throw InputError("--width: an odd number of frames has one in the middle; give 3 or 5");
     if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
     if (options.range.empty()) filter_files(tool, options);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lib/filter/flow_path.h"
+#include "lib/filter/lane.h"
 
 namespace tempolux {
 
@@ -19,13 +20,18 @@ struct Collected {
 
 /// How much two values that differ may have to do with each other. `square`: of their difference, `variance` of it. Tukey's
 /// biweight, zero from five standard errors on.
+inline constexpr float kValueErrors = 5, kTinyVariance = 1e-30f;
 inline float value_weight(float square, float variance) {
-  constexpr float kErrors = 5, kTiny = 1e-30f;
-  const float z = 1 - square / (kErrors * kErrors * variance + kTiny);
+  const float z = 1 - square / (kValueErrors * kValueErrors * variance + kTinyVariance);
   return z > 0 ? z * z : 0.0f;
 }
+inline Float8 value_weight(Float8 square, Float8 variance) {
+  const Float8 z = 1 - square / (kValueErrors * kValueErrors * variance + kTinyVariance);
+  return where(z > 0, z * z);
+}
 /// Variance by which floats of this size differ from rounding alone.
-inline float rounding_variance(float square) { return 1e-12f * square; }
+template <class T>
+T rounding_variance(T square) { return 1e-12f * square; }
 
 /// Brings together window[middle] and the frames around it. A neighbour counts as far as its means agree with the middle's (value_weight), or
 /// where noise is not known by `frame_weights`, one for each frame of the window (empty: 1), at pixels where `in_time` is not 0 (nullptr: all).

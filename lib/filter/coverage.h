@@ -17,6 +17,8 @@ class Coverage {
   bool known() const { return around_ != nullptr; }
   /// Share of the pixel that sees what no centre around shows.
   float other(int x, int y) const { return other_ ? float(std::min((*other_)[index(x, y)], kRays)) / float(kRays) : 0; }
+  /// Is there any such share?
+  bool has_other() const { return other_ && std::any_of(other_->begin(), other_->end(), [](std::uint32_t count) { return count != 0; }); }
   /// Does the pixel see one surface?
   bool is_whole(int x, int y) const { return !around_ || ((*around_)[index(x, y)] == 0 && other(x, y) == 0); }
   /// body(dx, dy, share) for each pixel around whose surface is seen too, (dx, dy) from the pixel, right and down.
@@ -30,8 +32,10 @@ class Coverage {
     }
   }
 
+ public:
+  static constexpr std::uint32_t kRays = 16;   ///< of a pixel
+
  private:
-  static constexpr std::uint32_t kRays = 16;
   static const std::vector<std::uint32_t>* ids(const Image& image, const char* name) {
     const Channel* channel = image.find(name);
     return channel && !channel->ids.empty() ? &channel->ids : nullptr;

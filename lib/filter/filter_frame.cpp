@@ -6,10 +6,10 @@
 #include <stdexcept>
 
 #include "formats/error.h"
-#include "lib/core/parallel.h"
 #include "lib/filter/collect.h"
 #include "lib/filter/fit.h"
 #include "lib/filter/resolve.h"
+#include "lib/filter/rows.h"
 #include "lib/filter/unmix.h"
 #include "lib/filter/visible_blur.h"
 
@@ -29,21 +29,13 @@ Channel* float_channel(Image& image, const std::string& name) {
   return channel && !channel->values.empty() ? channel : nullptr;
 }
 
-/// Light too bright for squares in float32 stays as it is.
-bool is_too_bright(float value) { return std::isfinite(value) && !(std::abs(value) < kLargestLight); }
-
-void write_back(const Plane& plane, int width, std::vector<float>& values) {
-  for (std::size_t p = 0; p < values.size(); ++p)
-    if (!is_too_bright(values[p])) values[p] = plane.at(int(p % std::size_t(width)), int(p / std::size_t(width)));
-}
-
 /// Pixels at edges keep their values, if they are numbers: what they see of which surface is not known.
-void write_inside(const LightFrame& frame, const Plane& plane, std::vector<float>& values) {
-  for (std::size_t p = 0; p < values.size(); ++p) {
-    const int x = int(p % std::size_t(frame.width)), y = int(p / std::size_t(frame.width));
-    if (frame.inside.at(x, y) != 0 || frame.use.at(x, y) != 0 || !std::isfinite(values[p]))
-      if (!is_too_bright(values[p])) values[p] = plane.at(x, y);
-  }
+void write_inside(const LightFrame& frame, const EdgePlane& light, std::vector<float>& values) {
+  for_each_row(frame.height, [&](int y) {
+    float* to = values.data() + std::size_t(y) * std::size_t(frame.width);
+    for (int x = 0; x < frame.width; ++x)
+      if ((frame.inside.at(x, y) != 0 || frame.use.at(x, y) != 0 || !std::isfinite(to[x])) && !is_too_bright(to[x])) to[x] = light.own_at(x, y);
+  });
 }
 
 void check_window(std::span<const WindowFrame> window, std::size_t middle) {
@@ -77,35 +69,43 @@ PlainWeights plain_weights(const Image& image, std::span<const WindowFrame> wind
   const auto found = image.numbers.find("framesPerSecond");
   const float fps = found != image.numbers.end() && found->second > 0 ? float(found->second) : 24.0f;
   plain.in_time = plain.reach2 = Plane(image.width, image.height);
-  parallel_chunks(std::size_t(image.height), 16, [&](std::size_t first, std::size_t last) {
-    for (int y = int(first); y < int(last); ++y)
-      for (int x = 0; x < image.width; ++x) {
-        FlowFrame::Step step = window[middle].flow->step(std::size_t(y) * std::size_t(image.width) + std::size_t(x), 1);
-        if (!step.known) step = window[middle].flow->step(std::size_t(y) * std::size_t(image.width) + std::size_t(x), -1);
-        const float speed = step.known ? fps * std::hypot(step.right, step.down) : 0, sigma = blur.sigma(speed);
-        plain.in_time.at(x, y) = blur.hides(speed) ? 1.0f : 0.0f;
-        plain.reach2.at(x, y) = kDeviations2 * sigma * sigma;
-      }
+  for_each_row(image.height, [&](int y) {
+    for (int x = 0; x < image.width; ++x) {
+      FlowFrame::Step step = window[middle].flow->step(std::size_t(y) * std::size_t(image.width) + std::size_t(x), 1);
+      if (!step.known) step = window[middle].flow->step(std::size_t(y) * std::size_t(image.width) + std::size_t(x), -1);
+      const float speed = step.known ? fps * std::hypot(step.right, step.down) : 0, sigma = blur.sigma(speed);
+      plain.in_time.at(x, y) = blur.hides(speed) ? 1.0f : 0.0f;
+      plain.reach2.at(x, y) = kDeviations2 * sigma * sigma;
+    }
   });
   return plain;
 }
 
-/// Puts what a first fit found in the place of the means that values are compared by: a plane follows light that changes where a mean
-/// lags behind. Its variance is that of as many samples, times 3: at the border of a window a plane knows its value by 4 times less than a
-/// mean does, in the middle by as much.
-void compare_by(const Fitted& first, const LightFrame& frame, Collected& collected) {
+/// Puts what a first fit of the sum of the layers finds in the place of the means that values are compared by: a plane follows light that
+/// changes where a mean lags behind. Its variance is that of as many samples, times 3: at the border of a window a plane knows its value by
+/// 4 times less than a mean does, in the middle by as much.
+void compare_by_fit(const LightFrame& frame, int radius, Collected& collected) {
   constexpr float kPlane = 3;
-  parallel_chunks(std::size_t(frame.height), 16, [&](std::size_t begin, std::size_t end) {
-    for (int y = int(begin); y < int(end); ++y)
-      for (int x = 0; x < frame.width; ++x) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          float sum = 0;
-          for (const ColourPlane& layer : first.light)
-            if (!layer[c].empty()) sum += layer[c].at(x, y);
-          collected.mean[c].at(x, y) = sum;
-        }
-        collected.mean_variance.at(x, y) = kPlane * frame.variance.at(x, y) / std::max(first.support.at(x, y), 1.0f);
-      }
+  // A view of the same pixels whose only layer is the sum; the planes are lent and taken back.
+  Collected sum;
+  sum.light.resize(1);
+  for (Plane& plane : sum.light[0]) plane = Plane(frame.width, frame.height);
+  for_each_row(frame.height, [&](int y) {
+    for (std::size_t c = 0; c < 3; ++c)
+      for (const ColourPlane& layer : collected.light)
+        if (!layer[c].empty())
+          for (int x = 0; x < frame.width; ++x) sum.light[0][c].at(x, y) += layer[c].at(x, y);
+  });
+  sum.weight = std::move(collected.weight);
+  sum.mean = std::move(collected.mean);
+  sum.mean_variance = std::move(collected.mean_variance);
+  Fitted first = fit(frame, sum, {.radius = std::min(kFirstRadius, radius)});
+  collected.weight = std::move(sum.weight);
+  collected.mean = std::move(first.light[0]);
+  collected.mean_variance = std::move(sum.mean_variance);
+  for_each_row(frame.height, [&](int y) {
+    for (int x = 0; x < frame.width; ++x)
+      collected.mean_variance.at(x, y) = kPlane * frame.variance.at(x, y) / std::max(first.support.at(x, y), 1.0f);
   });
 }
 
@@ -148,37 +148,20 @@ Image filter_frame(Image image, std::span<const WindowFrame> window, std::size_t
     fit_options.reach2 = &plain.reach2;
   }
   Collected collected = collect(window, middle, plain.frames, plain.in_time.empty() ? nullptr : &plain.in_time);
-  if (fit_options.by_value) {
-    fit_options.radius = std::min(kFirstRadius, options.radius);
-    compare_by(fit(frame, collected, fit_options), frame, collected);
-    fit_options.radius = options.radius;
-  }
+  if (fit_options.by_value) compare_by_fit(frame, options.radius, collected);
   Fitted fitted = fit(frame, collected, fit_options);
   const Coverage coverage(image);
   unmix(frame, collected, coverage, options.radius, int(window.size()), fitted);
 
   for (std::size_t l = 0; l < frame.layers.size(); ++l)
     for (std::size_t c = 0; c < 3; ++c) {
-      Plane &own = fitted.light[l][c], &other = fitted.other[l][c];
-      if (own.empty()) continue;   // black before and after
-      if (!frame.albedo[c].empty())
-        for (int y = 0; y < frame.height; ++y)
-          for (int x = 0; x < frame.width; ++x) {
-            own.at(x, y) *= frame.albedo[c].at(x, y);
-            other.at(x, y) *= frame.albedo[c].at(x, y);
-          }
+      if (fitted.light[l][c].empty()) continue;   // black before and after
+      const EdgePlane light{fitted.light[l][c], fitted.other[l][c], frame.albedo[c]};
       std::vector<float>& values = float_channel(image, channel_name(frame.layers[l], c))->values;
-      if (coverage.known()) write_back(resolved(own, other, coverage, frame.width, frame.height), frame.width, values);
-      else write_inside(frame, own, values);
+      if (coverage.known()) resolve(light, coverage, frame.width, frame.height, values);
+      else write_inside(frame, light, values);
     }
-  if (coverage.known())
-    for (const char* name : {"emission.R", "emission.G", "emission.B", "specular.R", "specular.G", "specular.B", "A"})
-      if (Channel* channel = float_channel(image, name)) {
-        Plane plane(frame.width, frame.height);
-        plane.take(channel->values, frame.width);
-        resolve_passing(frame, coverage, plane);
-        write_back(plane, frame.width, channel->values);
-      }
+  if (coverage.known()) resolve_passing(frame, coverage, image);
   sum_layers(image);
   leave_numbers(image);
   return image;

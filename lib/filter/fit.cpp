@@ -22,6 +22,8 @@ struct ValueMoments {
   Lane one{}, x{}, y{};
 };
 
+void add8(Float8 values, float* to) { store8(load8(to) + values, to); }
+
 class StripFit {
  public:
   StripFit(const LightFrame& frame, const Collected& collected, const FitOptions& options, Fitted& out)
@@ -30,7 +32,6 @@ class StripFit {
       for (std::size_t c = 0; c < 3; ++c)
         if (!collected.light[l][c].empty()) planes_.push_back({&collected.light[l][c], &out.light[l][c]});
     values_.resize(planes_.size());
-    rows_.resize(planes_.size());
   }
 
   void run(int y, std::size_t x0) {
@@ -39,75 +40,67 @@ class StripFit {
     count_ = std::min(kStrip, std::size_t(frame_.width) - x0);
     sums_ = {};
     std::fill(values_.begin(), values_.end(), ValueMoments{});
-    for (int dy = -options_.radius; dy <= options_.radius; ++dy) add_row(dy);
+    for (int dy = -options_.radius; dy <= options_.radius; ++dy)
+      for (std::size_t i = 0; i < count_; i += kEight) add_row(dy, i);   // the last eight may reach into the margin: never stored
     store();
   }
 
  private:
-  const float* plane(const Plane& p, int dy = 0) const { return p.row(y_ + dy) + x0_; }
+  static constexpr std::size_t kMostTaps = 2 * kMargin + 1;
 
-  void add_row(int dy) {
-    Lane one{}, x{}, xx{};
-    std::fill(rows_.begin(), rows_.end(), std::array<Lane, 2>{});
-    Lane weight;
+  /// What eight pixels add from one row of their windows.
+  void add_row(int dy, std::size_t i) {
+    std::array<Float8, kMostTaps> weights;
+    const SurfaceEight surface(frame_, y_, dy, x0_ + i, collected_.weight.row(y_ + dy));
+    Float8 one{}, x{}, xx{};
     for (int dx = -options_.radius; dx <= options_.radius; ++dx) {
-      weigh(dx, dy, weight);
+      Float8 weight = surface.weight(dx);
+      if (options_.reach2) weight *= left_of_reach(dx, dy, i);
+      if (options_.by_value) weight *= agreement(dx, dy, i);
+      weights[std::size_t(dx + options_.radius)] = weight;
       const auto fx = float(dx);
-      for (std::size_t i = 0; i < kStrip; ++i) {
-        one[i] += weight[i];
-        x[i] += weight[i] * fx;
-        xx[i] += weight[i] * (fx * fx);
-      }
-      for (std::size_t v = 0; v < values_.size(); ++v) {
-        const float* value = plane(*planes_[v].from, dy) + dx;
-        const float* own = plane(*planes_[v].from);   // differences from it: what is constant comes out to the bit
-        Lane &sum = rows_[v][0], &sum_x = rows_[v][1];
-        for (std::size_t i = 0; i < count_; ++i) {
-          const float weighted = weight[i] * (value[i] - own[i]);
-          sum[i] += weighted;
-          sum_x[i] += weighted * fx;
-        }
-      }
+      one += weight;
+      x += weight * fx;
+      xx += weight * (fx * fx);
     }
     const auto fy = float(dy);
-    for (std::size_t i = 0; i < kStrip; ++i) {
-      sums_.one[i] += one[i];
-      sums_.x[i] += x[i];
-      sums_.xx[i] += xx[i];
-      sums_.y[i] += one[i] * fy;
-      sums_.xy[i] += x[i] * fy;
-      sums_.yy[i] += one[i] * (fy * fy);
-    }
-    for (std::size_t v = 0; v < values_.size(); ++v)
-      for (std::size_t i = 0; i < kStrip; ++i) {
-        values_[v].one[i] += rows_[v][0][i];
-        values_[v].x[i] += rows_[v][1][i];
-        values_[v].y[i] += rows_[v][0][i] * fy;
+    add8(one, &sums_.one[i]);
+    add8(x, &sums_.x[i]);
+    add8(xx, &sums_.xx[i]);
+    add8(one * fy, &sums_.y[i]);
+    add8(x * fy, &sums_.xy[i]);
+    add8(one * (fy * fy), &sums_.yy[i]);
+    for (std::size_t v = 0; v < values_.size(); ++v) {
+      const float* values = planes_[v].from->row(y_ + dy) + x0_ + i;
+      const Float8 own = load8(planes_[v].from->row(y_) + x0_ + i);   // differences from it: what is constant comes out to the bit
+      Float8 sum{}, sum_x{};
+      for (int dx = -options_.radius; dx <= options_.radius; ++dx) {
+        const Float8 weighted = weights[std::size_t(dx + options_.radius)] * (load8(values + dx) - own);
+        sum += weighted;
+        sum_x += weighted * float(dx);
       }
+      add8(sum, &values_[v].one[i]);
+      add8(sum_x, &values_[v].x[i]);
+      add8(sum * fy, &values_[v].y[i]);
+    }
   }
 
-  void weigh(int dx, int dy, Lane& weight) const {
-    const SurfaceRow surface(frame_, y_, dx, dy, collected_.weight.row(y_ + dy));
-    weight = {};
-    surface.weigh(x0_, count_, weight);
-    if (options_.reach2) {
-      const float* reach2 = plane(*options_.reach2);
-      const auto distance2 = float(dx * dx + dy * dy);
-      for (std::size_t i = 0; i < count_; ++i) {
-        const float left = std::max(0.0f, 1 - distance2 / reach2[i]);
-        weight[i] *= left * left;
-      }
+  Float8 at(const Plane& plane, int dx, int dy, std::size_t i) const { return load8(plane.row(y_ + dy) + std::ptrdiff_t(x0_ + i) + dx); }
+
+  Float8 left_of_reach(int dx, int dy, std::size_t i) const {
+    const Float8 left = 1 - float(dx * dx + dy * dy) / at(*options_.reach2, 0, 0, i);
+    return where(left > 0, left * left);
+  }
+
+  /// value_weight() of the means.
+  Float8 agreement(int dx, int dy, std::size_t i) const {
+    Float8 difference{}, square{};
+    for (const Plane& mean : collected_.mean) {
+      const Float8 own = at(mean, 0, 0, i), off = own - at(mean, dx, dy, i);
+      difference += off * off;
+      square += own * own;
     }
-    if (!options_.by_value) return;
-    const float *r = plane(collected_.mean[0]), *g = plane(collected_.mean[1]), *b = plane(collected_.mean[2]),
-                *other_r = plane(collected_.mean[0], dy) + dx, *other_g = plane(collected_.mean[1], dy) + dx,
-                *other_b = plane(collected_.mean[2], dy) + dx, *variance = plane(collected_.mean_variance),
-                *other_variance = plane(collected_.mean_variance, dy) + dx;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const float dr = r[i] - other_r[i], dg = g[i] - other_g[i], db = b[i] - other_b[i];
-      const float allowed = variance[i] + other_variance[i] + rounding_variance(r[i] * r[i] + g[i] * g[i] + b[i] * b[i]);
-      weight[i] *= value_weight(dr * dr + dg * dg + db * db, allowed);
-    }
+    return value_weight(difference, at(collected_.mean_variance, 0, 0, i) + at(collected_.mean_variance, dx, dy, i) + rounding_variance(square));
   }
 
   void store() {
@@ -120,14 +113,14 @@ class StripFit {
         continue;
       }
       // Coordinates from the window's centre of weight: two slopes are left to solve for.
-      const double mx = double(sums_.x[i]) / one, my = double(sums_.y[i]) / one, pull = double(kPull) * one;
+      const double per_weight = 1 / one, mx = double(sums_.x[i]) * per_weight, my = double(sums_.y[i]) * per_weight, pull = double(kPull) * one;
       const double xx = double(sums_.xx[i]) - one * mx * mx + pull, yy = double(sums_.yy[i]) - one * my * my + pull,
                    xy = double(sums_.xy[i]) - one * mx * my;
       const double determinant = xx * yy - xy * xy;   // positive: pull is
       const double to_x = -(mx * yy - my * xy) / determinant, to_y = -(my * xx - mx * xy) / determinant;
       for (std::size_t v = 0; v < values_.size(); ++v) {
         const ValueMoments& sums = values_[v];
-        const double own = double(planes_[v].from->at(x, y_)), mean = double(sums.one[i]) / one;   // the mean less own
+        const double own = double(planes_[v].from->at(x, y_)), mean = double(sums.one[i]) * per_weight;   // the mean less own
         const double value = own + mean + to_x * (double(sums.x[i]) - mean * double(sums_.x[i])) +
                              to_y * (double(sums.y[i]) - mean * double(sums_.y[i]));
         planes_[v].to->at(x, y_) = float(std::max(value, std::min(own + mean, 0.0)));
@@ -148,7 +141,6 @@ class StripFit {
   };
   std::vector<FittedPlane> planes_;         ///< of layers that are not black
   std::vector<ValueMoments> values_;        ///< by plane
-  std::vector<std::array<Lane, 2>> rows_;   ///< of one row of the window: weight value, weight value dx
 };
 
 }  // namespace
@@ -156,7 +148,7 @@ class StripFit {
 Fitted fit(const LightFrame& frame, const Collected& collected, const FitOptions& options) {
   Fitted out;
   out.support = Plane(frame.width, frame.height);
-  out.light.resize(frame.light.size());
+  out.light.resize(collected.light.size());
   for (std::size_t l = 0; l < out.light.size(); ++l)
     for (std::size_t c = 0; c < 3 && !collected.light[l][c].empty(); ++c) out.light[l][c] = Plane(frame.width, frame.height);
   parallel_chunks(std::size_t(frame.height), 8, [&](std::size_t first, std::size_t last) {

@@ -1,6 +1,7 @@
 // lib/filter/flow_path.h -- where a pixel's surface point is in the frames around, followed along the pixel flow.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -51,6 +52,37 @@ void follow(std::span<const WindowFrame> window, std::size_t from, int direction
 /// The next pixel on the way of one that is at `px`, `py` (pixel centres are whole numbers) in frame `at`; false: lost.
 bool follow_step(const WindowFrame& at, const WindowFrame& next, int direction, const LightFrame& origin, std::size_t origin_x,
                  int origin_y, float& px, float& py);
+
+inline FlowFrame::Step FlowFrame::step(std::size_t pixel, int direction) const {
+  if (empty()) return {};
+  const bool forward = direction > 0 ? has_forward() : !has_backward();   // which of the two is read
+  const float sign = forward == (direction > 0) ? 1.0f : -1.0f;
+  const float u = (forward ? forward_u_ : backward_u_)[pixel], v = (forward ? forward_v_ : backward_v_)[pixel];
+  const bool known = (valid_.empty() || (valid_[pixel] & (forward ? 1u : 2u)) != 0) && std::isfinite(u) && std::isfinite(v);
+  return {sign * u, -sign * v, known};
+}
+
+inline bool follow_step(const WindowFrame& at, const WindowFrame& next, int direction, const LightFrame& origin, std::size_t origin_x,
+                 int origin_y, float& px, float& py) {
+  const LightFrame& frame = *next.light;
+  const auto width = std::size_t(frame.width);
+  const auto pixel = [&](int x, int y) { return std::size_t(y) * width + std::size_t(x); };
+  const FlowFrame::Step there = at.flow->step(pixel(int(px + 0.5f), int(py + 0.5f)), direction);
+  px += there.right;
+  py += there.down;
+  // Also false for a place that is not a number.
+  if (!there.known || !(px > -0.5f && py > -0.5f && px < float(frame.width) - 0.5f && py < float(frame.height) - 0.5f)) return false;
+  const int x = int(px + 0.5f), y = int(py + 0.5f);
+  if (origin.object.row(origin_y)[origin_x] != frame.object.at(x, y)) return false;
+  const float nx = origin.nx.row(origin_y)[origin_x], ny = origin.ny.row(origin_y)[origin_x], nz = origin.nz.row(origin_y)[origin_x];
+  if (nx * frame.nx.at(x, y) + ny * frame.ny.at(x, y) + nz * frame.nz.at(x, y) <
+      PixelSurfaces::kSameNormal * (nx * nx + ny * ny + nz * nz))
+    return false;
+  const FlowFrame::Step back = next.flow->step(pixel(x, y), -direction);
+  const float miss_right = there.right + back.right, miss_down = there.down + back.down;
+  const float allowed = kReturn + kReturnShare * std::sqrt(there.right * there.right + there.down * there.down);
+  return back.known && miss_right * miss_right + miss_down * miss_down <= allowed * allowed;
+}
 
 template <class Body>
 void follow(std::span<const WindowFrame> window, std::size_t from, int direction, int x, int y, const Body& body) {

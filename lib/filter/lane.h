@@ -3,10 +3,32 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 
 namespace tempolux {
 
 inline constexpr std::size_t kStrip = 64;   ///< pixels: their sums stay in the first-level cache
 using Lane = std::array<float, kStrip>;
+
+/// Eight pixels: a register (vector extensions of gcc and clang; other processors take two).
+inline constexpr std::size_t kEight = 8;
+using Float8 = float __attribute__((vector_size(4 * kEight)));
+using Int8 = std::int32_t __attribute__((vector_size(4 * kEight)));   ///< of comparisons: -1 true, 0 false
+
+inline Float8 load8(const float* from) {
+  Float8 values;
+  std::memcpy(&values, from, sizeof values);
+  return values;
+}
+inline Int8 load8(const std::uint32_t* from) {
+  Int8 values;
+  std::memcpy(&values, from, sizeof values);
+  return values;
+}
+inline void store8(Float8 values, float* to) { std::memcpy(to, &values, sizeof values); }
+/// The values where the comparison is true, else 0.
+inline Float8 where(Int8 is, Float8 values) { return reinterpret_cast<Float8>(is & reinterpret_cast<Int8>(values)); }
+inline Float8 abs8(Float8 values) { return reinterpret_cast<Float8>(reinterpret_cast<Int8>(values) & 0x7fffffff); }
 
 }  // namespace tempolux

@@ -3,23 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/core/parallel.h"
 #include "lib/filter/coverage.h"
+#include "lib/filter/rows.h"
 #include "lib/filter/surface_weight.h"
+#include "lib/image/channel_groups.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kRows = 16;            ///< of a chunk
 constexpr int kNear = 2;             ///< means are of 5 x 5 pixels
+/// Beside kFilteredLayers. R, G and B stand for them where a frame has none.
+constexpr std::array<const char*, 11> kReadGroups{"R", "G", "B", "albedo", "Z", "N", "id", "motion", "coverage", "samples", "variance"};
 constexpr float kDarkest = 0.01f;    ///< albedo is taken to be at least this: what is nearly black has nearly no light to filter
-
-template <class Body>
-void for_each_row(int height, const Body& body) {
-  parallel_chunks(std::size_t(height), kRows, [&](std::size_t first, std::size_t last) {
-    for (int y = int(first); y < int(last); ++y) body(y);
-  });
-}
 
 bool has_rgb(const Image& image, const std::string& layer) {
   const Channel* red = image.find(layer.empty() ? "R" : layer + ".R");
@@ -40,16 +35,16 @@ class Preparation {
   Preparation(const Image& image, LightFrame& frame) : image_(image), frame_(frame), width_(std::size_t(frame.width)) {}
 
   void take_surfaces() {
-    const PixelSurfaces surfaces(image_);
+    const auto take_if_there = [&](const char* name, Plane& plane) {
+      plane = Plane(image_.width, image_.height);
+      if (const Channel* channel = image_.find(name); channel && !channel->values.empty()) plane.take(channel->values, image_.width);
+    };
+    take_if_there("N.X", frame_.nx);
+    take_if_there("N.Y", frame_.ny);
+    take_if_there("N.Z", frame_.nz);
     frame_.object = PlaneT<std::uint32_t>(image_.width, image_.height);
-    frame_.object.take(surfaces.object, image_.width);
-    const std::pair<Plane*, const std::vector<float>*> planes[] = {
-        {&frame_.w, &surfaces.w}, {&frame_.w_right, &surfaces.w_right}, {&frame_.w_down, &surfaces.w_down},
-        {&frame_.nx, &surfaces.nx}, {&frame_.ny, &surfaces.ny}, {&frame_.nz, &surfaces.nz}};
-    for (const auto& [plane, samples] : planes) {
-      *plane = Plane(image_.width, image_.height);
-      plane->take(*samples, image_.width);
-    }
+    if (const Channel* ids = image_.find("id.object"); ids && !ids->ids.empty()) frame_.object.take(ids->ids, image_.width);
+    take_depth();
     const Coverage coverage(image_);
     frame_.use = Plane(image_.width, image_.height);
     frame_.inside = Plane(image_.width, image_.height);
@@ -60,6 +55,29 @@ class Preparation {
         const bool whole = coverage.known() ? coverage.is_whole(int(x0 + i), y) : inside[i] != 0;
         frame_.use.row(y)[x0 + i] = whole ? 1.0f : 0.0f;
         frame_.inside.row(y)[x0 + i] = whole ? inside[i] : 0.0f;
+      }
+    });
+  }
+
+  /// w and its slopes, as PixelSurfaces has them.
+  void take_depth() {
+    for (Plane* plane : {&frame_.w, &frame_.w_right, &frame_.w_down}) *plane = Plane(image_.width, image_.height);
+    const Channel* z = image_.find("Z");
+    if (!z || z->values.empty()) return;
+    for_each_row(frame_.height, [&](int y) {
+      float* w = frame_.w.row(y);
+      const float* depth = z->values.data() + std::size_t(y) * width_;
+      for (std::size_t x = 0; x < width_; ++x) w[x] = PixelSurfaces::inverse_depth(depth[x]);
+    });
+    for_each_row(frame_.height, [&](int y) {
+      const float *w = frame_.w.row(y), *above = frame_.w.row(y - 1), *below = frame_.w.row(y + 1);
+      const std::uint32_t *object = frame_.object.row(y), *object_above = frame_.object.row(y - 1), *object_below = frame_.object.row(y + 1);
+      float *right = frame_.w_right.row(y), *down = frame_.w_down.row(y);
+      for (int x = 0; x < frame_.width; ++x) {
+        const bool before = x > 0 && object[x - 1] == object[x], after = x + 1 < frame_.width && object[x + 1] == object[x];
+        right[x] = PixelSurfaces::smaller(w[x] - w[x - 1], before, w[x + 1] - w[x], after);
+        const bool upper = y > 0 && object_above[x] == object[x], lower = y + 1 < frame_.height && object_below[x] == object[x];
+        down[x] = PixelSurfaces::smaller(w[x] - above[x], upper, below[x] - w[x], lower);
       }
     });
   }
@@ -214,6 +232,13 @@ class Preparation {
 };
 
 }  // namespace
+
+bool is_read_by_others(const std::string& channel) {
+  const auto is_of = [&](const char* group) { return is_in_group(channel, group); };
+  return channel.starts_with("diffuse.variance") || std::any_of(kFilteredLayers.begin(), kFilteredLayers.end(), is_of) ||
+         std::any_of(kReadGroups.begin(), kReadGroups.end(), is_of);
+}
+bool is_read_to_filter(const std::string& channel) { return is_read_by_others(channel) || is_in_group(channel, "layers") || channel == "A"; }
 
 LightFrame::LightFrame(const Image& image) : width(image.width), height(image.height) {
   Preparation preparation(image, *this);

@@ -22,6 +22,10 @@ enum class NoiseKnowledge {
 /// Larger values of light are left as they are: squares stay finite.
 inline constexpr float kLargestLight = 1e18f;
 
+/// Does the filter read a channel of this name of the frame that it filters; of those around it?
+bool is_read_to_filter(const std::string& channel);
+bool is_read_by_others(const std::string& channel);
+
 /// A coloured plane.
 using ColourPlane = std::array<Plane, 3>;
 

@@ -45,4 +45,31 @@ class SurfaceRow {
   float dx_, dy_;
 };
 
+/// The same of eight pixels (x + i, y) and those (dx, dy) away, for one dy: what is the pixels' own is taken once.
+class SurfaceEight {
+ public:
+  SurfaceEight(const LightFrame& frame, int y, int dy, std::size_t x, const float* use)
+      : object_(load8(frame.object.row(y) + x)), nx_(load8(frame.nx.row(y) + x)), ny_(load8(frame.ny.row(y) + x)), nz_(load8(frame.nz.row(y) + x)),
+        facing_(PixelSurfaces::kSameNormal * (nx_ * nx_ + ny_ * ny_ + nz_ * nz_)), w_right_(load8(frame.w_right.row(y) + x)),
+        other_object_(frame.object.row(y + dy) + x), other_w_(frame.w.row(y + dy) + x), other_nx_(frame.nx.row(y + dy) + x),
+        other_ny_(frame.ny.row(y + dy) + x), other_nz_(frame.nz.row(y + dy) + x), other_use_(use + x) {
+    const Float8 w = load8(frame.w.row(y) + x), down = load8(frame.w_down.row(y) + x) * float(dy);
+    expected_ = w + down;
+    allowed_ = PixelSurfaces::kSameDepth * w + abs8(down);
+  }
+
+  Float8 weight(int dx) const {
+    const Float8 facing = nx_ * load8(other_nx_ + dx) + ny_ * load8(other_ny_ + dx) + nz_ * load8(other_nz_ + dx);
+    const Float8 right = w_right_ * float(dx), off = abs8(load8(other_w_ + dx) - expected_ - right);
+    const Int8 same = (object_ == load8(other_object_ + dx)) & (facing >= facing_) & (off <= allowed_ + abs8(right));
+    return where(same, load8(other_use_ + dx));
+  }
+
+ private:
+  Int8 object_;
+  Float8 nx_, ny_, nz_, facing_, w_right_, expected_, allowed_;
+  const std::uint32_t* other_object_;
+  const float *other_w_, *other_nx_, *other_ny_, *other_nz_, *other_use_;
+};
+
 }  // namespace tempolux

@@ -15,7 +15,10 @@ class Unmixing {
 
   void pixel(int x, int y) {
     const bool own = !is_known(x, y);
-    if (!own && coverage_.other(x, y) == 0) return;
+    const bool other = coverage_.other(x, y) != 0;
+    if (!own && !other) return;
+    for (std::size_t l = 0; other && l < frame_.light.size(); ++l)
+      for (std::size_t c = 0; c < 3 && !is_black(l); ++c) fitted_.other[l][c].at(x, y) = fitted_.light[l][c].at(x, y);
     sums_ = {};
     count_ = 0;
     for (int dy = -radius_; dy <= radius_; ++dy)
@@ -85,7 +88,11 @@ class Unmixing {
 }  // namespace
 
 void unmix(const LightFrame& frame, const Collected& collected, const Coverage& coverage, int radius, int frames, Fitted& fitted) {
-  fitted.other = fitted.light;
+  // What is in `other` counts in pixels alone that have a share of it.
+  fitted.other.resize(fitted.light.size());
+  const bool any_other = coverage.has_other();
+  for (std::size_t l = 0; l < fitted.light.size(); ++l)
+    for (std::size_t c = 0; c < 3 && any_other && !fitted.light[l][c].empty(); ++c) fitted.other[l][c] = Plane(frame.width, frame.height);
   // Only light of pixels that are known is read, only that of others written: any order will do.
   parallel_chunks(std::size_t(frame.height), 8, [&](std::size_t first, std::size_t last) {
     Unmixing unmixing(frame, collected, coverage, radius, frames, fitted);

@@ -290,16 +290,17 @@ void read_lines(const ByteFile& file, const PixelWindow& data, Image& image, int
 
 bool is_rgb(const std::string& channel) { return channel == "R" || channel == "G" || channel == "B"; }
 
-Image read_data_window(const ByteFile& file, const ExrClaims& claims, bool only_rgb) {
+Image read_data_window(const ByteFile& file, const ExrClaims& claims, const ExrReadOptions& options) {
   Image image;
   image.width = int(claims.data.width());
   image.height = int(claims.data.height());
   std::set<std::string> names, rgb;
   for (const auto& channel : claims.channels)
     if (is_rgb(channel.name)) rgb.insert(channel.name);
-  const bool all = !only_rgb || rgb.size() < 3;
+  const bool all = !options.only_rgb || rgb.size() < 3;
+  const auto wanted = [&](const std::string& name) { return (all || is_rgb(name)) && (!options.wanted || options.wanted(name)); };
   for (const auto& channel : claims.channels)
-    if ((all || is_rgb(channel.name)) && names.insert(channel.name).second)
+    if (wanted(channel.name) && names.insert(channel.name).second)
       channel.type == 0 ? image.add_ids(channel.name) : image.add(channel.name);
   std::sort(image.channels.begin(), image.channels.end(),
             [](const Channel& a, const Channel& b) { return a.name < b.name; });
@@ -376,7 +377,7 @@ Image load_exr(const std::string& path, const ExrReadOptions& options) {
   const ExrClaims claims = read_exr_claims(file, options.max_pixels);
   Image image;
   try {
-    image = read_data_window(file, claims, options.only_rgb);
+    image = read_data_window(file, claims, options);
   } catch (const InputError&) {
     throw;
   } catch (const ResourceError&) {

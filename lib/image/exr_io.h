@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "lib/image/image.h"
@@ -36,6 +37,7 @@ struct ExrReadOptions {
   std::uint64_t max_pixels = 512ull << 20;  ///< of the data window and of the display window
   bool allow_nan = false;                   ///< NaN anywhere and infinity in colour are let through
   bool only_rgb = false;                    ///< of a file that has R, G and B these alone
+  std::function<bool(const std::string&)> wanted{}; ///< which channels, by their names; empty: all
 };
 
 /// Reads a scan-line or tiled single-part EXR (of a multi-part file: the first part; of mip maps: the full

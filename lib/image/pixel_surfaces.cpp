@@ -10,20 +10,9 @@ namespace {
 
 constexpr std::size_t kRows = 16;   ///< of a chunk
 
-float inverse_depth(float z) {
-  constexpr float kNearest = 1e-18f;   // m; 1/Z squared stays finite
-  return z > 0 && z < 3e38f ? 1 / std::max(z, kNearest) : 0;
-}
-
 std::vector<float> channel_or_zero(const Image& image, const char* name) {
   const Channel* channel = image.find(name);
   return channel && !channel->values.empty() ? channel->values : std::vector<float>(image.pixel_count());
-}
-
-/// The one nearer to 0; of one that is not known the other.
-float smaller(float a, bool a_known, float b, bool b_known) {
-  if (!a_known || !b_known) return a_known ? a : b_known ? b : 0;
-  return std::abs(a) < std::abs(b) ? a : b;
 }
 
 }  // namespace

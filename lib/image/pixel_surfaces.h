@@ -1,6 +1,8 @@
 // lib/image/pixel_surfaces.h -- do two pixels of a frame see one smooth surface? By their depth, normal and object.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -21,6 +23,17 @@ class PixelSurfaces {
   static constexpr float kSameDepth = 1e-3f;
 
   explicit PixelSurfaces(const Image& image);
+
+  /// w of a depth; 0 where nothing is seen.
+  static float inverse_depth(float z) {
+    constexpr float kNearest = 1e-18f;   // m; 1/Z squared stays finite
+    return z > 0 && z < 3e38f ? 1 / std::max(z, kNearest) : 0;
+  }
+  /// A slope of w from the differences to the pixel before and to the one after: the one nearer to 0; of one that is not known the other.
+  static float smaller(float before, bool before_known, float after, bool after_known) {
+    if (!before_known || !after_known) return before_known ? before : after_known ? after : 0;
+    return std::abs(before) < std::abs(after) ? before : after;
+  }
 
   int width() const { return width_; }
   int height() const { return height_; }

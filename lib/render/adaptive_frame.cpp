@@ -12,6 +12,7 @@ void render_adaptive(const RenderScene& scene, const CameraView& view, const Fra
   around.mask = noise.looked_at();
   for_each_pixel(view, around, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     PixelSum half[2];
+    half[0].for_filter = half[1].for_filter = options.for_filter;
     for_each_sample(scene, view, options.seed, options.known, pixel, x, y, 0, first, image.halves_of(pixel), counts,
                     [&](int s, const Layers& sample) { half[s < noise.first_half() ? 0 : 1].add(sample); });
     noise.note(pixel, half[0], half[1]);

@@ -21,6 +21,8 @@ struct FrameOptions {
   /// > 0: after `samples` everywhere, more where pixels are uncertain (lib/render/adaptive_frame.h).
   double pixel_error = 0;
   int adaptive_limit = 1024;
+  /// The frame will be filtered (lib/filter): noise that counts for pixel_error is that of light which passes the filter, layer specular.
+  bool for_filter = false;
   bool sample_halves = false;           ///< keep LayerImage::sample_halves
   const KnownLight* known = nullptr;    ///< where paths may end
   std::vector<std::uint8_t> mask;       ///< by pixel, 0: leave it out; empty: all pixels

@@ -46,7 +46,7 @@ void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& 
   state.mean = (first.value() + second.value()) / n;
   state.sharp = sharp / n;
   state.sharp_variance = sample_variance(n, sharp, first.sharp_square + second.sharp_square);
-  state.smooth_difference = (first.value() - first.sharp) / a - (b > 0 ? (second.value() - second.sharp) / b : 0);
+  if (!options_.for_filter) state.smooth_difference = (first.value() - first.sharp) / a - (b > 0 ? (second.value() - second.sharp) / b : 0);
 }
 
 /// body(pixel) for the neighbours of a pixel, at most `near` away.

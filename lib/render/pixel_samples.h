@@ -14,11 +14,13 @@ namespace tempolux {
 struct PixelSum {
   LayersT<double> layers;
   double sharp = 0, sharp_square = 0;   ///< what has edges, all layers but direct: mean channel
+  bool for_filter = false;              ///< FrameOptions::for_filter: layer specular alone is `sharp`
   void add(const Layers& sample) {
     for (std::size_t l = 0; l < kLayerCount; ++l) layers.value[l] += Rgbd(sample.value[l]);
     layers.coverage += double(sample.coverage);
-    const Rgb s = sample[Layer::emission] + sample[Layer::specular] + sample[Layer::caustic] + sample[Layer::indirect] +
-                  sample[Layer::volume];
+    const Rgb s = for_filter ? sample[Layer::specular]
+                             : sample[Layer::emission] + sample[Layer::specular] + sample[Layer::caustic] + sample[Layer::indirect] +
+                                   sample[Layer::volume];
     const double v = channel_mean(Rgbd(s));
     sharp += v;
     sharp_square += v * v;

@@ -13,6 +13,10 @@ for threads in 1 2 3 7; do
   st-filter f.##.exr --frames 8-12 -o t.##.exr -q --threads $threads
   cmp g.10.exr t.10.exr || bad "$threads threads: other bytes"
 done
+st-filter f.##.exr --frames 8-12 --channels RGBA,Z -o c.##.exr -q || bad 'channels'
+[ "$(tempolux-info --json c.10.exr | grep -o '"channel": *"[^"]*"' | cut -d'"' -f4 | tr '\n' ' ')" = 'A B G R Z ' ] || bad 'other channels than were asked for'
+st-filter f.08.exr f.09.exr f.10.exr f.11.exr f.12.exr --channels RGBA,Z -o c.exr -q && tempolux-info --diff c.exr c.10.exr >/dev/null || bad 'channels of one file'
+expect 2 "no channels 'P'; there are A, B" st-filter f.10.exr --channels P -o made.exr
 frame-render "$scene" -q --size 24x14 --spp 1 --integrator path -o small.exr
 frame-render "$scene" -q --size 48x27 --spp 1 --integrator path --channels RGBA -o plain.exr
 expect 2 'flow of 24x14 pixels, the frame has 48x27' st-filter f.10.exr --flow small.exr -o made.exr

@@ -115,13 +115,14 @@ constexpr ManualText kTexts[] = {
      "Takes noise out of a frame of few samples: light is collected from the frames before and after along the pixel flow and a plane is fitted "
      "to it around each pixel. A pixel counts if it sees the same surface (id.object, Z, N) and differs by no more than both "
      "pixels' noise explains. Noise is told by the channels variance or diffuse.variance, or by neighbours where samples is below "
-     "2. Where albedo is there light alone is filtered, not textures. Emission and specular pass. With coverage edges are put "
+     "2. Where albedo is there light alone is filtered, not textures. Emission and specular pass: frame-render --for-filter gives pixels that show "
+     "mirrors and glass more samples. With coverage edges are put "
      "together from the surfaces that a pixel sees, else they stay as they are.\n"
      "\n"
      "Frames of other programs, which know neither variance nor samples, are filtered as far as a viewer cannot see it.",
      "frame .exr: read and written (formats/frames/frames.md)\n"
      "flow .exr: where pixels go and came from (formats/flow/flow.md)",
-     "frame-render room.glb --frames 0-47 --spp 1 --pixel-error 0 --seed-mode frame --irradcache c.####.irradcache "
+     "frame-render room.glb --frames 0-47 --spp 2 --for-filter --pixel-error 0.016 --seed-mode frame --irradcache c.####.irradcache "
      "--channels RGBA,layers,Z,N,id,albedo,motion,coverage,samples -o f.####.exr\n"
      "st-filter f.####.exr --frames 0-47 -o filtered.####.exr\n"
      "# One frame, by its five files.\n"

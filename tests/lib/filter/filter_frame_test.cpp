@@ -213,6 +213,28 @@ TEST(Filter, EdgesArePutTogetherByCoverage) {
     }
 }
 
+/// What passes the filter at an edge pixel is the mean of n samples, 6, where both sides have 2: one sample is not believed; of 17 the mean counts as much
+/// as what 16 rays of coverage put together; of 129 by 8^(5/3) = 32.
+TEST(Filter, ManySamplesOfWhatPassesAreBelievedAtEdges) {
+  for (const auto& [samples, expected] : {std::pair{1.0f, 2.0f}, {17.0f, 4.0f}, {129.0f, 2 + 4 * 32.0f / 33}}) {
+    Image frame = wall(40, 24);
+    grey(frame, "direct", everywhere(1));
+    grey(frame, "specular", [](int x, int) { return x == 20 ? 6.0f : 2.0f; });
+    plane(frame, "samples", everywhere(samples));
+    frame.add_ids("coverage");
+    for (int y = 0; y < 24; ++y)
+      for (int x = 20; x < 40; ++x) {
+        frame.find("id.object")->ids[std::size_t(y * 40 + x)] = 1;
+        if (x == 20) frame.find("coverage")->ids[std::size_t(y * 40 + x)] = 4u << 12;
+      }
+    const Image out = filtered({frame});
+    for (int y = 0; y < 24; ++y) {
+      EXPECT_NEAR(at(out, "specular.G", 20, y), expected, 1e-5f) << samples;
+      EXPECT_EQ(at(out, "specular.G", 10, y), 2.0f);
+    }
+  }
+}
+
 TEST(Filter, EdgesStayAsTheyAreWhereCoverageIsNotKnown) {
   Image frame = wall(40, 24);
   Noise noise(1);

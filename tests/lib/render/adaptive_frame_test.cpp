@@ -90,6 +90,23 @@ TEST(AdaptiveFrame, OneFirstSampleIsEnoughToRefine) {
   EXPECT_NEAR(more / some, std::pow(2.0, 0.75), 0.05 * std::pow(2.0, 0.75));
 }
 
+/// For a filter light in mirrors alone asks for more samples: a matte room takes none, and has the bytes of fixed samples.
+TEST(AdaptiveFrame, ForAFilterOnlyWhatPassesItAsks) {
+  const Cornell c;
+  const NoLight none(c.tracer);
+  FrameOptions options;
+  options.known = &none.known;
+  options.samples = 2;
+  const RenderedFrame fixed = render_frame(c.render_scene(), c.view, options);
+  options.pixel_error = 0.001;
+  EXPECT_GT(render_frame(c.render_scene(), c.view, options).samples_per_pixel, 20);
+  options.for_filter = true;
+  const RenderedFrame frame = render_frame(c.render_scene(), c.view, options);
+  EXPECT_EQ(frame.samples_per_pixel, 2);
+  for (std::size_t p = 0; p < frame.mean.pixels.size(); ++p)
+    for (std::size_t l = 0; l < kLayerCount; ++l) EXPECT_EQ(frame.mean.pixels[p].value[l], fixed.mean.pixels[p].value[l]);
+}
+
 /// A bright sheet and a black one that meet in the middle of a column of pixels: of four samples, stratified, two are on either.
 /// Asked for more than it may have, a pixel that has an edge or is beside one takes all: that column and one on either side.
 /// Where they meet between two columns no pixel's samples differ, but those of its neighbours do: both columns take all.
