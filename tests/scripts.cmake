@@ -49,6 +49,9 @@ set_tests_properties(pipelines.filter PROPERTIES TIMEOUT 300)
 add_test(NAME pipelines.dynamic COMMAND sh tests/pipelines/dynamic.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.dynamic PROPERTIES TIMEOUT 300)
+add_test(NAME pipelines.split COMMAND sh tests/pipelines/split.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.split PROPERTIES TIMEOUT 300)
 add_test(NAME pipelines.content_camera COMMAND sh tests/pipelines/content_camera.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.drop_kind COMMAND sh tests/pipelines/drop_kind.sh $<TARGET_FILE_DIR:scene-plan>

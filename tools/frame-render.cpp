@@ -88,7 +88,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   const Tracer tracer(frame, standing);
   Lights lights(frame, input.emission(frame.frame));
   const RenderScene scene{tracer, lights};
-  const tools::IndirectLight light(tool, options.light, tracer, number);
+  const tools::IndirectLight light(tool, options.light, tracer, lights, tool.common().seed_for_frame(number), number);
 
   if (options.integrator != "path" || options.learn_lights) lights.weigh_sky_by_cosine();
   std::unique_ptr<LightGrid> grid;
@@ -144,6 +144,10 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--integrator photons: name the photon map with --photons FILE");
   if (!options.light.dynamic.empty() && options.light.photons.empty())
     throw InputError("--dynamic: what movers change is nothing alone; name the segment's static map with --photons FILE");
+  if (!options.light.high.empty() && options.light.points.empty())
+    throw InputError("--high: name the low part of the points with --points FILE");
+  if (!options.light.high.empty() && !options.light.irradcache.empty())
+    throw InputError("--high: records of --irradcache hold the high part; give irradcache-build records --high, and the whole points here");
   if (options.integrator == "cache" && options.light.irradcache.empty())
     throw InputError("--integrator cache: name the cache with --irradcache FILE");
   if (options.integrator == "path" && !options.traces_paths())
@@ -185,6 +189,12 @@ void add_light_options(tools::Tool& tool, Options& options) {
          ".irradpoints file, or a pattern: paths end where a point stands for what they meet; with --irradcache those "
          "that find no record")
       ->type_name("FILE");
+  app.add_option("--high", options.light.high,
+                 ".irradpoints file of photonmap-split, the high part, or a pattern: --points is then the low one; without --irradcache bright "
+                 "points are sampled explicitly")
+      ->type_name("FILE");
+  app.add_option("--high-samples", options.light.high_samples, "explicit samples of --high for each sample of a pixel")
+      ->capture_default_str()->check(tools::number_between(1, 1 << 16));
   app.add_option("--neighbours", options.light.photon_light.neighbours,
                  "photons per density estimate of indirect light")
       ->capture_default_str()

@@ -43,7 +43,10 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (mode == "both" && options.photons.empty() == options.points.empty())
     throw InputError("name either the photon map, --photons FILE, or the points made from it, --points FILE");
   if (mode == "both") refuse_unread(app, "a run without a step", {"--map", "--update", "--dynamic"});
-  if (mode == "records" && !options.update.empty()) refuse_unread(app, "records --update", {"--records"});
+  if (mode == "records" && !options.update.empty()) refuse_unread(app, "records --update", {"--records", "--high"});
+  if (!options.high.empty() && options.points.empty()) throw InputError("--high: name the low part with --points FILE");
+  if (!options.high.empty() && options.radii == "hessian") throw InputError("--high: radii follow from distances; leave out --radii hessian");
+  if (options.high.empty()) refuse_unread(app, "a run without --high", {"--high-samples"});
   if (mode == "points" && options.dynamic.size() > 1) throw InputError("--dynamic: points take one map, that of their frame");
   tools::check_influence(options.influence);
   if (options.update.empty() != options.dynamic.empty())
@@ -51,7 +54,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (!options.update.empty() && options.map == "static")
     throw InputError("--update: makes points of the whole scene; leave out --map static");
   if (mode == "points")
-    refuse_unread(app, "points", {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--records", "--rays", "--error-bound", "--radii", "--free-radii",
+    refuse_unread(app, "points", {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--high", "--high-samples", "--records", "--rays", "--error-bound", "--radii", "--free-radii",
                                   "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points",
@@ -71,6 +74,11 @@ void add_options(tools::Tool& tool, Options& options) {
       ->type_name("FILE");
   app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons")
       ->type_name("FILE");
+  app.add_option("--high", options.high,
+                 ".irradpoints file of photonmap-split, the high part; --points is then the low one: bright points are sampled explicitly")
+      ->type_name("FILE");
+  app.add_option("--high-samples", options.gather.bright_samples, "explicit samples of a record")
+      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
   app.add_option("--records", options.records, ".irradcache file to extend: its records are kept")->type_name("FILE");
   tool.count_option("--point-count", options.point_count, "irradiance points per side of all surfaces that stand; what moves gets as many per area");
   app.add_option("--map", options.map,

@@ -21,6 +21,7 @@
 #include "lib/plan/plan_files.h"
 #include "lib/render/choose_indirect.h"
 #include "lib/render/choose_moving.h"
+#include "lib/render/choose_split.h"
 #include "tools/common/option_words.h"
 #include "tools/common/pilot.h"
 #include "tools/common/plan_views.h"
@@ -49,7 +50,7 @@ bool write_if_changed(const std::string& path, const std::string& content) {
 }
 
 struct Options {
-  std::string scene, folder = "plan", tidy_folder, indirect = "auto", moving = "auto";
+  std::string scene, folder = "plan", tidy_folder, indirect = "auto", moving = "auto", split = "auto";
   double tidy_hours = 24, pixel_error = 0.016;
   int rays = 500;
   bool estimate = false, json = false;
@@ -122,6 +123,17 @@ void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options
   use_moving(plan, kMovingMethods[std::size_t(choice.method)], choice.because);
 }
 
+/// Decides whether bright points are divided from the others: as asked, or by a pilot of the middle one of the frames asked for.
+void decide_split(tools::Tool& tool, tools::SceneInput& input, const Options& options, int camera, Plan& plan) {
+  if (plan.photon_kinds.empty() || plan.indirect == "paths") return;
+  if (options.split != "auto") return use_split(plan, options.split == "on", "--split " + options.split);
+  tool.stats().phase("pilot of bright spots", true);
+  const SceneFrame frame = input.at(plan.frames[plan.frames.size() / 2]);
+  const CameraView view(frame.camera(camera), frame.origin, options.run.width, options.run.height);
+  const SplitChoice choice = choose_split(pilot_split(frame, input.emission(frame.frame), view, 0));
+  use_split(plan, choice.split, choice.because);
+}
+
 void plan_range(tools::Tool& tool, Options& options, bool write) {
   while (options.folder.size() > 1 && options.folder.back() == '/') options.folder.pop_back();
   std::optional<tools::Output> makefile;
@@ -140,6 +152,7 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
   Plan plan = make_plan(scene, tool.common().frames, camera, input.time(), input.has_media() ? media : MediaHash{});
   decide_indirect(tool, input, options, camera, plan);
   decide_moving(tool, input, options, camera, plan);
+  decide_split(tool, input, options, camera, plan);
   for (const std::string& warning : plan.warnings) tool.warn(options.scene + ": " + warning);
   if (write && !plan.photon_kinds.empty()) {
     tool.stats().phase("views", true);
@@ -195,6 +208,10 @@ int main(int argc, char** argv) {
                  "points), records (they, too); auto: the cheapest by a pilot")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "anew", "light", "records"}));
+  app.add_option("--split", options.split,
+                 "are bright points divided from the others and sampled explicitly: on, off; auto: where a pilot finds that it pays")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "on", "off"}));
   const auto add = [&](CLI::Option* option) {
     tool.leave_out_of_history(option);
     return option;

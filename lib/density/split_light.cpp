@@ -106,6 +106,24 @@ DividedPoints divide(std::span<const IrradiancePointRecord> points, const Energy
   return parts;
 }
 
+std::vector<float> join_parts(std::span<IrradiancePointRecord> low, std::span<const IrradiancePointRecord> high) {
+  std::vector<float> shares(low.size(), 0.0f);
+  std::size_t at = 0;
+  for (const IrradiancePointRecord& bright : high) {
+    while (at < low.size() && (low[at].position != bright.position || low[at].normal != bright.normal || low[at].object != bright.object)) ++at;
+    if (at == low.size()) return {};
+    double part = 0, whole = 0;
+    for (const auto kind : {&IrradiancePointRecord::direct, &IrradiancePointRecord::caustic, &IrradiancePointRecord::indirect})
+      for (std::size_t c = 0; c < 3; ++c) {
+        (low[at].*kind)[c] += (bright.*kind)[c];
+        part += double((bright.*kind)[c]);
+        whole += double((low[at].*kind)[c]);
+      }
+    shares[at++] = whole > 0 ? float(std::min(1.0, part / whole)) : 0.0f;
+  }
+  return shares;
+}
+
 ChosenPhotons choose_kinds(const PhotonBlock& block, unsigned kinds) {
   ChosenPhotons parts;
   parts.chosen.group = parts.rest.group = block.group;

@@ -41,6 +41,10 @@ struct DividedPoints {
 };
 DividedPoints divide(std::span<const formats::IrradiancePointRecord> points, const EnergyCells& cells);
 
+/// The other way: adds the high part to the low one, which becomes the whole, to the last bit. Returns for each point the share that
+/// the high part has of its light, all kinds and channels added; nothing if `high` holds a point that `low` has not, in its order.
+std::vector<float> join_parts(std::span<formats::IrradiancePointRecord> low, std::span<const formats::IrradiancePointRecord> high);
+
 /// Photons of the kinds in `kinds` (bit k: PathKind k), and the others.
 struct ChosenPhotons {
   formats::PhotonBlock chosen, rest;

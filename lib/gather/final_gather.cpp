@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/gather/bright_points.h"
 #include "lib/gather/gathered_record.h"
 #include "lib/gather/hemisphere.h"
 
@@ -47,7 +48,7 @@ struct Shots {
 }  // namespace
 
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options)
-    : reach_(tracer), incoming_(tracer, lights, points, options.near_factor), options_(options), few_(std::min(kFewRays, options.rays)) {
+    : reach_(tracer), incoming_(tracer, lights, points, options.near_factor, options.bright), options_(options), few_(std::min(kFewRays, options.rays)) {
   for (std::size_t i = 0; i < strata_.size(); ++i) strata_[i] = GatherStrata(options.rays << i);
 }
 
@@ -105,6 +106,10 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     sky.radiance[c] += shots.radiance[i] * (1 / float(1 + further[c]));
   }
   sky.irradiance_and_rotational_gradient(shots.directions.frame(), record);
+  if (options_.bright) {
+    const PathRandom random(options_.seed ^ 0x6272696768740001ull, gather_key(from.position, normal, options_.seed));
+    add_bright_light(options_.bright->arriving({from, normal, coated ? &bsdf : nullptr}, options_.bright_samples, random, counts), record);
+  }
   return record;
 }
 

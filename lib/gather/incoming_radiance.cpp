@@ -5,6 +5,7 @@
 
 #include "lib/core/frame.h"
 #include "lib/core/sampling.h"
+#include "lib/gather/bright_points.h"
 #include "lib/gather/medium_event.h"
 #include "lib/material/inside.h"
 #include "lib/material/seen_side.h"
@@ -37,6 +38,7 @@ struct IncomingRadiance::Further {
   Rgb weight{0.0f};
   std::size_t of = 0;        ///< the gather ray
   bool sees_lamps = false;   ///< beyond events S: light of kind caustic where it started, which no point has told
+  bool low = false;          ///< what it meets at its end brings the low part: the high one is sampled where it started
 };
 
 /// Where what is found along the way goes.
@@ -48,8 +50,8 @@ struct IncomingRadiance::Gathered {
   RadianceSource* source_of(const Further& from) const { return sources.empty() ? nullptr : &sources[from.of]; }
 };
 
-IncomingRadiance::IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor)
-    : tracer_(tracer), lights_(lights), points_(points), near_factor_(near_factor) {
+IncomingRadiance::IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor, const BrightPoints* bright)
+    : tracer_(tracer), lights_(lights), points_(points), near_factor_(near_factor), bright_(bright) {
   for (const Material& material : tracer.frame().materials)
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
 }
@@ -122,7 +124,7 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
   const Gathered to{counts, next, sources};
   follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
     distance[i] = met.distance;
-    radiance[i] = reflected(met, point, {{}, keys[i], Rgb(1.0f), i}, 0, to);
+    radiance[i] = reflected(met, point, {{}, keys[i], Rgb(1.0f), i, false, bright_ != nullptr}, 0, to);
   }, [&](std::size_t i) { return keys[i]; }, [&](std::size_t i, const MediumPoint& collision, float way) {
     distance[i] = way;
     radiance[i] = scattered_in_media(collision, {{}, keys[i], Rgb(1.0f), i}, to);
@@ -177,6 +179,7 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
       const bool even = points_.is_even(*point);
       if (source) source->partial |= !even;
       result = scale * (even ? point->all : beside_edge(met, *point, random, to.counts));
+      if (from.low) result *= bright_->left(*point, met.distance);
     } else {
       if (source) source->partial = true;
       result = scale * scattered(met, point, from, scale, random, depth, to);
@@ -196,6 +199,7 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   Further beyond = from;
   beyond.key = mix64(from.key + 2);
   beyond.weight *= weight;
+  beyond.low = false;
   if (source) source->partial = true;
   return result + weight * reflected_beyond(met.hit, travel, met.distance, beyond, depth + 1, to,
                                             solid && front == next.transmitted ? &material : nullptr);
@@ -243,7 +247,7 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
   if (!(random.get1(1, Purpose::roulette) < survival)) return light;
   weight *= 1 / survival;
   const Vec3 travel = sample_hg(at.g, at.travel, random.get2(1, Purpose::phase));
-  to.further.push_back({{at.position, travel, 0, INFINITY}, mix64(from.key + 1), weight, from.of, true});
+  to.further.push_back({{at.position, travel, 0, INFINITY}, mix64(from.key + 1), weight, from.of, true, false});
   return light;
 }
 
@@ -258,6 +262,10 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   if (point) irradiance = points_.point(*point).caustic;
   if (point && points_.is_even(*point) && met.distance >= points_.spacing() * threshold(random)) irradiance += points_.point(*point).direct;
   else irradiance += sampled_light(met, side, random, to.counts);
+  if (bright_) {
+    const Bsdf* const coat = met.bsdf->has_specular() ? met.bsdf : nullptr;
+    irradiance += Rgb(bright_->arriving({met.hit, side.normal, coat, true}, 1, random, to.counts).irradiance);
+  }
   // Each by itself. Spread over near hits side by side (a sequence), records in corners had half the noise, but came out 5 %
   // bright: cells get further rays by what neighbours saw, on which their own value must not depend.
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
@@ -268,7 +276,7 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
     if (!(random.get1(1, Purpose::roulette) < survival)) return irradiance;
     weight *= 1 / survival;
   }
-  to.further.push_back({spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point});
+  to.further.push_back({spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point, bright_ != nullptr});
   return irradiance;
 }
 

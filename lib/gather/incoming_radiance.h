@@ -31,7 +31,8 @@ struct RadianceSource {
   bool mover = false;            ///< a surface on the way moves in the segment
 };
 
-struct MediumPoint;   // lib/gather/medium_event.h
+struct MediumPoint;    // lib/gather/medium_event.h
+class BrightPoints;    // lib/gather/bright_points.h
 
 /// Follows rays from places to what they meet. Emission counts nowhere on the way; events S are passed; at the first Lambert lobe
 /// the point that stands for the hit is read, or the path goes on where none does or the first hit is near. Media on the way take
@@ -39,7 +40,8 @@ struct MediumPoint;   // lib/gather/medium_event.h
 class IncomingRadiance {
  public:
   /// near_factor: hits nearer than about this many radii of the estimate behind their point go on by one bounce.
-  IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor);
+  /// bright: points of which rays bring the low part alone, where they are read first (BrightPoints::left); may be null.
+  IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor, const BrightPoints* bright = nullptr);
 
   /// Radiance [W/m^2/sr] arriving along rays that counts as indirect at their starts, and the distance to what each meets
   /// first, m (infinity: nothing). keys: random numbers, one for each ray. Fastest if rays that follow one another
@@ -71,6 +73,7 @@ class IncomingRadiance {
   const Lights& lights_;
   const PointLookup& points_;
   float near_factor_;
+  const BrightPoints* bright_;
   std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: seen from behind, from in front
 };
 

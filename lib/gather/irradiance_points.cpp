@@ -30,6 +30,8 @@ bool stores_light(const SceneFrame& frame, const Surface& surface) {
   return may_have_lambert(frame.materials[surface.material]);
 }
 
+constexpr std::uint32_t kMostSites = 1u << 30;   ///< of a side of a surface
+
 using Areas = ParallelArray<double>;
 
 /// m^2 of each of a surface's triangles.
@@ -202,6 +204,33 @@ PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) 
     if (areas[i]) place_on(frame.surfaces[i], r, *areas[i], area_per_point, options.seed, placed.points);
   }
   return placed;
+}
+
+std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects, double area, std::uint64_t seed,
+                                    const std::function<bool(Vec3)>& wanted) {
+  std::vector<PlacedSite> sites;
+  for (std::size_t s = 0; s < frame.surfaces.size(); ++s) {
+    const Surface& surface = frame.surfaces[s];
+    if (!stores_light(frame, surface) || !std::binary_search(objects.begin(), objects.end(), surface.object)) continue;
+    Areas areas = triangle_areas(surface);
+    std::partial_sum(areas.begin(), areas.end(), areas.begin());
+    const std::span<const double> cumulative(areas.begin(), areas.end());
+    if (cumulative.empty() || !(cumulative.back() > 0)) continue;
+    const auto count = std::uint32_t(std::clamp(std::ceil(cumulative.back() / area), 1.0, double(kMostSites)));
+    constexpr std::size_t kChunk = 4096;
+    for (const bool back : {false, true}) {
+      const std::uint64_t key = PathRandom(seed, s).bits(0, Purpose::place, back);
+      std::vector<std::vector<PlacedSite>> found((count + kChunk - 1) / kChunk);
+      parallel_chunks(count, kChunk, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
+          const IrradiancePoint place = point_on(surface, cumulative, sobol_owen_2d(std::uint32_t(i), key), back);
+          if (length2(place.normal) > 0 && wanted(place.position)) found[first / kChunk].push_back({place, float(cumulative.back() / count)});
+        }
+      });
+      for (const auto& some : found) sites.insert(sites.end(), some.begin(), some.end());
+    }
+  }
+  return sites;
 }
 
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,

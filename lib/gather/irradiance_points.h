@@ -38,6 +38,17 @@ struct PlacedPoints {
 /// moving ones ride on their triangles.
 PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options);
 
+/// A place on one side of a surface, and the area that it stands for [m^2].
+struct PlacedSite {
+  IrradiancePoint place;   ///< position, normal, object
+  float area = 0;
+};
+
+/// Places uniform by area on both sides of the surfaces of these objects (id.object, ascending) that have a Lambert lobe, each for
+/// `area` [m^2] or a little less: areas of a side add up to the surface's. Only those that `wanted` takes; it is asked from many threads.
+std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects, double area, std::uint64_t seed,
+                                    const std::function<bool(Vec3)>& wanted);
+
 /// Fills in the irradiance of all points:
 /// - direct by light sampling, stratified shadow rays, as photons are stored: by the shading normal, under a coat times
 ///   Bsdf::arrival_weight;

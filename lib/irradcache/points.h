@@ -77,6 +77,7 @@ class PointLookup {
   std::size_t size() const { return points_.size(); }
   float spacing() const { return spacing_; }
   const IrradiancePoint& point(const Light& read) const { return points_[read.point]; }
+  std::span<const IrradiancePoint> points() const { return points_; }
   /// Is the direct light of a point that of the places near it? Not where some of the points beside it (within 1.5 spacings)
   /// get kContrast times the direct light of others: there a shadow or a bright spot ends, and a hit is to sample direct light
   /// itself. Read instead, light would reach a spacing into shadows and out of gaps, where much of what sees it is: the ground in

@@ -299,6 +299,14 @@ void use_moving(Plan& plan, const std::string& method, const std::string& becaus
                              {"irradcache-build records --update", plan.moving == "records", because}});
 }
 
+void use_split(Plan& plan, bool split, const std::string& because) {
+  if (plan.photon_kinds.empty() || plan.indirect == "paths") return;
+  const bool updated = plan.moving == "records";
+  plan.split = split && !updated;
+  const auto before = std::ranges::find(plan.stages, "irradcache-build records", &Stage::name);
+  plan.stages.insert(before, {"photonmap-split", plan.split, split && updated ? "records follow from those of what stands" : because});
+}
+
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,
                const MediaHash& media) {
   if (frames.empty()) throw std::invalid_argument("make_plan: no frames");

@@ -81,6 +81,7 @@ struct Plan {
   /// What of each state of light follows from that of what stands: "anew" (nothing), "light" (photons and points) or "records" (they,
   /// too).
   std::string moving = "anew";
+  bool split = false;               ///< bright points are divided from the others and sampled explicitly
   bool media = false;               ///< has the scene media?
   std::vector<PlannedView> views;   ///< empty: photons are not aimed. make_plan leaves it so, it traces no rays
   std::vector<std::string> warnings;
@@ -103,6 +104,9 @@ UpdatableLight updatable_light(const Plan& plan);
 /// Has the light of such segments follow from that of what stands, as far as `method` says (Plan::moving). `because`: the fact that
 /// decides.
 void use_moving(Plan& plan, const std::string& method, const std::string& because);
+/// Has points divided where `split` says so and it can be: points are read, by records made anew or in pixels; not by records that follow
+/// from those of what stands. `because`: the fact that decides.
+void use_split(Plan& plan, bool split, const std::string& because);
 /// The media at a frame: content hash (SceneHashes::media). An empty function: there are none.
 using MediaHash = std::function<std::string(int frame)>;
 

@@ -25,6 +25,11 @@ std::optional<Rgb> KnownLight::all(const SurfacePoint& hit, Vec3 geometric, floa
   return light->all;
 }
 
+float KnownLight::left(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {
+  const PointLookup::Light* light = bright ? points->find(hit.position, geometric) : nullptr;
+  return light && !(distance < kNear * light->radius * (0.5f + u)) ? bright->left(*light, distance) : 1.0f;
+}
+
 namespace {
 
 std::optional<SeenPoint> follow(const Tracer& tracer, const CameraView& view, const Look& look, Ray ray, Hit hit) {

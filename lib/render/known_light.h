@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 
+#include "lib/gather/bright_points.h"
 #include "lib/gather/final_gather.h"
 #include "lib/gather/place_records.h"
 #include "lib/render/camera_view.h"
@@ -21,6 +22,9 @@ class KnownLight {
   const LocalisedLight* localised = nullptr;   ///< in place of records: of what stands, and of what movers change
   const PointLookup* points = nullptr;    ///< all kinds where a ray from a matte surface ends
   const PhotonLight* photons = nullptr;   ///< kind caustic; indirect, too, if it has it and there are no records
+  /// Of `points` those that are sampled explicitly where no record tells: what paths meet first beyond then brings the rest.
+  const BrightPoints* bright = nullptr;
+  int bright_samples = 0;                 ///< at the first such place of an eye path; one at each later one
   /// Do eye paths fork at the first Lambert lobe under a gloss, to follow both? A gloss reflects 4 % as a rule: one ray in 25 that
   /// meets something bright makes a dot. Where nothing is known both would be whole paths: a fork costs as much as it gains then.
   bool forks() const { return records || localised || points || photons; }
@@ -37,6 +41,9 @@ class KnownLight {
   /// u in [0, 1) moves that limit between half and one and a half of it, so that it shows no seam.
   std::optional<Rgb> all(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
   static constexpr float kNear = 2;       ///< GatherOptions::near_factor's default
+  /// Share of the light scattered by the Lambert lobe at the hit that is not sampled explicitly where the path comes from; 1 where it
+  /// is so near that the path goes on for its light. The same u as all().
+  float left(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
 };
 
 /// What up to kLooksTogether raster positions see: the first surface with a Lambert lobe, through mirrors and glass by the

@@ -25,6 +25,7 @@ struct LastScatter {
 struct SampledLobes {
   bool diffuse, specular;
   float times_diffuse = 1, times_specular = 1;
+  float left = 1;   ///< share of what the Lambert lobe scatters that counts (KnownHere)
 };
 
 /// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)]
@@ -46,7 +47,7 @@ void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, SampledL
   if (!scene.lights.sample(x.surface.position, beyond ? -x.normal : x.normal, random.get2(bounce, Purpose::light_point), light)) return;
   if (beyond ? !x.sees_beyond(light.wi) : !x.sees(light.wi)) return;
   const Vec3 wi = x.frame.to_local(light.wi);
-  Rgb diffuse = lobes.diffuse ? x.bsdf.eval_diffuse(wi, x.wo_local) : Rgb(0.0f);
+  Rgb diffuse = lobes.diffuse ? x.bsdf.eval_diffuse(wi, x.wo_local) * lobes.left : Rgb(0.0f);
   Rgb glossy = specular ? x.bsdf.eval_specular(wi, x.wo_local) : Rgb(0.0f);
   if (!light.delta) {
     const float pdf = light.pdf_solid_angle * share;
@@ -97,6 +98,7 @@ struct Beyond {
   bool indirect_known = false;   ///< what arrives there by events D
   bool specular = false;         ///< events S since then
   float distance = 0;            ///< m along the path since then
+  bool low = false;              ///< bright points were sampled explicitly there: a matte hit brings the rest
 
   /// Does the light count that the path meets now?
   bool light_counts() const { return !(matte && specular && caustic_known); }
@@ -105,12 +107,16 @@ struct Beyond {
 /// Light at x that is known; its Lambert lobe then needs no more of it. Radiance to the eye goes to `result`.
 struct KnownHere {
   bool indirect = false, direct = false, caustic = false;
+  bool low = false;   ///< bright points were sampled explicitly
+  float left = 1;     ///< share of the light of its Lambert lobe that the place before has not sampled explicitly
 };
 
 KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, const Beyond& beyond, const Rgb& throughput,
-                          const EyePath& path, float u, Layers& result, RayCounts& counts) {
+                          const EyePath& path, float u, const PathRandom& random, Layers& result, RayCounts& counts) {
+  KnownHere here;
+  if (beyond.low && !beyond.specular) here.left = known.left(x.surface, x.normal_geometric, beyond.distance, u);
   // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
-  const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * kInvPi;
+  const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * here.left);
   const Layer layer = path.after(true).after(true).layer();   // indirect; or that of what the path saw before
   if (beyond.matte) {
     if (const std::optional<Rgb> all = known.all(x.surface, x.normal_geometric, beyond.distance, u)) {
@@ -119,18 +125,29 @@ KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, const 
       return {true, true, true};
     }
   }
-  KnownHere here;
+  const auto sample_bright = [&](int samples) {
+    if (!known.bright) return;
+    GatherCounts rays;
+    const Bsdf* const coat = x.bsdf.has_specular() ? &x.bsdf : nullptr;
+    result[layer] += reflected * Rgb(known.bright->arriving({x.surface, x.normal, coat}, samples, random, rays).irradiance);
+    counts.shadow += rays.shadow_rays;
+    here.low = true;
+  };
   if (known.has_caustic()) {
     here.caustic = true;
     result[path.after(true).after(false).layer()] += reflected * known.caustic(x.surface, x.normal_geometric);
   }
-  if (beyond.matte) return here;
+  if (beyond.matte) {
+    sample_bright(1);
+    return here;
+  }
   if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal, path.layer() == Layer::emission)) {
     ++counts.lookups;
     here.indirect = true;
     result[layer] += reflected * *indirect;
   } else {
     ++counts.gathered;
+    sample_bright(known.bright_samples);
   }
   return here;
 }
@@ -196,7 +213,8 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
   if (next.transmitted ? !x.sees_beyond(wi) : !x.sees(wi)) return false;
   walk.throughput *= next.weight * (1 / times);
   walk.path.scatter(next.diffuse);
-  if (next.diffuse) walk.beyond = {true, here.caustic, here.indirect, false, 0};
+  if (next.diffuse) walk.throughput *= here.left;
+  if (next.diffuse) walk.beyond = {true, here.caustic, here.indirect, false, 0, here.low};
   else walk.beyond.specular = true;
   const bool front = dot(x.surface.normal_geometric, walk.ray.direction) < 0;
   if (!next.diffuse && is_solid_glass(material)) walk.inside.scatter(x.surface.material, front, next.transmitted);
@@ -217,7 +235,7 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
 /// Scattering in a medium: light of a lamp, roulette, a new ray. False if the path ends there.
 bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
   walk.path.scatter_in_medium();
-  walk.beyond = {true, false, false, false, 0};
+  walk.beyond = {true, false, false, false, 0, false};
   walk.cone = {};
   walk.throughput *= point.albedo;
   if (is_black(walk.throughput)) return false;
@@ -289,8 +307,10 @@ void EyeTracer::follow(Walk walk) const {
     const ShadingPoint x(point, wo, material);
     KnownHere here{only_specular, only_specular, only_specular};
     if (known_ && !only_specular && x.bsdf.has_diffuse())
-      here = add_known_light(*known_, x, walk.beyond, walk.throughput, path, random_.get1(bounce, Purpose::gather), result_, counts_);
+      here = add_known_light(*known_, x, walk.beyond, walk.throughput, path, random_.get1(bounce, Purpose::gather),
+                             PathRandom(random_.hashed().bits(bounce, Purpose::gather), bounce), result_, counts_);
     SampledLobes lobes{!here.direct, !(walk.beyond.matte && walk.beyond.caustic_known)};
+    lobes.left = here.left;
     float diffuse = 0;
     const bool forks = known_ && known_->forks() && !forked && path.sharp() && x.bsdf.forks();
     if (forks) {

@@ -79,6 +79,29 @@ grep -q '"records_added.2": 0' frames.json || bad 'the same camera needs more re
 photon-trace "$moving" --frame 3 --photons 20k -o moving.photons -q
 refuses 'one cache cannot hold for both' irradcache-build "$moving" --photons moving.photons --point-count 500 $small --frames 3-5 -o refused
 
+# Points in two parts: bright ones are sampled explicitly. Of an infinite limit nothing is high: the records of the whole. The same for any threads.
+photonmap-split p.irradpoints --low low.irradpoints --high high.irradpoints --energy 1 -q || bad 'points divided'
+photonmap-split p.irradpoints --low all.irradpoints --high none.irradpoints --energy 1e9 -q || bad 'points divided, nothing bright'
+irradcache-build records "$still" --points p.irradpoints $small -o whole.irradcache -q || bad 'records of whole points'
+irradcache-build records "$still" --points all.irradpoints --high none.irradpoints $small -o none.irradcache -q || bad 'records, nothing bright'
+tempolux-info --diff whole.irradcache none.irradcache >/dev/null || bad 'nothing is bright, and records differ'
+for threads in 1 2 3 7; do
+  irradcache-build records "$still" --points low.irradpoints --high high.irradpoints $small --threads $threads -o split$threads.irradcache --stats split.json -q || bad "--high, $threads threads"
+  cmp -s split1.irradcache split$threads.irradcache || bad "--high: other records by $threads threads"
+done
+grep -q '"bright_points": [1-9]' split.json || bad 'no bright points counted'
+tempolux-info --diff whole.irradcache split1.irradcache >/dev/null && bad '--high changes nothing'
+refuses 'the low part' irradcache-build records "$still" --points low.irradpoints $small -o refused
+refuses 'not a part of light' irradcache-build records "$still" --points p.irradpoints --high high.irradpoints $small -o refused
+refuses 'is the low part' irradcache-build records "$still" --points low.irradpoints --high low.irradpoints $small -o refused
+refuses 'name the low part' irradcache-build "$still" --photons p.photons --high high.irradpoints $small -o refused
+refuses '--high' irradcache-build points "$still" --photons p.photons --high high.irradpoints -o refused
+refuses 'leave out --radii' irradcache-build records "$still" --points low.irradpoints --high high.irradpoints --radii hessian $small -o refused
+refuses '--high-samples' irradcache-build records "$still" --points p.irradpoints --high-samples 10 $small -o refused
+irradcache-build points "$still" --photons p.photons --point-count 700 -o other.irradpoints -q
+photonmap-split other.irradpoints --low otherlow.irradpoints --high foreign.irradpoints --energy 1 -q
+refuses 'not those of' irradcache-build records "$still" --points low.irradpoints --high foreign.irradpoints $small -o refused
+
 # Wrong steps and inputs.
 refuses 'is not a step' irradcache-build recrods "$still" --points p.irradpoints -o refused
 refuses 'name the photon map with --photons' irradcache-build points "$still" -o refused

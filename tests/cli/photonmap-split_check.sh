@@ -103,6 +103,21 @@ refuses 'go together' photonmap-split p.photons --low refused
 refuses 'says not how' photonmap-split p.photons
 refuses 'needs -o' photonmap-split p.photons --kind direct
 refuses 'not with --kind' photonmap-split p.photons --kind direct -o refused --energy 3
+# Pixels without a cache sample the high part themselves: the same light but for noise (36864 samples that scatter by some twice their
+# mean: 1 %); of an infinite limit nothing is high, and the frame is that of the whole.
+frame="frame-render $room --frame 1 --size 32x18 --spp 64 --pixel-error 0 --channels layers -q"
+photonmap-split p.irradpoints --low all.irradpoints --high none.irradpoints --energy 1e9 -q
+$frame --points p.irradpoints -o whole.exr || bad 'frame by whole points'
+$frame --points l.irradpoints --high h.irradpoints -o parts.exr --stats frame.json || bad 'frame by two parts'
+$frame --points all.irradpoints --high none.irradpoints -o none.exr || bad 'frame, nothing bright'
+tempolux-info --diff whole.exr none.exr >out.txt || bad "nothing is bright: $(cat out.txt)"
+grep -q '"bright_points": [1-9]' frame.json || bad 'frame-render samples no bright points'
+aqm-compare parts.exr whole.exr --layer indirect --json c.json -q >/dev/null
+"${PYTHON:-python3}" -c 'import json, sys; b = json.load(open("c.json"))["total"]["bias"]; sys.exit(not -0.04 < b < 0.04)' || bad "other light: $(grep bias c.json)"
+refuses 'the low part' $frame --points l.irradpoints -o refused
+refuses 'name the low part' $frame --high h.irradpoints -o refused
+refuses 'not a part of light' $frame --points p.irradpoints --high h.irradpoints -o refused
+
 refuses 'only with --kind' photonmap-split p.photons --low refused --high other --rest third
 refuses 'no volume light' photonmap-split p.photons --kind volume -o refused
 refuses 'no kind is left' photonmap-split i.photons --kind indirect -o refused --rest other

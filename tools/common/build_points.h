@@ -14,7 +14,7 @@ namespace tempolux::tools {
 /// What irradcache-build was asked for.
 struct CacheOptions {
   std::vector<std::string> inputs;  // [points|records] SCENE
-  std::string photons, points, records, mask, output, keep_points, radii = "ward", map = "global", update;
+  std::string photons, points, high, records, mask, output, keep_points, radii = "ward", map = "global", update;
   std::vector<std::string> dynamic;   // the frame's own first
   std::uint64_t point_count = PointOptions{}.count;
   int width = 640, height = 360;

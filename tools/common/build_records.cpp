@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "formats/error.h"
+#include "lib/gather/bright_points.h"
 #include "lib/gather/cache_files.h"
 #include "lib/image/images_by_module.h"
 #include "lib/render/known_light.h"
@@ -79,7 +80,17 @@ void count(Tool& tool, std::size_t records, const GatherCounts& counts) {
   tool.stats().count("gather_rays", double(counts.rays));
   tool.stats().count("near_hits", double(counts.near_hits));
   tool.stats().count("points_read", double(counts.points_read));
+  tool.stats().count("shadow_rays", double(counts.shadow_rays));
   tool.stats().count("unanswered", double(counts.unanswered));
+}
+
+/// Points made from photons, read, or read as two parts: high_shares receives what the high part has of each.
+GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights, std::vector<float>& high_shares) {
+  if (options.points.empty()) return points_of_photons(tool, options.photons, tracer, lights, options.point);
+  if (options.high.empty()) return read_points(tool, options.points, tracer.frame());
+  DividedGatherPoints divided = read_divided_points(tool, options.points, options.high, tracer.frame());
+  high_shares = std::move(divided.high_shares);
+  return std::move(divided.whole);
 }
 
 /// Dynamic maps of a frame, its own first, as densities over the standing scene.
@@ -109,15 +120,21 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
   const Tracer tracer(first);
   const Lights lights(first, input.emission(first.frame));
   if (!options.points.empty()) tool.stats().phase("read points");
-  const GatherPoints points = options.points.empty()
-                                         ? points_of_photons(tool, options.photons, tracer, lights, options.point)
-                                         : read_points(tool, options.points, first);
+  std::vector<float> high_shares;
+  const GatherPoints points = gather_points(tool, options, tracer, lights, high_shares);
   tool.stats().phase("prepare records");
   if (!options.keep_points.empty()) {
     Output keep(options.keep_points, tool.common().no_clobber);
     write_points(tool, points, first, keep);
   }
   const PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
+  std::optional<BrightPoints> bright;
+  if (std::ranges::any_of(high_shares, [](float share) { return share > 0; })) {
+    bright.emplace(tracer, lights, lookup, std::move(high_shares), BrightOptions{.seed = options.gather.seed});
+    tool.stats().count("bright_points", double(bright->spot_count()));
+    tool.stats().count("bright_sites", double(bright->site_count()));
+    options.gather.bright = &*bright;
+  }
   const FinalGather gather(tracer, lights, lookup, options.gather);
   RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
   std::string history = points.history;

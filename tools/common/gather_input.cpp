@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "formats/error.h"
+#include "lib/density/split_light.h"
 #include "lib/gather/cache_files.h"
 #include "lib/material/surface_material.h"
 
@@ -53,14 +54,46 @@ void check_photons(Tool& tool, const std::string& file, const formats::PhotonHea
 
 }  // namespace
 
-GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame) {
-  tool.depends_on(file);
-  const formats::IrradpointsFile in = formats::load_irradpoints(file);
-  refuse_part(file, in.header.part);
+namespace {
+
+GatherPoints checked_points(Tool& tool, const std::string& file, const formats::IrradpointsFile& in, const SceneFrame& frame) {
   check_identity(tool, file, in.header.identity, frame);
   check_kinds(tool, file, in.header.kinds, {"direct", "caustic", "indirect"}, frame, "make the points again");
   return {from_file(in.records, shift_of(in.header.origin, frame)), float(in.header.spacing), in.header.kinds,
           in.header.history, in.header.emitted_count};
+}
+
+/// One of the files of photonmap-split.
+formats::IrradpointsFile load_part(Tool& tool, const std::string& file, const std::string& part, const std::string& option) {
+  tool.depends_on(file);
+  formats::IrradpointsFile in = formats::load_irradpoints(file);
+  if (in.header.part != part)
+    throw InputError(file + ": is " + (in.header.part.empty() ? "not a part of light" : "the " + in.header.part + " part") + "; give " + option +
+                     " the " + part + " part that photonmap-split writes");
+  return in;
+}
+
+}  // namespace
+
+GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame) {
+  tool.depends_on(file);
+  const formats::IrradpointsFile in = formats::load_irradpoints(file);
+  refuse_part(file, in.header.part);
+  return checked_points(tool, file, in, frame);
+}
+
+DividedGatherPoints read_divided_points(Tool& tool, const std::string& low_file, const std::string& high_file, const SceneFrame& frame) {
+  formats::IrradpointsFile low = load_part(tool, low_file, "low", "--points");
+  const formats::IrradpointsFile high = load_part(tool, high_file, "high", "--high");
+  check_identity(tool, high_file, high.header.identity, frame);
+  DividedGatherPoints divided;
+  divided.high_shares = tempolux::join_parts(low.records, high.records);
+  // Points of a surface are the first of one sequence: fewer of them lie at places that more of them have, too.
+  if (divided.high_shares.size() != low.records.size() || low.header.origin != high.header.origin || low.header.spacing != high.header.spacing ||
+      low.header.emitted_count != high.header.emitted_count)
+    throw InputError(high_file + ": its points are not those of " + low_file + "; give the two parts of one file");
+  divided.whole = checked_points(tool, low_file, low, frame);
+  return divided;
 }
 
 formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,

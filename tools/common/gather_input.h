@@ -43,6 +43,13 @@ struct GatherPoints {
 
 /// Reads a .irradpoints file made for this state of the scene, with the kinds of light it has: as read_photons.
 GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame);
+/// Points of photonmap-split: the whole, and of each point the share that the high part has.
+struct DividedGatherPoints {
+  GatherPoints whole;
+  std::vector<float> high_shares;
+};
+/// Reads the two parts: as read_points; InputError if they are not those of one file.
+DividedGatherPoints read_divided_points(Tool& tool, const std::string& low, const std::string& high, const SceneFrame& frame);
 /// Makes points from the photons of a whole map with all kinds of light (read_photons).
 GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
                          const PointOptions& options);

@@ -1,25 +1,45 @@
 #include "tools/common/indirect_light.h"
 
+#include <algorithm>
+
 #include "lib/gather/whole_photons.h"
 #include "lib/scene/standing.h"
 #include "tools/common/localised_cache.h"
 
 namespace tempolux::tools {
 
-IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number) {
+IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed,
+                             int number) {
   const SceneFrame& frame = tracer.frame();
   if (!options.photons.empty()) read_maps(tool, options, tracer, number);
-  if (!options.points.empty()) {
-    tool.stats().phase("read points");
-    points_ = read_points(tool, frame_name(options.points, number), frame);
-    history_ = points_.history;
-    lookup_ = std::make_unique<PointLookup>(points_.points, points_.spacing, point_clearance(tracer));
-    known_.points = lookup_.get();
-  }
+  if (!options.points.empty()) read_points(tool, options, tracer, lights, seed, number);
   if (!options.irradcache.empty()) {
     tool.stats().phase("read cache");
     read_cache(tool, frame_name(options.irradcache, number), frame, options.influence);
   }
+}
+
+void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed,
+                                int number) {
+  tool.stats().phase("read points");
+  const std::string name = frame_name(options.points, number);
+  std::vector<float> high_shares;
+  if (options.high.empty()) {
+    points_ = tools::read_points(tool, name, tracer.frame());
+  } else {
+    DividedGatherPoints divided = read_divided_points(tool, name, frame_name(options.high, number), tracer.frame());
+    points_ = std::move(divided.whole);
+    high_shares = std::move(divided.high_shares);
+  }
+  history_ = points_.history;
+  lookup_ = std::make_unique<PointLookup>(points_.points, points_.spacing, point_clearance(tracer));
+  known_.points = lookup_.get();
+  if (std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
+  tool.stats().phase("bright points", true);
+  bright_ = std::make_unique<BrightPoints>(tracer, lights, *lookup_, std::move(high_shares), BrightOptions{.seed = seed, .near_factor = KnownLight::kNear});
+  known_.bright = bright_.get();
+  known_.bright_samples = options.high_samples;
+  tool.stats().count("bright_points", double(bright_->spot_count()));
 }
 
 void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number) {

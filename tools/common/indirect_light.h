@@ -13,6 +13,8 @@ namespace tempolux::tools {
 struct IndirectLightOptions {
   std::string photons, irradcache, points;   ///< files, or patterns; "": none
   std::string dynamic;                       ///< the same: photons is then the segment's static map
+  std::string high;                          ///< the same: points is then the low part of photonmap-split
+  int high_samples = 4;                      ///< of an eye path
   PhotonLightOptions photon_light;
   InfluenceThresholds influence;             ///< of a localised cache
 };
@@ -20,13 +22,14 @@ struct IndirectLightOptions {
 /// Opens what the options name, checked against the frame's identity, and owns it while the frame is rendered.
 class IndirectLight {
  public:
-  IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
+  IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed, int number);
 
   /// Empty if none was named: paths alone.
   const KnownLight& get() const { return known_; }
   const std::string& history() const { return history_; }
 
  private:
+  void read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed, int number);
   void read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
   void read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds);
 
@@ -35,6 +38,7 @@ class IndirectLight {
   std::unique_ptr<RecordStore> records_;
   GatherPoints points_;
   std::unique_ptr<PointLookup> lookup_;
+  std::unique_ptr<BrightPoints> bright_;
   std::unique_ptr<LocalisedLight> localised_;
   KnownLight known_;
 };

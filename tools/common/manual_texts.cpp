@@ -61,7 +61,8 @@ constexpr ManualText kTexts[] = {
      "irradcache-build room.glb --frame 12 --photons 12.photons --size 640x360 -o 12.irradcache\n"
      "# In two steps, so that the points can be looked at or shared.\n"
      "irradcache-build points room.glb --frame 12 --photons 12.photons -o 12.irradpoints\n"
-     "irradcache-build records room.glb --frame 12 --points 12.irradpoints --size 640x360 -o 12.irradcache",
+     "irradcache-build records room.glb --frame 12 --points 12.irradpoints --size 640x360 -o 12.irradcache\n"
+     "irradcache-build records room.glb --frame 12 --points low.irradpoints --high high.irradpoints -o 12.irradcache",
      "photon-trace frame-render tempolux-info"},
     {"gather-temporal",
      "Gathers indirect light in records whose samples of incoming radiance are kept from frame to frame. The first frame of a "

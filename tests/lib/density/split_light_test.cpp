@@ -262,6 +262,16 @@ TEST(SplitLight, PointsOfABrightPatchAreDividedInProportion) {
   const DividedPoints parts = divide(points, cells);
   EXPECT_EQ(parts.low.size(), 116u);
   ASSERT_EQ(parts.high.size(), 16u);
+  std::vector<IrradiancePointRecord> joined = parts.low;
+  const std::vector<float> shares = join_parts(joined, parts.high);
+  ASSERT_EQ(shares.size(), 116u);
+  for (std::size_t i = 0; i < 116; ++i) {
+    EXPECT_EQ(joined[i].direct, points[i].direct);
+    EXPECT_EQ(joined[i].indirect, points[i].indirect);
+    EXPECT_NEAR(double(shares[i]), i < 100 ? 0 : 1 - 4 * mean / 100, 1e-6);
+  }
+  joined = {parts.low.begin(), parts.low.begin() + 110};
+  EXPECT_TRUE(join_parts(joined, parts.high).empty());   // a point that the low part has not
   EXPECT_NEAR(double(parts.low[110].direct[0]), 60 * 4 * mean / 100, 1e-4);
   for (std::size_t i = 0; i < 16; ++i) {
     EXPECT_EQ(double(parts.low[100 + i].direct[0]) + double(parts.high[i].direct[0]), 60);

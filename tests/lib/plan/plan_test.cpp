@@ -268,6 +268,28 @@ TEST(Plan, LightIsComputedAnewWhereNothingWouldBeSaved) {
   EXPECT_EQ(plan_makefile(asked, "plan", {}).find("stands_"), std::string::npos);
 }
 
+TEST(Plan, BrightPointsAreDividedWherePointsAreRead) {
+  Plan plan = plan_of(still_room(), {0});
+  EXPECT_EQ(plan_makefile(plan, "plan", {}).find("plan_split"), std::string::npos);
+  use_split(plan, true, "a test");
+  EXPECT_NE(plan_makefile(plan, "plan", {}).find("plan_split := 1\n"), std::string::npos);
+  EXPECT_NE(plan_json(plan, "room.glb", "", "").find("\"split\": true"), std::string::npos);
+  Plan asked = plan_of(still_room(), {0});
+  use_split(asked, false, "a test");
+  EXPECT_FALSE(asked.split);
+  EXPECT_EQ(asked.stages[std::size_t(std::ranges::find(asked.stages, "photonmap-split", &Stage::name) - asked.stages.begin())].because, "a test");
+  Plan paths = plan_of(still_room(), {0});
+  use_indirect(paths, "paths", "a test");
+  use_split(paths, true, "a test");
+  EXPECT_FALSE(paths.split);
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 1, 2, 3});
+  Plan moving = plan_of(scene, {0, 1, 2, 3});
+  use_moving(moving, "records", "a test");
+  use_split(moving, true, "a test");
+  EXPECT_FALSE(moving.split);
+}
+
 TEST(Plan, ASceneWithoutLightIsRefusedWithTheExportersBox) {
   Scene scene = still_room();
   scene.nodes[kLamp].light = -1;

@@ -1,0 +1,221 @@
+#include "lib/gather/bright_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+#include "lib/core/parallel.h"
+#include "lib/core/sampling.h"
+#include "lib/gather/irradiance_points.h"
+#include "lib/gather/medium_event.h"
+#include "lib/gather/reachable_area.h"
+#include "lib/material/seen_side.h"
+#include "lib/material/surface_material.h"
+
+namespace tempolux {
+namespace {
+
+/// Sites of a point. Those of a spot are drawn from at random: with 16 of them a cell of points is known to some per cent.
+constexpr double kSitesPerPoint = 16;
+constexpr float kFadeFrom = 4, kFadeTo = 6;   ///< radii R
+
+/// Cubes in which a point that is asked for may be.
+class NearPoints {
+ public:
+  explicit NearPoints(float edge) : inverse_(1 / double(edge)) {}
+  void add(Vec3 p) {
+    const std::array<std::int64_t, 3> c = cube(p);
+    for (std::int64_t x = -1; x <= 1; ++x)
+      for (std::int64_t y = -1; y <= 1; ++y)
+        for (std::int64_t z = -1; z <= 1; ++z) cubes_.insert(key({c[0] + x, c[1] + y, c[2] + z}));
+  }
+  bool may_hold(Vec3 p) const { return cubes_.contains(key(cube(p))); }
+
+ private:
+  std::array<std::int64_t, 3> cube(Vec3 p) const {
+    std::array<std::int64_t, 3> c;
+    for (int a = 0; a < 3; ++a) c[std::size_t(a)] = std::int64_t(std::floor(std::clamp(double(p[a]) * inverse_, -1e15, 1e15)));
+    return c;
+  }
+  static std::uint64_t key(const std::array<std::int64_t, 3>& c) {
+    std::uint64_t k = 0;
+    for (const std::int64_t a : c) k = mix64(k ^ std::uint64_t(a));
+    return k;
+  }
+  double inverse_;
+  std::unordered_set<std::uint64_t> cubes_;   ///< by hash: one too many costs a look-up
+};
+
+}  // namespace
+
+BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::vector<float> high_shares,
+                           const BrightOptions& options)
+    : tracer_(tracer),
+      points_(points),
+      high_(std::move(high_shares)),
+      near_factor_(options.near_factor),
+      radius_(points.spacing() * std::sqrt(kInvPi)) {
+  // A point stands for places up to PointLookup::kReach spacings away.
+  NearPoints near(PointLookup::kReach * points.spacing());
+  std::vector<std::uint32_t> objects;
+  for (std::uint32_t i = 0; i < high_.size(); ++i) {
+    if (!(high_[i] > 0)) continue;
+    near.add(points.points()[i].position);
+    objects.push_back(points.points()[i].object);
+  }
+  std::sort(objects.begin(), objects.end());
+  objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
+  const double spacing = double(points.spacing());
+  const std::vector<PlacedSite> placed = place_sites(tracer.frame(), objects, spacing * spacing / kSitesPerPoint, options.seed,
+                                                     [&](Vec3 position) { return near.may_hold(position); });
+  std::vector<std::optional<Site>> found(placed.size());
+  parallel_chunks(placed.size(), 256, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) found[i] = site_at(placed[i].place, placed[i].area);
+  });
+  for (std::optional<Site>& site : found)
+    if (site) sites_.push_back(std::move(*site));
+  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.point < b.point; });
+  std::vector<std::uint32_t> uneven;
+  for (std::uint32_t i = 0; i < sites_.size(); ++i)
+    if (!points.is_even(*points.find(sites_[i].place.position, sites_[i].normal))) uneven.push_back(i);
+  sample_uneven(lights, uneven, options);
+
+  std::vector<LightBounds> spots;
+  for (std::size_t i = 0, end = 0; i < sites_.size(); i = end) {
+    LightBounds spot;
+    spot.axis = points.points()[sites_[i].point].normal;
+    for (end = i; end < sites_.size() && sites_[end].point == sites_[i].point; ++end) {
+      const Site& site = sites_[end];
+      spot.box.add(site.place.position);
+      spot.cos_spread = std::min(spot.cos_spread, dot(site.normal, spot.axis));
+      spot.weight += double(channel_mean(site.bsdf.diffuse_albedo() * site.irradiance) * (site.area * kInvPi));
+    }
+    if (!(spot.weight > 0)) continue;
+    spots.push_back(spot);
+    sites_of_.push_back({std::uint32_t(i), std::uint32_t(end - i)});
+  }
+  tree_.emplace(spots);
+}
+
+/// A site at a place, if the point that stands for it has a high part, and it is not the place's own surface's twin that is met there.
+std::optional<BrightPoints::Site> BrightPoints::site_at(const IrradiancePoint& place, float area) const {
+  const float offset = Reach(tracer_).offset();
+  Hit hit;
+  if (!tracer_.intersect({place.position + place.normal * (4 * offset), -place.normal, 0, 8 * offset, true}, hit)) return std::nullopt;
+  SurfacePoint there = tracer_.surface_point(hit);
+  if (there.object != place.object) return std::nullopt;
+  const bool front = dot(there.normal_geometric, place.normal) > 0;
+  const Vec3 normal = front ? there.normal_geometric : -there.normal_geometric;
+  const PointLookup::Light* light = points_.find(there.position, normal);
+  if (!light || !(high_[light->point] > 0)) return std::nullopt;
+  const SurfaceMaterial material(tracer_.frame(), there);
+  const Bsdf bsdf(material, front);
+  if (!bsdf.has_diffuse()) return std::nullopt;
+  return Site{there, normal, light->all * high_[light->point], bsdf, light->radius, area, light->point};
+}
+
+/// Where the direct light of a point is not that of the places near it, rays that meet such a place sample it: so do sites.
+void BrightPoints::sample_uneven(const Lights& lights, const std::vector<std::uint32_t>& uneven, const BrightOptions& options) {
+  std::vector<IrradiancePoint> sampled;
+  for (const std::uint32_t i : uneven) {
+    IrradiancePoint point;
+    point.position = sites_[i].place.position;
+    point.normal = sites_[i].normal;
+    point.object = sites_[i].place.object;
+    sampled.push_back(point);
+  }
+  PointOptions sampling;
+  sampling.seed = options.seed ^ 0x6272696768740000ull;
+  sampling.light_samples = options.light_samples;
+  update_direct(tracer_, lights, nullptr, sampling, sampled);
+  for (std::size_t i = 0; i < uneven.size(); ++i) {
+    Site& site = sites_[uneven[i]];
+    const IrradiancePoint& point = points_.points()[site.point];
+    site.irradiance = (point.indirect + point.caustic + sampled[i].direct) * high_[site.point];
+  }
+}
+
+float BrightPoints::explicit_share(float distance) const {
+  const float t = std::clamp((distance / radius_ - kFadeFrom) / (kFadeTo - kFadeFrom), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
+/// Probability that a ray which meets the site reads its point (IncomingRadiance: nearer than near_factor radii x a number from 1/2
+/// to 3/2 it goes on).
+float BrightPoints::share_of_far(const Site& site, float distance) const {
+  const float reach = near_factor_ * site.radius;
+  return reach > 0 ? std::clamp(distance / reach - 0.5f, 0.0f, 1.0f) : 1.0f;
+}
+
+Rgb BrightPoints::radiance(const Site& site, Vec3 wo) const {
+  const float cosine = site.bsdf.has_specular() ? SeenSide(site.place, wo).wo_local.z : 1;
+  return site.bsdf.diffuse_reflectance(cosine) * site.irradiance * kInvPi;
+}
+
+BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRandom& random, GatherCounts& counts) const {
+  const SurfacePoint& place = at.place;
+  const Vec3 normal = at.normal;
+  const Vec3 geometric = dot(place.normal_geometric, normal) < 0 ? -place.normal_geometric : place.normal_geometric;
+  const Media* const media = tracer_.frame().media.get();
+  BrightLight light;
+  double sum = 0, squares = 0;
+  if (sites_of_.empty()) return light;
+  const LightTree::Start start = tree_->start(place.position, normal);
+  for (std::uint32_t number = 0; number < std::uint32_t(samples); ++number) {
+    const float u = (float(number) + random.get1(number, Purpose::light_choice, 1)) / float(samples);
+    LightTree::Choice chosen;
+    if (!tree_->choose(start, place.position, normal, std::min(u, kOneMinusEpsilon), chosen)) continue;
+    const Sites& sites = sites_of_[chosen.light];
+    const Site& site = sites_[sites.first + std::min(sites.count - 1, std::uint32_t(chosen.left * double(sites.count)))];
+    const Vec3d d(site.place.position - place.position), n(normal), m(site.normal);
+    const double distance = length(d), here = dot(n, d), there = -dot(m, d);   // cosines x distance
+    const Vec3 wi(d * (1 / std::max(distance, 1e-300)));
+    if (!(here > 0 && there > 0 && dot(wi, geometric) > 0)) continue;
+    const float share = explicit_share(float(distance)) * (at.reads_near ? 1 : share_of_far(site, float(distance)));
+    if (!(share > 0)) continue;
+    ++counts.shadow_rays;
+    const Ray shadow = spawn_shadow_ray(place, site.place.position, site.place.offset);
+    if (tracer_.occluded(shadow)) continue;
+    Rgbd seen(radiance(site, -wi) * share);
+    if (media) [[unlikely]]
+      seen *= double(media_transmittance(*media, shadow, {random, number, way_shadow}));
+    const double d2 = distance * distance, cosine = here / distance;
+    const double arrival = at.coat ? double(at.coat->arrival_weight(float(cosine))) : 1;
+    const Rgbd power = seen * (double(site.area) * double(sites.count) * arrival / (chosen.probability * double(samples)));
+    const Rgbd e = power * (here * there / (d2 * d2));
+    light.irradiance += e;
+    // E = P (n d) (-m d) / d^4, d = y - x: dE/dx = P (-n (-m d) + m (n d) + 4 (n d) (-m d) d / d^2) / d^4, of which what lies in the plane.
+    const Vec3d along = (m - n * dot(m, n)) * here + (d - n * here) * (4 * here * there / d2);
+    const Vec3d turn = cross(n, d) * there;   // (n_i x n) . g is the change of n . d
+    for (int c = 0; c < 3; ++c) {
+      light.translational[std::size_t(c)] += along * (power[c] / (d2 * d2));
+      light.rotational[std::size_t(c)] += turn * (power[c] / (d2 * d2));
+    }
+    const double all = channel_sum(e);
+    sum += all;
+    squares += all * all;
+    light.light_times_radiance += all * channel_sum(seen);
+  }
+  light.lit_samples = squares > 0 ? sum * sum / squares : 0;
+  return light;
+}
+
+void add_bright_light(const BrightLight& light, IrradianceRecord& record) {
+  const double low = channel_sum(Rgbd(record.irradiance)), high = channel_sum(light.irradiance), all = low + high;
+  if (!(high > 0)) return;
+  // Samples that carry the light: E^2 / variance of both parts, each as if of independent equal ones.
+  const double low2 = low > 0 ? low * low / std::max(1e-3, double(record.lit_cells)) : 0;
+  record.lit_cells = float(all * all / (low2 + high * high / std::max(1e-3, light.lit_samples)));
+  // Share of the hemisphere: E^2 / (pi integral of L^2 cos).
+  if (record.expected_share > 0) {
+    const double rays2 = low > 0 ? low * low / double(record.expected_share) : 0;
+    record.expected_share = float(std::min(1.0, all * all / (rays2 + M_PI * light.light_times_radiance)));
+  }
+  record.irradiance = Rgb(Rgbd(record.irradiance) + light.irradiance);
+  for (std::size_t c = 0; c < 3; ++c) {
+    record.translational[c] = Vec3(Vec3d(record.translational[c]) + light.translational[c]);
+    record.rotational[c] = Vec3(Vec3d(record.rotational[c]) + light.rotational[c]);
+  }
+}
+
+}  // namespace tempolux

@@ -1,0 +1,92 @@
+#include "lib/render/choose_split.h"
+
+#include <cstdio>
+#include <vector>
+
+#include "lib/core/parallel.h"
+#include "lib/density/energy_cells.h"
+#include "lib/density/irradiance_estimate.h"
+#include "lib/density/split_light.h"
+#include "lib/material/bsdf.h"
+#include "lib/material/surface_material.h"
+#include "lib/photon/photon_trace.h"
+#include "lib/render/places_seen.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kPlaces = 2048;
+constexpr std::uint64_t kPaths = 1 << 16;
+constexpr double kPays = 2;      ///< variance_ratio
+
+std::vector<formats::Photon> trace_photons(const RenderScene& scene, std::uint64_t seed) {
+  PhotonOptions options;
+  options.seed = seed;
+  options.photon_count = kPaths;
+  options.group_count = 1;
+  options.set_kinds("direct,caustic,indirect");
+  const PhotonTracer tracer(scene.tracer, scene.lights, options);
+  std::vector<PhotonBatch> batches(tracer.batch_count());
+  parallel_chunks(batches.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t b = first; b < last; ++b) batches[b] = tracer.trace(b);
+  });
+  std::vector<formats::Photon> photons;
+  for (const PhotonBatch& batch : batches) photons.insert(photons.end(), batch.block.photons.begin(), batch.block.photons.end());
+  return photons;
+}
+
+/// Mean and variance of numbers, one after the other.
+struct Moments {
+  double sum = 0, squares = 0;
+  std::size_t count = 0;
+  void add(double x) { sum += x, squares += x * x, ++count; }
+  double variance() const { return count ? squares / double(count) - (sum / double(count)) * (sum / double(count)) : 0; }
+};
+
+}  // namespace
+
+SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view, std::uint64_t seed) {
+  const Tracer tracer(frame);
+  const Lights lights(frame, emission);
+  const RenderScene scene{tracer, lights};
+  const std::vector<formats::Photon> photons = trace_photons(scene, seed);
+  CellEdge edge;
+  for (const formats::Photon& photon : photons) edge.add(place_of(photon).position);
+  EnergyCells cells(edge.edge(), 0);
+  for (const formats::Photon& photon : photons) cells.add(place_of(photon), photon.flux);
+  cells.close({});
+  if (cells.bright_count() == 0) return {};
+  const PhotonIndex index(photons);
+  const SeenPlaces seen = places_seen(scene, view, kPlaces, seed ^ 0x73706c6974ull);
+  std::vector<double> all(kPlaces, -1), low(kPlaces, 0);
+  parallel_chunks(kPlaces, 64, [&](std::size_t first, std::size_t last) {
+    NeighbourList found;
+    for (std::size_t i = first; i < last; ++i) {
+      if (!seen.places[i].exists()) continue;
+      all[i] = 0;
+      const SeenPlace& met = seen.beyond[i];
+      if (!met.exists()) continue;
+      SurfacePoint surface = met.surface;
+      const SurfaceMaterial material(frame, surface);
+      const Rgb reflected = Bsdf(material, dot(met.surface.normal_geometric, met.geometric) > 0).diffuse_albedo();
+      const Rgbd irradiance = estimate_irradiance(index, met.surface.position, met.geometric, {}, found).irradiance;
+      all[i] = channel_sum(Rgbd(reflected) * irradiance);
+      low[i] = all[i] * cells.low_share({met.surface.position, met.geometric, std::uint16_t(met.surface.object)});
+    }
+  });
+  Moments whole, rest;
+  for (std::size_t i = 0; i < kPlaces; ++i)
+    if (all[i] >= 0) whole.add(all[i]), rest.add(low[i]);
+  if (!(whole.variance() > 0)) return {};
+  return {rest.variance() > 0 ? whole.variance() / rest.variance() : 1e6, 1 - rest.sum / whole.sum};
+}
+
+SplitChoice choose_split(const SplitPilot& pilot) {
+  char text[160];
+  if (pilot.high_share <= 0) return {false, "no spot lit by lamps or by reflection lights what is seen by more than 4 times the mean"};
+  std::snprintf(text, sizeof text, "bright spots bring %.0f %% of the light that rays meet; without them its variance is %.2g times smaller",
+                100 * pilot.high_share, pilot.variance_ratio);
+  return {pilot.variance_ratio > kPays, text};
+}
+
+}  // namespace tempolux
