@@ -58,6 +58,20 @@ bool Masking::edge_agrees(const float* first, const float* second) const {
   return true;
 }
 
+std::size_t Masking::edge_positions(Spread at, std::size_t count, Spread around) const {
+  constexpr double kCentres = 9, kBeyond = 3;
+  const double allowed = options_.edge_share * double(std::max(luminance_of(at.mean), dark_));
+  double variance = 0;
+  for (const int c : rgb_) {
+    const double mean = double(at.mean[c]);
+    const double off = std::max(0.0, double(around.square[c]) - 2 * mean * double(around.mean[c]) + mean * mean);   // of the centres
+    variance = std::max({variance, double(at.square[c]) - mean * mean, off * kCentres / kBeyond / (2 * double(count))});
+  }
+  if (!(variance > 0)) return 1;
+  const double n = std::pow(std::sqrt(variance) / allowed, 6.0 / 5);
+  return n < 1e6 ? std::size_t(std::ceil(n)) : 1000000;
+}
+
 std::uint32_t Masking::of_moved_pixel(std::size_t pixel, const float* colour, const float* first, const float* second) const {
   std::uint32_t why = 0;
   if (target_.speed && double((*target_.speed)[pixel]) < options_.slow_deg_per_s) why |= formats::why_slow;

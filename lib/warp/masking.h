@@ -24,6 +24,16 @@ class Masking {
   /// Do the keys agree about a pixel that is composed of several surfaces?
   bool edge_agrees(const float* first, const float* second) const;
 
+  /// Mean and mean square of what is seen at several positions.
+  struct Spread {
+    const float *mean, *square;
+  };
+  /// At how many positions a pixel composed of several surfaces must be known for its error to be WarpOptions::edge_share of its light: n positions in
+  /// rows and columns of their own err by sigma n^(-5/6) (docs/pixels.md), sigma the standard deviation of what they show. `at`: of the `count`
+  /// positions tried. What they all missed has a share of 1 / (2 count), about; how it differs is told by the centres of the 3 x 3 pixels
+  /// `around`, of which an edge leaves a third on its other side.
+  std::size_t edge_positions(Spread at, std::size_t count, Spread around) const;
+
   /// Does any key show what other light may shine upon? Else mark_changed_light() has nothing to do.
   bool light_may_differ() const;
   /// Marks pixels around which the two keys' light differs, and those that one key alone gives if its light may not be the target's.

@@ -10,10 +10,25 @@
 namespace tempolux {
 namespace {
 
-/// Positions within a pixel that an edge is composed from: 8 rows, 8 columns, each met once (Hammersley's points).
-constexpr int kParts = 8;
-constexpr std::array<RasterPoint, kParts> kPartAt{{{0.0625, 0.0625}, {0.1875, 0.5625}, {0.3125, 0.3125}, {0.4375, 0.8125},
-                                                   {0.5625, 0.1875}, {0.6875, 0.6875}, {0.8125, 0.4375}, {0.9375, 0.9375}}};
+/// Positions within a pixel that an edge is composed from: at first kParts, at most kMostParts where its surfaces differ much.
+constexpr std::size_t kParts = 8, kMostParts = 64;
+
+/// The first n points, n a power of two, of n rows and n columns, each met once (Hammersley's points), n = 8 to 64.
+std::span<const RasterPoint> part_positions(std::size_t n) {
+  static const auto all = [] {
+    std::array<std::array<RasterPoint, kMostParts>, 4> sets{};
+    for (std::size_t set = 0, count = kParts; set < sets.size(); ++set, count *= 2)
+      for (std::size_t i = 0; i < count; ++i) {
+        std::size_t mirrored = 0;   // the bits of i from the last to the first
+        for (std::size_t bit = 1; bit < count; bit *= 2) mirrored = 2 * mirrored + ((i & bit) != 0);
+        sets[set][i] = {(double(i) + 0.5) / double(count), (double(mirrored) + 0.5) / double(count)};
+      }
+    return sets;
+  }();
+  std::size_t set = 0;
+  while (kParts << set < n) ++set;
+  return std::span(all[set]).first(kParts << set);
+}
 
 constexpr std::size_t kMostChannels = 64;
 
@@ -35,6 +50,7 @@ void mean_of(const KeyFrame& key, const Taps& taps, std::size_t stride, float* m
 struct Pixel {
   alignas(32) std::array<float, kMostChannels> colour;                    ///< composed
   alignas(32) std::array<std::array<float, kMostChannels>, 2> of_key;     ///< by each key alone
+  alignas(32) std::array<float, kMostChannels> square;                    ///< of several positions: mean square of what they show
   std::array<int, 2> parts{};                                 ///< how many positions it has given
   std::array<LookUp, 2> failed{LookUp::found, LookUp::found};
   bool missing = false;                                       ///< a position that no key gives
@@ -59,7 +75,10 @@ class Compositor {
     pixel.resampled = true;
     for (std::size_t i = 0; i < parts.size(); ++i) add_part(parts[i], at[i], pixel);
     if (parts.size() == 1) return;
-    for (std::size_t c = 0; c < stride_; ++c) pixel.colour[c] /= float(parts.size());
+    for (std::size_t c = 0; c < stride_; ++c) {
+      pixel.colour[c] /= float(parts.size());
+      pixel.square[c] /= float(parts.size());
+    }
     for (std::size_t k = 0; k < keys_.size(); ++k)
       for (std::size_t c = 0; c < stride_ && pixel.parts[k] > 1; ++c) pixel.of_key[k][c] /= float(pixel.parts[k]);
   }
@@ -69,6 +88,7 @@ class Compositor {
 
   void start(Pixel& pixel) const {
     std::fill_n(pixel.colour.begin(), stride_, 0.0f);
+    std::fill_n(pixel.square.begin(), stride_, 0.0f);
     for (std::size_t k = 0; k < keys_.size(); ++k) std::fill_n(pixel.of_key[k].begin(), stride_, 0.0f);
     pixel.parts = {};
     pixel.failed = {LookUp::found, LookUp::found};
@@ -141,6 +161,7 @@ class Compositor {
     const std::size_t first = weight[0] > 0 ? 0 : 1;
     if (weight[0] > 0 && weight[1] > 0) add_difference(here[0].data(), weight[1] / sum, here[1].data(), here[0].data(), stride_);
     add(here[first].data(), pixel.colour.data());
+    for (std::size_t c = 0; c < stride_; ++c) pixel.square[c] += here[first][c] * here[first][c];
   }
 
   void add(const float* colour, float* sum) const {
@@ -219,6 +240,7 @@ WarpedFrame warp(const WarpTarget& target, std::span<const WarpKey> keys, const 
   const std::size_t stride = keys[0].view->key().stride();
   WarpedFrame frame{names, stride, std::vector<float>(pixels * stride), std::vector<std::uint32_t>(pixels), {}};
   if (options.separate) frame.candidates.assign(keys.size(), std::vector<float>(pixels * stride));
+  const auto height = std::size_t(target.seen->height);
   const std::vector<std::uint8_t> whole = whole_pixels(*target.seen, *target.camera);
   const Compositor compositor(target, keys, options);
   const LayerSum layers(names);
@@ -228,21 +250,38 @@ WarpedFrame warp(const WarpTarget& target, std::span<const WarpKey> keys, const 
   for (std::size_t k = 0; k < keys.size() && masking.light_may_differ(); ++k) light[k].resize(pixels);
 
   parallel_chunks(pixels, 4096, [&](std::size_t first, std::size_t last) {
-    Pixel pixel;
-    std::array<FacePoint, kParts> points;
-    std::array<RasterPoint, kParts> at;
+    Pixel pixel, around;
+    std::array<FacePoint, kMostParts> points;
+    std::array<RasterPoint, kMostParts> at;
+    const auto centre = [&](std::size_t i, std::size_t x, std::size_t y) {
+      const std::size_t q = y * width + x;
+      points[i] = {target.seen->depth[q], target.seen->object_at(q), target.seen->normal_at(q)};
+      at[i] = {double(x) + 0.5, double(y) + 0.5};
+    };
+    const auto compose = [&](std::size_t p, std::size_t n, Pixel& to) { compositor.pixel(p, std::span(points).first(n), std::span(at).first(n), to); };
     for (std::size_t p = first; p < last; ++p) {
-      const double x = double(p % width), y = double(p / width);
-      std::size_t count = 1;
-      if (whole[p] || !target.look) {
-        points[0] = {target.seen->depth[p], target.seen->object_at(p), target.seen->normal_at(p)};
-        at[0] = {x + 0.5, y + 0.5};
+      const std::size_t x = p % width, y = p / width;
+      const bool composed = !whole[p] && target.look;
+      std::size_t count = 1, wanted = kParts;
+      if (composed) {
+        std::size_t n = 0;
+        for (std::size_t ny = y - (y > 0); ny <= std::min(y + 1, height - 1); ++ny)
+          for (std::size_t nx = x - (x > 0); nx <= std::min(x + 1, width - 1); ++nx) centre(n++, nx, ny);
+        compose(p, n, around);
       } else {
-        count = kParts;
-        for (std::size_t i = 0; i < kParts; ++i) at[i] = {x + kPartAt[i].x, y + kPartAt[i].y};
-        target.look(at, points.data());
+        centre(0, x, y);
+        compose(p, 1, pixel);
       }
-      compositor.pixel(p, std::span(points).first(count), std::span(at).first(count), pixel);
+      while (composed && wanted > count && count < kMostParts) {
+        const std::span<const RasterPoint> positions = part_positions(std::min(wanted, kMostParts));
+        count = positions.size();
+        for (std::size_t i = 0; i < count; ++i) at[i] = {double(x) + positions[i].x, double(y) + positions[i].y};
+        target.look(std::span(at).first(count), points.data());
+        compose(p, count, pixel);
+        if (pixel.missing || !pixel.resampled) break;
+        wanted = masking.edge_positions({pixel.colour.data(), pixel.square.data()}, count, {around.colour.data(), around.square.data()});
+      }
+      const bool known = !composed || wanted <= count;
       if (summed) layers.set(pixel.colour.data());
       std::array<const float*, 2> given{};
       for (std::size_t k = 0; k < keys.size(); ++k)
@@ -250,7 +289,7 @@ WarpedFrame warp(const WarpTarget& target, std::span<const WarpKey> keys, const 
       std::uint32_t why = 0;
       if (pixel.missing) why |= why_missing(pixel);
       if (pixel.undersampled) why |= formats::why_undersampled;
-      if (pixel.resampled && !pixel.missing && !whole[p] && (!target.look || !masking.edge_agrees(given[0], given[1]))) why |= formats::why_edge;
+      if (pixel.resampled && !pixel.missing && !whole[p] && (!target.look || !known || !masking.edge_agrees(given[0], given[1]))) why |= formats::why_edge;
       if (pixel.resampled) why |= masking.of_moved_pixel(p, pixel.colour.data(), given[0], given[1]);
       frame.why[p] = why;
       std::copy_n(pixel.colour.begin(), stride, &frame.colour[p * stride]);

@@ -1,6 +1,6 @@
 """Error against time: curves over photons, samples, gather rays and the cache's accuracy, drawn by error-report.
 
-A curve is one entry of `curves`; later methods (splits, filters) are further entries. Each
+A curve is one entry of `curves`; those of filtering and warping are made by few_samples.py. Each
 point costs the CPU seconds of all processes that lead to the frame.
 """
 import json
@@ -8,6 +8,7 @@ import shutil
 
 import chain
 from chain import Settings
+from few_samples import filter_runs, warping_runs
 from measure import big
 
 FRAMES = {"S1": "Cornell box", "S2": "Cornell box, frame 10", "S3": "room lit by indirect light alone"}
@@ -116,9 +117,12 @@ def measure(bench, peers):
                         bench.compare(image, halves, comparison, layer)
                         runs.append({"scene": title, "curve": curve, "label": big(x) if isinstance(x, int) else str(x), "x": x, "parameters": {"seed": seed},
                                      "stats": [str(s) for s in stats], "comparison": str(comparison)})
+        if name == ("S1" if bench.tiny else "S2"):
+            runs += filter_runs(bench, name, f"{name}, {FRAMES[name]}", halves)
         for peer, rows in peers.items():
             points += [{"scene": f"{name}, {FRAMES[name]}", "label": f"{peer}, {row['samples']} samples",
                         "cpu_s": row["cpu_s"], "rmse": row["rmse"]} for row in rows if row["scene"] == name]
+    runs += warping_runs(bench)
     manifest = {"schema": "tempolux.report", "version": "1.0", "title": "Error against run time",
                 "baseline": "path tracing", "runs": runs, "points": points}
     file = bench.out / "report.json"

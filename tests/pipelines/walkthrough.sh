@@ -27,6 +27,14 @@ for key in 0000 0004 0006; do
     bad "key $key is not the frame rendered"
 done
 
+# Left out: with one frame nothing is warped, where the camera stands METHOD=auto takes no keys, and where nothing mirrors no pixel is masked for it.
+run METHOD=walkthrough OUT="$work/one" FRAMES=3 || { cat "$work/log"; exit 1; }
+grep -q ibr-warp "$work/log" && bad 'one frame: something is warped'
+method() { "$bin/scene-plan" "$1" --frames 0-47 -o "$work/plan" -q && sed -n 's/^plan_method := //p' "$work/plan/plan.mk"; }
+[ "$(method pipelines/scenes/S2_cornell_moving.glb)" = frames ] || bad 'METHOD=auto warps where the camera stands'
+[ "$(method "$work/pan.glb")" = walkthrough ] || bad 'METHOD=auto does not warp where the camera pans'
+grep -h '"traced_specular"' "$work"/a/walk/*.warp.json | grep -qv ': 0,*$' && bad 'nothing mirrors: pixels are masked for it'
+
 warped=$(basename "$(ls "$work"/a/walk/*.keys | head -n 1)" .keys)
 [ -n "$warped" ] || bad 'no frame was warped'
 rm "$work/a/frames/$warped.exr"; run METHOD=walkthrough OUT="$work/a"

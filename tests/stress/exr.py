@@ -100,8 +100,8 @@ def unzipped(block):
     return bytes(result)
 
 
-def write(path, width, height, channels):
-    """channels: name -> values, lines from the top; all float."""
+def write(path, width, height, channels, matrices=None):
+    """channels: name -> values, lines from the top; all float. matrices: name -> the bytes of a 4x4 float attribute, as read() gives them."""
     def attribute(name, kind, value):
         return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
     names = sorted(channels)
@@ -112,7 +112,8 @@ def write(path, width, height, channels):
         attribute("dataWindow", "box2i", window), attribute("displayWindow", "box2i", window),
         attribute("lineOrder", "lineOrder", b"\0"), attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
         attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
-        attribute("screenWindowWidth", "float", struct.pack("<f", 1))]) + b"\0"
+        attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
+        *(attribute(name, "m44f", value) for name, value in (matrices or {}).items())]) + b"\0"
     line = 8 + 4 * width * len(names)
     with open(path, "wb") as file:
         file.write(header)

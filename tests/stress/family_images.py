@@ -241,3 +241,34 @@ def filtered(s):
         run(name, frame(16, 16, 0.5, odd=odd), 0.5, 1e-6)
     for motion in (1e4, -1e4, 3e38):
         run(f"motion {motion:g}", frame(16, 16, 0.5, motion), 0.5, 1e-6)
+
+
+@case("images", "ibr-warp: 1x1, one column, a row, NaN, depth 0 and none, values above 65504")
+def warped(s):
+    """A key warped to its own view is itself to the bit; what is no number or no depth is refused and said where."""
+    def warp(key, view):
+        out = s.path(".exr")
+        return s.run("ibr-warp", "-q", key, "--view", view, "-o", out, "--mask", s.path(".exr")), out
+
+    scene = furnace(s, 7e4)
+    for width, height in ((1, 1), (1, 100), (100, 1), (16, 16)):
+        key = s.render(scene, (width, height), 1, "--channels", "RGBA,Z,N,id")
+        run, out = warp(key.path, key.path)
+        s.done(run)
+        image = exr.read(out)
+        s.true(f"{width}x{height}: its own view is itself to the bit", image.rgb() == key.rgb())
+    matrices = "worldToCamera", "worldToNDC"
+    for name, channel, value in (("NaN", "G", NAN), ("infinity", "G", INF), ("depth 0", "Z", 0.0), ("depth -1", "Z", -1.0), ("depth NaN", "Z", NAN)):
+        bad = s.path(".exr")
+        channels = {c: list(v) for c, v in key.channels.items() if c in ("R", "G", "B", "Z")}
+        channels[channel][37] = value
+        exr.write(bad, 16, 16, channels, {m: key.attributes[m] for m in matrices})
+        run, out = warp(bad, key.path)
+        s.refused(f"{name} in a key", run, out)
+    far = s.path(".exr")
+    channels = {c: list(v) for c, v in key.channels.items() if c in ("R", "G", "B", "Z")}
+    channels["Z"] = [INF] * 256
+    exr.write(far, 16, 16, channels, {m: key.attributes[m] for m in matrices})
+    run, out = warp(far, far)
+    s.done(run)
+    s.true("nothing but sky: its own view is itself to the bit", exr.read(out).rgb() == key.rgb())

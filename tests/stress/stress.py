@@ -19,6 +19,7 @@ import time
 
 import family_bad
 import family_caches
+import family_camera
 import family_energy
 import family_environment
 import family_geometry
@@ -35,6 +36,7 @@ from session import CASES, FULL, LONG, SHORT, Failed, Session
 
 ORDER = [m.__name__ for m in (family_scale, family_light, family_openings, family_environment, family_energy,
                               family_glass, family_geometry, family_photons, family_caches, family_images, family_numbers, family_time,
+                              family_camera,
                               family_bad, family_tools)]
 CASES.sort(key=lambda case: ORDER.index(case[3].__module__))
 COLUMNS = ["case", "quantity", "expected", "got", "error", "seconds", "verdict"]

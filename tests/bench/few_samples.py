@@ -1,0 +1,93 @@
+"""Curves of what takes the place of samples: st-filter on few of them, and key frames with warped frames between.
+
+Entries of error-report's manifest, as sweep.py makes them.
+"""
+import json
+import subprocess
+import sys
+
+import chain
+from measure import big
+
+WINDOW = 5
+READ = "RGBA,layers,Z,N,id,albedo,motion,coverage,samples"
+
+
+def run_of(title, curve, x, label, stats, comparison):
+    return {"scene": title, "curve": curve, "label": label, "x": x, "parameters": {}, "stats": [str(s) for s in stats],
+            "comparison": str(comparison)}
+
+
+# ---- st-filter: 1 to 16 samples, five frames, beside up to four times as many unfiltered ones
+
+def frames_of_window(bench, name, samples, filtered):
+    """Frames around the scene's, each lit by itself, so many samples everywhere; the frame filtered by them or as it is; statistics of one
+    frame of a sequence: its light, its samples, its filtering."""
+    scene, frame = bench.scene(name)
+    settings = chain.Settings(20000 if bench.tiny else 200000, points=("--point-count", "1k") if bench.tiny else ())
+    wanted = range(frame - WINDOW // 2, frame + WINDOW // 2 + 1) if filtered else [frame]
+
+    def make(stem):
+        files = bench.out / "frames" / stem
+        for f in wanted:
+            light = {end: bench.out / "frames" / f"{name}-lit-{f}.{end}" for end in ("photons", "irradpoints", "irradcache")}
+            if not light["irradcache"].exists():
+                bench.run([bench.bin / "photon-trace", scene, f"--frame={f}", "--photons", settings.photons, "--kinds", "caustic,indirect", "-q",
+                           "-o", light["photons"], "--stats", light["photons"].with_suffix(".json")])
+                bench.run([bench.bin / "irradcache-build", scene, f"--frame={f}", "--photons", light["photons"], *settings.points, "--size", bench.size,
+                           "-q", "--keep-points", light["irradpoints"], "-o", light["irradcache"], "--stats", f"{light['irradcache']}.json"])
+            bench.run([bench.bin / "frame-render", scene, f"--frame={f}", "--size", bench.size, "--spp", samples, "--pixel-error", 0,
+                       "--seed-mode", "frame", "--photons", light["photons"], "--irradcache", light["irradcache"], "--points", light["irradpoints"],
+                       "--channels", READ, "--compression", "none", "-q", "-o", f"{files}.{f}.exr", "--stats", f"{files}.{f}.json"])
+        if filtered:
+            bench.run([bench.bin / "st-filter", *(f"{files}.{f}.exr" for f in wanted), "-q", "-o", f"{files}.filtered.exr",
+                       "--stats", f"{files}.filtered.json"])
+    ends = [f".{f}{end}" for f in wanted for end in (".exr", ".json")] + ([".filtered.exr", ".filtered.json"] if filtered else [])
+    made = dict(zip(ends, bench.cached("frames", f"{name}-few-{samples}-{'filtered' if filtered else 'plain'}",
+                                       [scene, *(bench.bin / t for t in ("photon-trace", "irradcache-build", "frame-render", "st-filter")),
+                                        samples, bench.size, settings.text()], ends, make)))
+    stats = [bench.out / "frames" / f"{name}-lit-{frame}.json", bench.out / "frames" / f"{name}-lit-{frame}.irradcache.json", made[f".{frame}.json"]]
+    return (made[".filtered.exr"], [*stats, made[".filtered.json"]]) if filtered else (made[f".{frame}.exr"], stats)
+
+
+def filter_runs(bench, name, title, halves):
+    samples = [1, 2] if bench.tiny else [1, 2, 4, 8, 16]
+    for filtered, curve in ((True, "spatio-temporal filter"), (False, "the same samples, unfiltered")):
+        for x in samples if filtered else [4 * s for s in samples]:
+            image, stats = frames_of_window(bench, name, x, filtered)
+            comparison = image.with_suffix(".error.json")
+            bench.compare(image, halves, comparison)
+            yield run_of(title, curve, x, big(x), stats, comparison)
+
+
+# ---- warping: how far apart keys may be, beside every frame traced
+
+def pan_room(bench):
+    room = bench.out / "tmp" / "pan.glb"
+    subprocess.run([sys.executable, "-B", str(bench.project / "pipelines" / "scenes" / "make_walkthrough.py"), "pan",
+                    str(bench.project / "pipelines" / "scenes" / "S3_indirect_room.glb"), str(room)], check=True)
+    return room
+
+
+def warping_runs(bench):
+    """A camera pans by 54 degrees in 16 frames: all of Makefile.example's stages, error of every fourth frame. Swept: the threshold."""
+    room, size = pan_room(bench), "48x28" if bench.tiny else "160x90"
+    last, judged = (4, "2") if bench.tiny else (16, "2,6,10,14")
+    title = f"room in which the camera pans, {last + 1} frames, {size}"
+    reference = bench.out / "reference" / f"pan-{size}.####.exr"
+    halves = [str(reference).replace(".exr", f"_{h}.exr") for h in "ab"]
+    bench.run([bench.bin / "frame-render", room, "--frames", judged, "--size", size, "--integrator", "path", "--halves", "--spp",
+               bench.reference_samples, "--seed", 1000003, "--channels", "RGBA,layers,id", "-q", "-o", reference])
+    sides = [("warping", x, f"{x:g}", ["METHOD=walkthrough", f"THRESHOLD={x}"]) for x in ((1e-4, 1e-2) if bench.tiny else (3e-5, 1e-4, 3e-4, 1e-3, 1e-2))]
+    sides += [("every frame traced", n, big(n), [f"PIXELS=--spp {n} --pixel-error 0"]) for n in ((1, 4) if bench.tiny else (1, 2, 4, 8, 16))]
+    sides += [("FILTER=5", n, big(n), ["FILTER=5", f"FILTER_SPP={n}"]) for n in ((1,) if bench.tiny else (1, 2, 4))]
+    for curve, x, label, variables in sides:
+        out = bench.out / "frames" / f"pan-{curve.split()[0].replace('=', '')}-{label}"
+        small = ["PHOTONS=20k", "POINTS=--point-count 1k", "CACHE=--rays 40 --error-bound 0.6"] if bench.tiny else []
+        bench.run(["make", "-f", bench.project / "Makefile.example", "--no-print-directory", "demo", f"BIN={bench.bin}", f"SCENE={room}",
+                   f"FRAMES=0-{last}", f"SIZE={size}", f"OUT={out}", "CHANNELS=RGBA,Z,N,id", *small, *variables])
+        comparison = out / "error.json"
+        bench.run([bench.bin / "aqm-compare", out / "frames" / "####.exr", "--reference-halves", *halves, "--frames", judged, "--json", comparison,
+                   "-q", "--allow-stale"])
+        stats = [f for f in sorted(out.glob("*/*.json")) if json.loads(f.read_text()).get("schema") == "tempolux.stats"]
+        yield run_of(title, curve, x, label, stats, comparison)
