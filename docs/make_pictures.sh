@@ -1,6 +1,6 @@
 #!/bin/sh
 # Make the pictures of README.md again, into docs/images: sh docs/make_pictures.sh [BIN]
-# Run at the top of the tree; BIN is the folder with the tools. Takes about two CPU minutes; all from the demo's scene.
+# Run at the top of the tree; BIN is the folder with the tools. Takes about four CPU minutes; all from scenes of the tree.
 bin=${1:-build/release/bin} out=docs/images scene=pipelines/scenes/S2_cornell_moving.glb
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
@@ -41,6 +41,17 @@ for f in 10 11 12 13 14; do
 done
 "$bin/st-filter" "$work"/one.1[0-4].exr -o "$work/filtered.exr"
 "$info" --sheet $out/st-filter.png --columns 1 --tile 160 "$work/one.12.exr" "$work/filtered.exr"
+
+# A walk: every fourth frame, keys marked; one frame as it was warped, and what of it is traced.
+make -f Makefile.example --no-print-directory demo BIN="$bin" METHOD=walkthrough SCENE=pipelines/scenes/S4_atrium.glb SIZE=320x180 OUT="$work/walk"
+every_fourth=$(for f in $(seq 0 4 44); do printf '%s/walk/frames/%04d.exr ' "$work" "$f"; done)
+marks=$(OUT="$work/walk" sh pipelines/walkthrough.sh keys | tr , '\n' | while read -r key; do
+  case " $every_fourth " in *" $key "*) echo "$key";; esac; done | paste -sd,)
+# shellcheck disable=SC2086
+"$info" --sheet $out/walkthrough.png --columns 4 --tile 160 --mark "$marks" --exposure "$(cat "$work/walk/exposure")" $every_fourth
+"$info" --png "$work/warped.png" --exposure "$(cat "$work/walk/exposure")" "$work/walk/walk/0008.exr"
+"$info" --png "$work/why.png" "$work/walk/walk/0008.mask.exr"
+"$info" --sheet $out/ibr-warp.png --columns 1 --tile 160 --exposure 0 "$work/warped.png" "$work/why.png"
 
 # Where light is bright: a room lit by indirect light alone.
 room=pipelines/scenes/S3_indirect_room.glb

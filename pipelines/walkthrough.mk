@@ -1,7 +1,7 @@
 # pipelines/walkthrough.mk -- METHOD=walkthrough: key frames are rendered, frames between them warped, the rest of their pixels traced.
 # Included by Makefile.example in place of its rule for pictures; walkthrough.md is its page.
 KEY_DISTANCE = 16#       frames between the first keys; intervals are halved where that is too far
-THRESHOLD    = 0.01#     relMSE between what two keys give for the frame in their middle, above which an interval is halved
+THRESHOLD    = $(if $(filter draft,$(QUALITY)),0.035,0.01)# relMSE between what two keys give for the frame in their middle, above which an interval is halved
 walkthrough  = $(dir $(lastword $(MAKEFILE_LIST)))walkthrough.sh
 
 # Keys need the layer of light by mirrors, glass and gloss.
@@ -42,3 +42,7 @@ $(pictures): $(OUT)/frames/%.exr: $$(if $$(walk_of_$$*),$(OUT)/walk/$$(walk_of_$
 demo: $(if $(intervals),$(OUT)/walk.log)
 $(OUT)/walk.log: $(intervals:%=$(OUT)/walk/%.done)
 	@cat $(intervals:%=$(OUT)/walk/%.log) > $@
+
+# Keys have a border in the sheet.
+marks = $(if $(intervals),--mark "$$(OUT='$(OUT)' sh $(walkthrough) keys)")
+$(OUT)/sheet.png: $(if $(intervals),$(OUT)/walk.log)

@@ -5,8 +5,9 @@
 #     walkthrough.sh between A B FRAME...     the frames of the list that lie between two
 #     walkthrough.sh interval A B FRAME...    decide one interval and make its frames; FRAMEs: those between
 #     walkthrough.sh frame F                  make one frame again, from the keys it was warped from
+#     walkthrough.sh keys                     by OUT/walk.log the frames that are keys, as OUT/frames/F.exr,...
 #
-# The last two are run by walkthrough.mk, which says in the environment: OUT, the folder; WARP, RENDER, COMPARE, MAKE_INTERVALS, the
+# interval and frame are run by walkthrough.mk, which says in the environment: OUT, the folder; WARP, RENDER, COMPARE, MAKE_INTERVALS, the
 # commands; LIT_F, the options of light of each frame F; THRESHOLD. They may be killed at any moment and run again: a file is there whole or
 # not at all, and an interval counts as done by walk/A+B.done alone, which make touches last.
 set -e
@@ -115,7 +116,10 @@ frame() {
   fi
 }
 
+# An interval that was halved has a line and its halves have theirs: ends of those that were not.
+keys() { awk -v out="$OUT" '!/split$/ { print out "/frames/" $1 ".exr"; print out "/frames/" $2 ".exr" }' "$OUT/walk.log" | sort -u | paste -sd,; }
+
 case $command in
-  intervals | between | interval | frame) $command "$@";;
-  *) echo "walkthrough.sh: '$command' is none of intervals, between, interval, frame" >&2; exit 2;;
+  intervals | between | interval | frame | keys) $command "$@";;
+  *) echo "walkthrough.sh: '$command' is none of intervals, between, interval, frame, keys" >&2; exit 2;;
 esac

@@ -152,6 +152,11 @@ int main(int argc, char** argv) {
       ->type_name("PX")
       ->capture_default_str()
       ->check(tools::number_between(1, 65536));
+  app.add_option("--mark", request.picture.marked, "of --sheet: files whose pictures get a border, such as key frames")
+      ->type_name("FILES")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->needs(sheet);
   const std::vector<CLI::Option*> modes{check, digest, diff, format, png, sheet};
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)

@@ -50,6 +50,15 @@ Picture fitted(const Picture& picture, int max_width) {
 
 }  // namespace
 
+void mark(Picture& picture) {
+  constexpr std::array<std::uint8_t, 3> kAmber{255, 176, 0};
+  const int border = std::max(2, picture.width / 40);
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      if (std::min({x, y, picture.width - 1 - x, picture.height - 1 - y}) < border)
+        std::copy(kAmber.begin(), kAmber.end(), picture.rgb.begin() + 3 * (std::ptrdiff_t(y) * picture.width + x));
+}
+
 Picture contact_sheet(const std::vector<Picture>& pictures, int columns, int max_width) {
   if (pictures.empty() || columns < 0 || max_width < 1)
     throw std::invalid_argument("contact_sheet: no pictures, or columns or width out of range");

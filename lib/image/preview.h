@@ -49,6 +49,9 @@ Picture make_picture(const Image& image, const PreviewOptions& options);
 /// max_width < 1.
 Picture contact_sheet(const std::vector<Picture>& pictures, int columns, int max_width);
 
+/// Draws a border, a fortieth of the width wide and 2 px at least, along the picture's edge, in amber.
+void mark(Picture& picture);
+
 /// Writes a PNG (8-bit RGB) at exactly this path. Throws ResourceError.
 void save_png(const std::string& path, const Picture& picture);
 

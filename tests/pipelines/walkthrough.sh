@@ -18,6 +18,9 @@ digests "$work/a" > "$work/expected"
 [ "$(wc -l < "$work/expected")" = 7 ] || bad "7 frames, not $(wc -l < "$work/expected")"
 [ "$(tail -n +1 "$work/a/walk.log" | grep -cE '^[0-9]{4} [0-9]{4}  (middle [0-9]{4}  difference [^ ]+  traced .*  (warp|split)|neighbours)$')" = "$(wc -l < "$work/a/walk.log")" ] ||
   bad "log: $(cat "$work/a/walk.log")"
+marked=$(OUT="$work/a" sh pipelines/walkthrough.sh keys)
+for key in 0000 0006; do case ",$marked," in *",$work/a/frames/$key.exr,"*) ;; *) bad "key $key is not marked in the sheet: $marked";; esac; done
+[ "$(grep -o -- '--mark [^ ]*' "$work/log" | wc -l)" = 1 ] || bad 'the sheet marks no keys'
 run METHOD=walkthrough OUT="$work/a"; grep -q 'Nothing to be done' "$work/log" || bad "a second run: $(head -3 "$work/log")"
 
 # Every frame rendered: a key is that to the bit, but for the layer that keys have more.

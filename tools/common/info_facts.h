@@ -63,6 +63,7 @@ struct PictureOptions {
   std::string layer;                     ///< "": R, G, B
   std::optional<double> exposure_stops;  ///< nothing: auto
   int columns = 0, tile_width = 320;     ///< of a sheet; columns 0: about square
+  std::vector<std::string> marked;       ///< of a sheet: files whose pictures get a border
   std::function<void(double)> progress;  ///< of a sheet, [0, 1]; may be empty
 };
 /// An image as PNG.

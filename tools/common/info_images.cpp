@@ -151,6 +151,8 @@ void write_picture(const std::string& path, const PictureOptions& options, Outpu
 }
 
 void write_sheet(const std::vector<std::string>& paths, const PictureOptions& options, Output& output) {
+  for (const std::string& path : options.marked)
+    if (std::find(paths.begin(), paths.end(), path) == paths.end()) throw InputError("--mark " + path + ": is not among the images of the sheet");
   PreviewOptions preview{options.layer, options.exposure_stops};
   const double steps = double(paths.size()) * (preview.exposure_stops ? 1 : 2);
   double done = 0;
@@ -171,6 +173,7 @@ void write_sheet(const std::vector<std::string>& paths, const PictureOptions& op
     const Image image = load_shown(path, options);
     const Picture picture = picture_of(path, image, preview);
     pictures.push_back(contact_sheet({picture}, 1, options.tile_width));
+    if (std::find(options.marked.begin(), options.marked.end(), path) != options.marked.end()) mark(pictures.back());
     step();
   }
   save_png(output.temporary_path(), contact_sheet(pictures, options.columns, options.tile_width));

@@ -127,6 +127,14 @@ TEST(ContactSheet, CellsGapsAndColumns) {
   EXPECT_THROW(contact_sheet({}, 0, 100), std::invalid_argument);
 }
 
+TEST(ContactSheet, AMarkIsABorder) {
+  Picture picture = plain(120, 40, 200);   // 120 / 40 = 3 pixels
+  mark(picture);
+  for (const auto& [x, y] : {std::pair{0, 0}, {2, 20}, {60, 2}, {119, 39}, {117, 20}, {60, 37}})
+    EXPECT_EQ(pixel(picture, x, y), (std::vector<int>{255, 176, 0})) << x << " " << y;
+  for (const auto& [x, y] : {std::pair{3, 3}, {60, 20}, {116, 36}}) EXPECT_EQ(pixel(picture, x, y), (std::vector<int>{200, 200, 200})) << x << " " << y;
+}
+
 TEST(ContactSheet, ShrinkingAveragesLight) {
   Picture stripes = plain(6, 4, 0);  // white and black columns
   for (std::size_t i = 0; i < stripes.rgb.size(); ++i)
