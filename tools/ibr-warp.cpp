@@ -20,6 +20,7 @@
 #include "lib/warp/flow_of_view.h"
 #include "lib/warp/slow_speed.h"
 #include "lib/warp/warped_image.h"
+#include "tools/common/keep_memory.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 #include "tools/common/warp_keys.h"
@@ -234,6 +235,7 @@ int main(int argc, char** argv) {
   add_options(tool, options);
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
   return tool.run([&] {
+    tools::keep_freed_memory();
     check(tool, options, tool.common().frames.size() > 1);
     tool.stats().phase("load");
     const std::vector<tools::LoadedKey> keys = tools::load_keys(tool, options.keys);

@@ -46,6 +46,13 @@ digests "$work/a" | diff "$work/expected" - || bad "$warped, deleted, came back 
 RUN= run METHOD=walkthrough OUT="$work/b" -j1 RUN='taskset -c 0' || { cat "$work/log"; exit 1; }
 digests "$work/b" | diff "$work/expected" - || bad 'one processor, one job: other frames'
 
+for threads in 1 2 3 7; do
+  "$bin/ibr-warp" "$work/a/keys/0000.exr" "$work/a/keys/0004.exr" --scene "$work/pan.glb" --frames 1,2 --threads $threads -q \
+    -o "$work/w.##.exr" --mask "$work/m.##.exr" --flow "$work/v.##.exr" || bad "ibr-warp: $threads threads"
+  cat "$work"/[wmv].0[12].exr > "$work/all.$threads"
+  cmp "$work/all.1" "$work/all.$threads" || bad "ibr-warp: other bytes by $threads threads"
+done
+
 # Killed after a while, ever longer, with all it has started.
 for moment in $(seq 1 "$moments"); do
   setsid make -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
