@@ -93,7 +93,7 @@ def dots(table, frame, picture, out):
     frame, rows = json.load(open(frame)), list(csv.DictReader(open(table)))
     image = [[tuple(v * 2 // 5 for v in pixel) for pixel in row] for row in read_png(picture)]
     for _, x, y, row in seen(rows, frame, len(image[0]), len(image)):
-        splat(image, x, y, 1, (255, 170, 60) if row["set"] == "dynamic" else (255, 255, 255))
+        splat(image, x, y, 1, (255, 170, 60) if row.get("set") == "dynamic" else (255, 255, 255))
     write_png(out, image)
 
 

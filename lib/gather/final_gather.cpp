@@ -49,7 +49,7 @@ struct Shots {
 
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options)
     : reach_(tracer), incoming_(tracer, lights, points, options.near_factor, options.bright), options_(options), few_(std::min(kFewRays, options.rays)) {
-  for (std::size_t i = 0; i < strata_.size(); ++i) strata_[i] = GatherStrata(options.rays << i);
+  for (std::size_t i = 0; i < strata_.size(); ++i) strata_[i] = GatherStrata(std::max(1, int((std::int64_t(options.rays) << i) >> kFewer)));
 }
 
 void FinalGather::look_around(const SurfacePoint& from, IrradianceRecord& record) const {
@@ -67,11 +67,12 @@ float FinalGather::lit_share(const SurfacePoint& from, Vec3 normal, GatherCounts
   return sky.lit_cells() / float(few_.order.size());
 }
 
-IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share) const {
+IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share, float ray_share) const {
   thread_local Hemisphere sky;
   thread_local std::vector<std::uint8_t> further;
-  std::size_t times = 0;   // twofold
-  while (times + 1 < strata_.size() && expected_share * float(1 << times) < kEnoughLit) ++times;
+  std::size_t times = kFewer;   // twofold
+  while (times + 1 < strata_.size() && expected_share * float(1 << (times - kFewer)) < kEnoughLit) ++times;
+  for (std::size_t fewer = 0; fewer < kFewer && ray_share <= 0.5f; ++fewer, ray_share *= 2) --times;
   const std::vector<std::uint32_t>& order = strata_[times].order;
   Shots shots(from, normal, strata_[times], options_.seed);
   sky.reset(strata_[times].rings, strata_[times].sectors);

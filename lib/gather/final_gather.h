@@ -35,8 +35,9 @@ class FinalGather {
   /// by Bsdf::arrival_weight, as photons do: what the coat reflects more of at grazing angles does not reach the Lambert
   /// lobe. radius_unclamped receives the harmonic mean distance, radius the distance across the tangent plane to the
   /// nearest of what the outermost ring met (limit_radius makes the validity of both). Random numbers come from the
-  /// position: the record of a place does not depend on which records were made before, but for expected_share.
-  IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share = 1) const;
+  /// position: the record of a place does not depend on which records were made before, but for expected_share. ray_share: of
+  /// `rays` that it needs, 1/8 to 1; the next power of two that is not less.
+  IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share = 1, float ray_share = 1) const;
   /// Sets the clearance of a record gathered there, as far as its radius: once that is limited.
   void look_around(const SurfacePoint& from, IrradianceRecord& record) const;
   /// Share of the hemisphere from which light comes (Hemisphere::lit_cells), by at most 64 rays that gather() does not use.
@@ -46,13 +47,14 @@ class FinalGather {
   /// What rays bring.
   const IncomingRadiance& incoming() const { return incoming_; }
   /// The order in which gather() follows the cells (numbers j N_phi + k).
-  std::span<const std::uint32_t> cell_order() const { return strata_.front().order; }
+  std::span<const std::uint32_t> cell_order() const { return strata_[kFewer].order; }
 
  private:
   Reach reach_;
   IncomingRadiance incoming_;
   GatherOptions options_;
-  std::array<GatherStrata, 4> strata_;      ///< of 1, 2, 4 and 8 times `rays`
+  static constexpr std::size_t kFewer = 3;
+  std::array<GatherStrata, 4 + kFewer> strata_;   ///< of 1/8, 1/4, 1/2, 1, 2, 4 and 8 times `rays`
   GatherStrata few_;                        ///< of lit_share()
 };
 

@@ -5,6 +5,7 @@
 
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
+#include "lib/gather/localised.h"
 #include "lib/gather/signed_density.h"
 #include "lib/gather/whole_photons.h"
 
@@ -14,15 +15,15 @@ namespace {
 using formats::PathKind;
 using formats::Photon;
 
+/// Without branches: it is asked of millions of photons, few of which are near.
 bool inside(const Box3& box, Vec3 p, float margin) {
-  for (int a = 0; a < 3; ++a)
-    if (!(p[a] >= box.lower[a] - margin && p[a] <= box.upper[a] + margin)) return false;
-  return !box.empty();
+  return (p.x >= box.lower.x - margin) & (p.x <= box.upper.x + margin) & (p.y >= box.lower.y - margin) & (p.y <= box.upper.y + margin) &
+         (p.z >= box.lower.z - margin) & (p.z <= box.upper.z + margin);
 }
 
 bool near_any(const MovingBoxes& boxes, Vec3 p, float margin) {
   return inside(boxes.all, p, margin) &&
-         std::any_of(boxes.surfaces.begin(), boxes.surfaces.end(), [&](const Box3& box) { return inside(box, p, margin); });
+         std::any_of(boxes.surfaces.begin(), boxes.surfaces.end(), [&](const Box3& box) { return !box.empty() && inside(box, p, margin); });
 }
 
 /// Do lights move or change, so that what they give is another everywhere?
@@ -64,7 +65,7 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   PointUpdateCounts counts;
   const SceneFrame& frame = in.whole.frame();
   // Points that found fewer static photons than they wanted have the largest radius of all.
-  DensityOptions density{options.neighbours, largest_radius(options, points), options.area_probes};
+  DensityOptions density{options.neighbours, largest_radius(options, points), std::min(options.area_probes, kChangeProbes)};
   const SignedDensity density_of_change(in.standing, in.dynamic_photons, density, in.dynamic_shift);
   density.max_radius = density_of_change.max_radius();
   const MovingBoxes boxes = moving_boxes(frame);

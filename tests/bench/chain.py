@@ -16,6 +16,7 @@ class Settings:
     pixels: tuple = ()        # of frame-render
     steps: bool = False       # points and records by two processes, as Makefile.example does; else by one
 
+    split: bool = False       # bright points are sampled explicitly (photonmap-split); with steps
     caustics: bool = False    # pixels read the photons too: scenes with mirrors or glass
 
     def text(self):
@@ -37,7 +38,7 @@ def final(project):
 def light(bench, name, stem, seed, settings, size, keep):
     """photon-trace and irradcache-build; statistics files. `keep`: (photons, points, cache) to be written."""
     scene, frame = bench.scene(name)
-    stats = [bench.out / "frames" / f"{stem}-{stage}.json" for stage in ("photons", "points", "cache")]
+    stats = [bench.out / "frames" / f"{stem}-{stage}.json" for stage in ("photons", "points", "cache", "split")]
     common = [scene, "--frame", frame, "--seed", seed, "-q"]
     photons, points, cache = keep
     bench.run([bench.bin / "photon-trace", *common, "--photons", settings.photons, "--kinds", "caustic,indirect",
@@ -45,8 +46,15 @@ def light(bench, name, stem, seed, settings, size, keep):
     build, gather = bench.bin / "irradcache-build", ["--size", size, *settings.records, "-o", cache]
     if settings.steps:
         bench.run([build, "points", *common, "--photons", photons, *settings.points, "-o", points, "--stats", stats[1]])
-        bench.run([build, "records", *common, "--points", points, *gather, "--stats", stats[2]])
-        return stats
+        read = ["--points", points]
+        if settings.split:
+            low, high = (points.with_name(f"{points.name}-{part}") for part in ("low", "high"))
+            bench.run([bench.bin / "photonmap-split", points, "--low", low, "--high", high, "-q", "--stats", stats[3]])
+            read = ["--points", low, "--high", high]
+        bench.run([build, "records", *common, *read, *gather, "--stats", stats[2]])
+        for part in read[1::2] if settings.split else []:
+            part.unlink()
+        return stats if settings.split else stats[:3]
     bench.run([build, *common, "--photons", photons, *settings.points, "--keep-points", points, *gather, "--stats", stats[2]])
     return [stats[0], stats[2]]
 
@@ -59,7 +67,7 @@ def frame(bench, name, seed, settings, size=None, fresh=False):
         settings = dataclasses.replace(settings, photons=settings.photons // 20, points=("--point-count", "1k"))
     scene, number = bench.scene(name)
     tools = [bench.bin / tool for tool in ("photon-trace", "irradcache-build", "frame-render")]
-    suffixes = [".exr", "-photons.json", *(["-points.json"] if settings.steps else []), "-cache.json", ".json"]
+    suffixes = [".exr", "-photons.json", *(["-points.json"] if settings.steps else []), *(["-split.json"] if settings.split else []), "-cache.json", ".json"]
 
     def make(stem):
         keep = [bench.memory / f"tempolux-bench-{stem}.{end}" for end in ("photons", "irradpoints", "irradcache")]
@@ -74,7 +82,54 @@ def frame(bench, name, seed, settings, size=None, fresh=False):
             for file in keep:
                 file.unlink(missing_ok=True)
     image, *stats = bench.cached("frames", f"{name}-chain-{settings.photons}-{seed}",
-                                 [scene, *tools, number, seed, size, settings.steps, settings.caustics, settings.text()], suffixes, make, fresh)
+                                 [scene, *tools, number, seed, size, settings.steps, settings.split, settings.caustics, settings.text()], suffixes, make, fresh)
+    return image, stats
+
+
+STATES = 24              # of light in a segment, which what stands is computed for once
+
+
+def updated_frame(bench, name, seed, settings, low):
+    """The same by what movers change of what stands, records gathered where their influence is above `low` (2.5 times that: in full). Of what
+    stands 1/STATES of the cost counts."""
+    scene, number = bench.scene(name)
+    tools = [bench.bin / tool for tool in ("photon-trace", "irradcache-build", "frame-render")]
+    stages = ("standing", "photons", "points", "cache")
+    photons = settings.photons // 20 if bench.tiny else settings.photons
+    count = ("--point-count", "1k") if bench.tiny else settings.points
+
+    def make(stem):
+        files = bench.out / "frames" / stem
+        kept = {n: bench.memory / f"tempolux-bench-{stem}-{n}" for n in ("s.photons", "s.paths", "s.irradpoints", "s.irradcache", "d.photons",
+                                                                         "u.irradpoints", "u.irradcache")}
+        common, stands = [scene, "--frame", number, "--seed", seed, "-q"], []
+        influence = ["--influence-low", low, "--influence-high", 2.5 * low]
+
+        def run(tool, *words, stats=None):
+            mine = stats or f"{files}-part.json"
+            bench.run([tool, *words, "--stats", mine])
+            if not stats:
+                stands.append(json.loads(open(mine).read()))
+        try:
+            gather = ["--size", bench.size, *settings.records]
+            run(tools[0], *common, "--map", "static", "--photons", photons, "--kinds", "indirect", "-o", kept["s.photons"], "--paths", kept["s.paths"])
+            run(tools[1], "points", *common, "--map", "static", "--photons", kept["s.photons"], *count, "-o", kept["s.irradpoints"])
+            run(tools[1], "records", *common, "--map", "static", "--points", kept["s.irradpoints"], *gather, "-o", kept["s.irradcache"])
+            standing = stands[0] | {"cpu_s": sum(s["cpu_s"] for s in stands) / STATES, "wall_s": sum(s["wall_s"] for s in stands) / STATES}
+            (bench.out / "frames" / f"{stem}-standing.json").write_text(json.dumps(standing))
+            run(tools[0], scene, "--frame", number, "-q", "--map", "dynamic", "--static", kept["s.paths"], "-o", kept["d.photons"],
+                stats=f"{files}-photons.json")
+            run(tools[1], "points", *common, "--update", kept["s.irradpoints"], "--photons", kept["s.photons"], "--dynamic", kept["d.photons"], *count,
+                "-o", kept["u.irradpoints"], stats=f"{files}-points.json")
+            run(tools[1], "records", *common, "--update", kept["s.irradcache"], "--points", kept["u.irradpoints"], "--dynamic", kept["d.photons"],
+                *influence, *gather, "-o", kept["u.irradcache"], stats=f"{files}-cache.json")
+            run(tools[2], *common, "--irradcache", kept["u.irradcache"], "--points", kept["u.irradpoints"], *influence, "--size", bench.size,
+                *settings.pixels, "--channels", "RGBA,layers,id", "-o", f"{files}.exr", stats=f"{files}.json")
+        finally:
+            for file in (*kept.values(), bench.out / "frames" / f"{stem}-part.json"):
+                file.unlink(missing_ok=True)
+    image, *stats = bench.cached("frames", f"{name}-updated-{low}-{seed}", [scene, *tools, number, seed, bench.size, low, settings.text()],
+                                 [".exr", *(f"-{stage}.json" for stage in stages), ".json"], make)
     return image, stats
 
 

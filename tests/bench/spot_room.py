@@ -20,7 +20,7 @@ def read_glb(path):
 
 
 def make(path, cone=CONE):
-    """Writes the scene; the lamp shines from its middle along its normal, +x, into the wall 2 m away."""
+    """Writes the scene; the lamp shines from its middle along its normal, +x, into the wall 2 m away. The camera Behind looks there, too."""
     gltf, binary = read_glb(S3)
     lamp = next(n for n in gltf["nodes"] if n["name"] == "Emitter")
     primitive = gltf["meshes"][lamp["mesh"]]["primitives"][0]
@@ -39,7 +39,8 @@ def make(path, cone=CONE):
     half = math.sqrt(0.5)                   # a spot shines along its -z: turned by -90 degrees about y that is +x
     gltf["nodes"].append({"name": "Spot", "translation": [high[0] + 0.02, *[(low[a] + high[a]) / 2 for a in (1, 2)]],
                           "rotation": [0, -half, 0, half], "extensions": {"KHR_lights_punctual": {"light": 0}}})
-    gltf["scenes"][0]["nodes"].append(len(gltf["nodes"]) - 1)
+    gltf["nodes"].append({"name": "Behind", "camera": 0, "translation": [high[0] + 0.1, 1.3, (low[2] + high[2]) / 2], "rotation": [0, -half, 0, half]})
+    gltf["scenes"][0]["nodes"] += [len(gltf["nodes"]) - 2, len(gltf["nodes"]) - 1]
     text = json.dumps(gltf).encode()
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary

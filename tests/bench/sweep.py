@@ -4,6 +4,7 @@ A curve is one entry of `curves`; those of filtering and warping are made by few
 point costs the CPU seconds of all processes that lead to the frame.
 """
 import json
+import re
 import shutil
 
 import chain
@@ -11,8 +12,9 @@ from chain import Settings
 from few_samples import filter_runs, warping_runs
 from measure import big
 
-FRAMES = {"S1": "Cornell box", "S2": "Cornell box, frame 10", "S3": "room lit by indirect light alone"}
-LAYERS = {"S1": [None, "indirect"], "S2": [None, "indirect"], "S3": [None]}   # of S3 indirect light is all there is
+FRAMES = {"S1": "Cornell box", "S2": "Cornell box, frame 10", "S3": "room lit by indirect light alone", "spot": "S3 with a narrow lamp",
+          "room": "furnished room, a ball moves"}
+LAYERS = {"S1": [None, "indirect"], "S2": [None, "indirect"], "S3": [None], "spot": [None], "room": ["indirect"]}   # of S3 indirect light is all there is
 
 
 def photon_counts(bench):
@@ -89,8 +91,28 @@ def gathering_curves(bench):
     ]
 
 
-def curves(bench):
+def split_curves(bench):
+    """Bright points sampled explicitly, and not: gather rays."""
+    rays = [50, 100] if bench.tiny else [60, 125, 250, 500, 1000, 2000]
+    make = lambda split: lambda name, x, seed: chain.frame(bench, name, seed, Settings(records=("--rays", x), pixels=PIXELS, steps=True, split=split))
+    return [("gathering, rays", rays, make(False)), ("low and high part, rays", rays, make(True))]
+
+
+def moving_curves(bench):
+    """What moves: each frame anew, gather rays; and by what movers change, lower threshold of influence."""
+    pixels = ("--spp", 16, "--pixel-error", 0)
+    photons = 10**6
+    return [("frame by frame, rays", [50, 100] if bench.tiny else [60, 125, 250, 500, 1000, 2000],
+             lambda name, x, seed: chain.frame(bench, name, seed, Settings(photons, records=("--rays", x), pixels=pixels, steps=True))),
+            ("static + dynamic, thresholds", [0.06, 0.2] if bench.tiny else [0.5, 0.2, 0.1, 0.06, 0.03, 0.01],
+             lambda name, x, seed: chain.updated_frame(bench, name, seed, Settings(photons, pixels=pixels), x))]
+
+
+def curves(bench, name):
     """(curve, swept values, what one value and seed make: frame and statistics files)."""
+    if name in ("spot", "room"):
+        paths = ("path tracing", [1, 4] if bench.tiny else [1, 4, 16, 64], lambda name, x, seed: path_run(bench, name, x, seed))
+        return [paths, *(split_curves if name == "spot" else moving_curves)(bench)]
     return [
         ("path tracing", sample_counts(bench), lambda name, x, seed: path_run(bench, name, x, seed)),
         ("photon map, k = 50", photon_counts(bench), lambda name, x, seed: photon_run(bench, name, x, 50, seed)),
@@ -100,15 +122,17 @@ def curves(bench):
     ]
 
 
-def measure(bench, peers):
-    """Runs every point, has error-report draw the curves; the folder of the report."""
+def measure(bench, peers, only=""):
+    """Runs every point of the scenes that the regular expression names, has error-report draw the curves; the folder of the report."""
     runs, points = [], []
-    for name in (["S1"] if bench.tiny else FRAMES):
+    for name in (["S1", "spot", "room"] if bench.tiny else FRAMES):
+        if not re.search(only, name):
+            continue
         halves = bench.reference_halves(name)
-        for curve, values, make in curves(bench):
+        for curve, values, make in curves(bench, name):
             print(f"  {name}: {curve}", flush=True)
             for x in values:
-                for seed in ([1] if bench.tiny or (curve == "path tracing" and x > 16) or curve.startswith("gathering") or x > 10**5
+                for seed in ([1] if bench.tiny or (curve == "path tracing" and x > 16) or curve.startswith(("gathering", "low", "frame", "static")) or x > 10**5
                              else [1, 2]):
                     image, stats = make(name, x, seed)
                     for layer in LAYERS[name]:

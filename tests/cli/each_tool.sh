@@ -16,6 +16,9 @@ frame-render "$mirror" -q --size 96x54 --irradcache in/c.irradcache --points in/
 photon-trace "$scene" -q --photons 20k --map static -o in/s.photons --paths in/s.paths &&
 photon-trace "$scene" -q --frame 10 --map dynamic --static in/s.paths -o in/d.photons &&
 irradcache-build points "$scene" -q --map static --photons in/s.photons --point-count 1k -o in/s.irradpoints &&
+irradcache-build points "$scene" -q --frame 10 --update in/s.irradpoints --photons in/s.photons --dynamic in/d.photons --point-count 1k -o in/u.irradpoints &&
+irradcache-build records "$scene" -q --map static --points in/s.irradpoints --rays 32 --size 32x18 -o in/s.irradcache &&
+photonmap-split in/u.irradpoints -q --energy 1 --low in/l.irradpoints --high in/h.irradpoints &&
 photon-trace "$scene" -q --photons 5k -o in/0.photons && photon-trace "$scene" -q --frame 1 --photons 5k -o in/1.photons &&
 irradcache-build points "$scene" -q --photons in/0.photons --point-count 1k -o in/t.0000.irradpoints &&
 irradcache-build points "$scene" -q --frame 1 --photons in/1.photons --point-count 1k -o in/t.0001.irradpoints &&
@@ -31,6 +34,10 @@ each_tool() {
   "$1" photonmap-split-kinds photonmap-split "$in/p.photons" --kind caustic -o a.photons --rest b.photons
   "$1" irradcache-build-update irradcache-build points "$scene" --frame 10 --point-count 1k --photons "$in/s.photons" \
     --update "$in/s.irradpoints" --dynamic "$in/d.photons" -o a.irradpoints
+  "$1" irradcache-build-localised irradcache-build records "$scene" --frame 10 --update "$in/s.irradcache" --points "$in/u.irradpoints" \
+    --dynamic "$in/d.photons" --rays 32 --size 32x18 -o a.irradcache
+  "$1" irradcache-build-high irradcache-build records "$scene" --frame 10 --points "$in/l.irradpoints" --high "$in/h.irradpoints" --rays 32 \
+    --size 32x18 -o a.irradcache
   "$1" irradcache-build irradcache-build "$mirror" --photons "$in/p.photons" --point-count 1k --rays 50 --size 64x36 \
     --keep-points a.irradpoints -o a.irradcache
   "$1" irradcache-build-records irradcache-build records "$mirror" --points "$in/p.irradpoints" --records "$in/c.irradcache" \
@@ -39,6 +46,7 @@ each_tool() {
     -o "a.####.radsamples" --cache "a.####.irradcache"
   "$1" frame-render frame-render "$mirror" --size 96x54 --irradcache "$in/c.irradcache" --points "$in/p.irradpoints" \
     --photons "$in/p.photons" --spp 2 --channels RGBA,layers,Z,N,id -o a.exr
+  "$1" frame-render-high frame-render "$scene" --frame 10 --size 48x27 --points "$in/l.irradpoints" --high "$in/h.irradpoints" --spp 2 -o a.exr
   "$1" frame-render-paths frame-render "$mirror" --size 96x54 --integrator path --spp 2 --halves -o a.exr
   "$1" st-filter st-filter "$in/x.exr" "$in/x.exr" "$in/x.exr" --quiet -o a.exr
   "$1" aqm-compare aqm-compare "$in/x.exr" --reference-halves "$in/r_a.exr" "$in/r_b.exr" --json a.json --difference d.exr

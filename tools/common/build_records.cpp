@@ -214,8 +214,17 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
     };
     PlacementOptions placement = options.placement;
     if (f != number) placement.min_weight *= kLaterWeight;
+    // Where E_y counts by the share f < 1, its squared error counts by f^2: f of the rays leave no more of it than all leave where f is 1.
+    const RecordSource source{[&](const SeenPoint& seen, const RecordStore::Expected& expected, std::size_t, GatherCounts& local) {
+      const bool rides = seen.surface.object < moves.size() && moves[seen.surface.object];
+      const float share = rides ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
+      IrradianceRecord record = gather.gather(seen.surface, seen.normal, local, expected.lit_share, share);
+      limit_radius(record, seen.footprint, placement);
+      gather.look_around(seen.surface, record);
+      return record;
+    }, [](std::size_t, std::size_t) {}};
     const std::size_t added = place_records(gather, views, options.width, options.height, placement, store, counts,
-                                            [&](double done) { tool.progress(done); });
+                                            [&](double done) { tool.progress(done); }, &source);
     tool.stats().set("records_added." + std::to_string(f), double(added));
   }
   cache.gathered.assign(store.records().begin(), store.records().end());
