@@ -146,7 +146,7 @@ def measure(bench, peers, only=""):
         for peer, rows in peers.items():
             points += [{"scene": f"{name}, {FRAMES[name]}", "label": f"{peer}, {row['samples']} samples",
                         "cpu_s": row["cpu_s"], "rmse": row["rmse"]} for row in rows if row["scene"] == name]
-    runs += warping_runs(bench)
+    runs += [] if only else warping_runs(bench)
     manifest = {"schema": "tempolux.report", "version": "1.0", "title": "Error against run time",
                 "baseline": "path tracing", "runs": runs, "points": points}
     file = bench.out / "report.json"
