@@ -1,4 +1,4 @@
-// tempolux-vdb -- reads one density of an OpenVDB file and prints its voxels: lib/volume/vdb_pipe.h.
+// tempolux-vdb -- reads one density of each OpenVDB file that it is asked for and prints its voxels: lib/volume/vdb_pipe.h.
 //
 // A program of its own, started by lib/volume/vdb_file.cpp under limits of memory and time: damaged files crash or hang
 // OpenVDB 10, and starting with it costs .06 s and 32 MB that scenes without smoke need not pay.
@@ -200,10 +200,8 @@ void read(const std::string& path, const std::string& wanted) {
 
 int main() {
   std::string path, grid, words;
-  std::getline(std::cin, path);
-  std::getline(std::cin, grid);
   try {
-    read(path, grid);
+    while (std::getline(std::cin, path) && std::getline(std::cin, grid)) read(path, grid);
     return 0;
   } catch (const Refused& refused) {
     words = refused.words;

@@ -4,12 +4,14 @@
 //     photon-trace room.glb --frames 0-47 --photons 1M -o photons.####.photons
 //     photon-trace room.glb --frame 0 --map static --photons 1M -o s.photons --paths s.paths
 //     photon-trace room.glb --frames 0-23 --map dynamic --static s.paths -o d.####.photons
+//     photon-trace room.glb --frames 1-23 --majorants m --update p.####.photons --share 10% --strategy census -o p.####.photons
 //
 // Formats: formats/photons/photons.md, formats/paths/paths.md. Method: docs/methods/dynamic.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,13 +21,12 @@
 #include "formats/photons/layout.h"
 #include "formats/plan/view.h"
 #include "lib/photon/dynamic_map.h"
-#include "lib/photon/photon_ledger.h"
 #include "lib/photon/photon_map.h"
-#include "lib/photon/photon_update.h"
 #include "lib/scene/standing.h"
 #include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
+#include "tools/common/update_photons.h"
 
 using namespace tempolux;
 
@@ -35,23 +36,8 @@ struct Options {
   std::string scene, output, photons = "1M", kinds = "direct,caustic,indirect", groups = "auto", map = "global",
               importance, paths, static_paths;
   float volume_share = PhotonOptions{}.volume_share;
-  std::string update, share, strategy = "oldest";
-  std::uint64_t max_groups = 0;
-  UpdateOptions updating;
+  tools::UpdateArguments updating;
 };
-
-/// "10%" of the groups, rounded up.
-std::uint64_t groups_of(const std::string& share, std::uint32_t group_count) {
-  std::size_t read = 0;
-  double percent = -1;
-  try {
-    percent = std::stod(share, &read);
-  } catch (const std::exception&) {
-  }
-  if (!(percent >= 0 && percent <= 100) || (share.substr(read) != "%" && read != share.size()))
-    throw InputError("--share: '" + share + "' is not a share; write 10% or 2.5%");
-  return std::uint64_t(std::ceil(percent / 100 * group_count));
-}
 
 /// 0 stands for automatic.
 std::uint32_t group_count(const std::string& text) {
@@ -107,37 +93,6 @@ formats::PhotonHeader header_of(const tools::Tool& tool, const SceneFrame& frame
   return header;
 }
 
-/// Are all states of the scene that light depends on those of the map?
-bool is_still(const formats::Identity& a, const formats::Identity& b) {
-  return a.known() && a.static_geometry == b.static_geometry && a.moving_geometry == b.moving_geometry && a.materials == b.materials &&
-         a.lights == b.lights && a.media == b.media;
-}
-
-PhotonMapResult update_map(tools::Tool& tool, const Options& options, const PhotonTracer& photons, const PhotonOptions& photon_options,
-                           const formats::PhotonHeader& header, const SceneFrame& frame,
-                           const std::function<void(const void*, std::size_t)>& sink) {
-  const std::string previous_name = tools::frame_name(options.update, frame.frame - 1);
-  const bool census = options.updating.strategy == UpdateStrategy::census;
-  const PreviousMap previous = read_previous(previous_name, photons, census, frame.origin);
-  tool.depends_on(previous_name, tools::InputRole::replaceable);
-  formats::PhotonHeader wanted = header;
-  describe_map(photons, photon_options, wanted);
-  if (const std::string why = why_not_updatable(previous.header, wanted); !why.empty())
-    throw InputError(previous_name + ": cannot be updated: " + why + "; trace this frame anew, without --update");
-  UpdateOptions updating = options.updating;
-  updating.most_groups = options.max_groups;
-  if (!options.share.empty()) updating.most_groups = groups_of(options.share, photons.group_count());
-  const std::vector<std::uint32_t> groups =
-      choose_groups(previous, frame.frame, is_still(previous.header.identity, header.identity), updating);
-  tool.stats().count("groups_updated", double(groups.size()));
-  const std::string output = tools::frame_name(options.output, frame.frame);
-  const auto folder = [](const std::string& path) { return path.substr(0, path.rfind('/') + 1); };
-  formats::PhotonHeader with_history = header;
-  with_history.history = previous.header.history + header.history;
-  return write_updated_map(photons, photon_options, with_history, previous_name, previous, groups,
-                           output != "-" && folder(output) == folder(previous_name), sink);
-}
-
 PhotonOptions photon_options_of(const tools::Tool& tool, const Options& options, int frame_number) {
   PhotonOptions photon_options;
   photon_options.seed = tool.common().seed_for_frame(frame_number);
@@ -145,6 +100,25 @@ PhotonOptions photon_options_of(const tools::Tool& tool, const Options& options,
   photon_options.group_count = group_count(options.groups);
   photon_options.set_kinds(options.kinds);
   return photon_options;
+}
+
+/// A frame with what traces photons through it.
+struct TracedFrame {
+  SceneFrame frame;
+  Tracer tracer;
+  Lights lights;
+  PhotonTracer photons;
+  TracedFrame(SceneFrame at, EmissionTable emission, const PhotonOptions& options)
+      : frame(std::move(at)), tracer(frame), lights(frame, emission), photons(tracer, lights, options) {}
+};
+
+std::shared_ptr<const PhotonTracer> tracer_at(tools::SceneInput& input, const std::vector<formats::ViewSphere>& view,
+                                              const PhotonOptions& options, int frame_number) {
+  SceneFrame frame = input.at(frame_number);
+  EmissionTable emission = input.emission(frame.frame);
+  emission.aim = aims_of(view, frame.origin);
+  const auto traced = std::make_shared<TracedFrame>(std::move(frame), std::move(emission), options);
+  return {traced, &traced->photons};
 }
 
 void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options,
@@ -161,18 +135,22 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
 
   PhotonOptions photon_options = photon_options_of(tool, options, frame_number);
   photon_options.volume_share = options.volume_share;
+  photon_options.pilots = tools::pilots_of(options.updating, photon_options, frame.frame);
   const formats::PhotonHeader header = header_of(tool, frame, emission, frame_number);
 
   tool.stats().phase("trace", true);
   const PhotonTracer photons(tracer, lights, photon_options);
   const PhotonMapResult result =
-      options.update.empty()
-          ? write_photon_map(photons, photon_options, header, sink_of(output), [&](double fraction) { tool.progress(fraction); })
-          : update_map(tool, options, photons, photon_options, header, frame, sink_of(output));
+      options.updating.updates()
+          ? update_map(tool, options.updating,
+                       {frame, photons, photon_options, header, tools::frame_name(options.output, frame.frame),
+                        [&](int other) { return tracer_at(input, view, photon_options, other); }},
+                       sink_of(output))
+          : write_photon_map(photons, photon_options, header, sink_of(output), [&](double fraction) { tool.progress(fraction); });
   tool.stats().phase("commit");
   output.commit();
   tool.stats().end_phase();
-  if (!lights.aim().empty() && options.update.empty()) warn_of_few(tool, lights, result, frame_number);
+  if (!lights.aim().empty() && !options.updating.updates()) warn_of_few(tool, lights, result, frame_number);
   count(tool, result, tracer.refused_ray_count());
 }
 
@@ -319,7 +297,6 @@ void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options
 void check(const CLI::App& app, const Options& options) {
   if (options.map != "static" && !options.paths.empty()) throw InputError("--paths: only with --map static");
   if (options.map != "dynamic" && !options.static_paths.empty()) throw InputError("--static: only with --map dynamic");
-  if (options.map != "global" && !options.update.empty()) throw InputError("--update: only with --map global");
   if (options.map != "dynamic") return;
   if (options.static_paths.empty())
     throw InputError("--map dynamic needs --static: the .paths file that --map static --paths has written");
@@ -353,20 +330,7 @@ int main(int argc, char** argv) {
   tool.output_option(options.paths, "of --map static: also write which paths movers can touch, .paths", "--paths");
   app.add_option("--static", options.static_paths, "of --map dynamic: the .paths file of the segment's static map")
       ->type_name("FILE");
-  app.add_option("--update", options.update,
-                 "map of the frame before, or a pattern: keep its groups but for those that are traced again; needs photons in media and "
-                 "--majorants")
-      ->type_name("FILE");
-  app.add_option("--share", options.share, "of --update: share of the groups that is traced again, as 10%")->type_name("PERCENT");
-  app.add_option("--max-groups", options.max_groups, "of --update: instead of a share, their number")->type_name("N");
-  app.add_option("--strategy", options.strategy,
-                 "which groups go first: oldest; random; census: where the stored photons saw most change, times age; all")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"oldest", "random", "census", "all"}));
-  app.add_option("--age-floor", options.updating.age_floor, "of --update: groups as many frames old go before all others; 0: none")
-      ->type_name("FRAMES")
-      ->capture_default_str()
-      ->check(tools::number_between(0, 1e6));
+  tools::add_update_options(app, options.updating);
   app.add_option("--volume-share", options.volume_share, "share of the tentative collisions in media that are recorded")
       ->capture_default_str()
       ->check(tools::number_between(0.001, 1));
@@ -377,14 +341,7 @@ int main(int argc, char** argv) {
     const std::vector<int>& frames = tool.common().frames;
     if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
       throw InputError("--output: several frames need a pattern, for example f.####.photons");
-    using Strategy = UpdateStrategy;
-    options.updating.strategy = options.strategy == "census" ? Strategy::census : options.strategy == "random" ? Strategy::random
-                                : options.strategy == "all" ? Strategy::all : Strategy::oldest;
-    if (!options.update.empty() && options.share.empty() && options.max_groups == 0 && options.strategy != "all")
-      throw InputError("--update: say how many groups to trace again, --share 10% or --max-groups N");
-    if (!options.update.empty() && tool.common().volume.majorants.empty())
-      throw InputError("--update: needs the --majorants of the segment (scene-plan writes state/majorants.FFFF): without them photons look at "
-                       "other places in each frame");
+    tools::check_update_arguments(tool, options.map != "global", options.updating);
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::light);
     if (options.map != "global" && input.has_media())

@@ -23,7 +23,7 @@ namespace {
 struct Request {
   std::vector<std::string> files;
   bool check = false, digest = false, diff = false, json = false;
-  std::string format, output, png, sheet, exposure = "auto";
+  std::string format, output, png, sheet, groups, exposure = "auto";
   tools::PictureOptions picture;
 };
 
@@ -99,6 +99,10 @@ int answer(tools::Tool& tool, Request& request) {
     tools::Output output(request.png, keep);
     tools::write_picture(only_file(request, "--png"), request.picture, output);
     output.commit();
+  } else if (!request.groups.empty()) {
+    tools::Output output(request.groups, keep, tools::Output::Kind::text);
+    tools::print_groups(only_file(request, "--groups"), output);
+    output.commit();
   } else if (!request.format.empty()) {
     using Kind = tools::Output::Kind;
     tools::Output output(request.output, keep, request.format == "csv" ? Kind::text : Kind::binary);
@@ -134,6 +138,7 @@ int main(int argc, char** argv) {
           ->type_name("FORMAT")
           ->check(CLI::IsMember({"ply", "csv"}));
   CLI::Option* output = tool.output_option(request.output, "file that --export writes; - is standard output");
+  CLI::Option* groups = tool.output_option(request.groups, "of .photons: a line of CSV for each group: frame, paths, photons; - is standard output", "--groups");
   CLI::Option* png = tool.output_option(request.png, "the image as a picture", "--png");
   CLI::Option* sheet =
       tool.output_option(request.sheet, "all images in one picture, one exposure for all", "--sheet");
@@ -157,7 +162,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->needs(sheet);
-  const std::vector<CLI::Option*> modes{check, digest, diff, format, png, sheet};
+  const std::vector<CLI::Option*> modes{check, digest, diff, format, groups, png, sheet};
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)
       if (one != other) one->excludes(other);

@@ -25,8 +25,8 @@ bool FileReader::read_block(PhotonBlock& block) {
   for (;;) {
     const std::uint64_t start = bytes.offset();
     const std::string mark = in_.read_mark();
-    if (mark == (has_tentative(header_) ? kDatedLedgerMark : kLedgerMark) && !has_ledger_) {
-      read_ledger(mark);
+    if (mark == ledger_mark(header_) && !has_ledger_) {
+      read_ledger();
       continue;
     }
     if (mark == kEndMark) {
@@ -76,18 +76,18 @@ void FileReader::check_body(const PhotonBlock& block, std::uint64_t start) const
                      "correct the program that wrote it");
 }
 
-void FileReader::read_ledger(std::string_view mark) {
-  const bool dated = mark == kDatedLedgerMark;
-  const std::size_t size = dated ? kDatedLedgerEntrySize : kLedgerEntrySize;
+void FileReader::read_ledger() {
+  const bool dated = has_tentative(header_);
+  const std::size_t size = ledger_entry_size(header_);
   std::uint32_t count = 0;
-  in_.read_head(mark, {&count, 1}, "the ledger");
+  in_.read_head(ledger_mark(header_), {&count, 1}, "the ledger");
   const std::uint64_t start = in_.body_offset();
   const std::size_t expected = is_overlay() ? groups_.size() : header_.group_count;
   if (count != expected)
     in_.bytes().fail(start - 8,
                      "ledger of " + std::to_string(count) + " groups instead of " + std::to_string(expected));
   in_.bytes().expect(std::uint64_t(count) * size, "the ledger");
-  std::array<unsigned char, kDatedLedgerEntrySize> entry{};
+  std::vector<unsigned char> entry(size);
   for (std::size_t i = 0; i < count; ++i) {
     in_.read_body(entry.data(), size, "the ledger");
     GroupFlux& group = ledger_.emplace_back();
@@ -98,6 +98,8 @@ void FileReader::read_ledger(std::string_view mark) {
     if (!dated) continue;
     group.frame = get<std::int32_t>(&entry[76]);
     group.paths = get<std::uint64_t>(&entry[80]);
+    group.pilots.resize(header_.pilots);
+    if (header_.pilots > 0) std::memcpy(group.pilots.data(), &entry[kDatedLedgerEntrySize], header_.pilots * sizeof(PhotonPilot));
   }
   in_.end_block("the ledger");
   for (std::size_t i = 0; i < count; ++i) {
@@ -107,6 +109,8 @@ void FileReader::read_ledger(std::string_view mark) {
     check_flux(ledger_[i].emitted, at + 4, "emitted flux");
     check_flux(ledger_[i].escaped, at + 28, "escaped flux");
     check_flux(ledger_[i].absorbed, at + 52, "absorbed flux");
+    for (std::size_t p = 0; p < ledger_[i].pilots.size(); ++p)
+      if (!std::isfinite(ledger_[i].pilots[p].sketch)) in_.bytes().fail(at + kDatedLedgerEntrySize + 32 * p + 24, "a pilot's sum is not finite");
   }
   has_ledger_ = true;
 }

@@ -27,7 +27,7 @@ class FileReader {
  private:
   void read_body(PhotonBlock& block, std::size_t count);
   void check_body(const PhotonBlock& block, std::uint64_t start) const;
-  void read_ledger(std::string_view mark);
+  void read_ledger();
   void read_end();
   void check_flux(const std::array<double, 3>& flux, std::uint64_t offset, const char* name) const;
 

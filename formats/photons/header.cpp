@@ -41,6 +41,8 @@ std::string_view fault_of(const PhotonHeader& h) {
   if ((parse_kinds(h.kinds) & kTentative) != 0 && h.majorants.empty()) return "kinds has tentative, but majorants is missing";
   if ((parse_kinds(h.kinds) & kTentative) == 0 && !h.majorants.empty()) return "majorants, but kinds has no tentative";
   if (!h.majorants.empty() && !is_digest(h.majorants)) return "majorants is not 32 hexadecimal digits";
+  if (h.pilots > kMostPilots) return "pilots is not in 1 .. 256";
+  if (h.pilots > 0 && h.majorants.empty()) return "pilots, but kinds has no tentative";
   if (h.columns >= kColumnsNames.size()) return "columns are not known";
   if (h.group_count < 1 || h.group_count > kMaxGroupCount) return "groups is not in 1 .. 16777216";
   if (const std::string_view fault = fault_of_common(h.origin, h.identity); !fault.empty()) return fault;
@@ -51,7 +53,7 @@ std::string_view fault_of(const PhotonHeader& h) {
   return "";
 }
 
-constexpr std::uint16_t kEmissionSince = 1, kPartSince = 2, kTentativeSince = 3;  ///< minor versions
+constexpr std::uint16_t kEmissionSince = 1, kPartSince = 2, kTentativeSince = 3, kPilotsSince = 4;  ///< minor versions
 
 /// Takes one line's value into the header.
 Line take_line(std::string_view key, std::string_view value, std::uint16_t minor, PhotonHeader& h) {
@@ -68,6 +70,7 @@ Line take_line(std::string_view key, std::string_view value, std::uint16_t minor
   if (key == "emitted") return result(parse_numbers(value, &h.emitted_count, 1));
   if (key == "emission" && minor >= kEmissionSince) return h.identity.emission = value, result(!value.empty());
   if (key == "majorants" && minor >= kTentativeSince) return h.majorants = value, result(!value.empty());
+  if (key == "pilots" && minor >= kPilotsSince) return result(parse_numbers(value, &h.pilots, 1) && h.pilots > 0);
   if (key == "base") return h.base_name = value, result(!value.empty());
   if (key == "base-digest") return h.base_digest = value, result(!value.empty());
   return take_common_line(key, value, common_keys(h));
@@ -77,9 +80,17 @@ Line take_line(std::string_view key, std::string_view value, std::uint16_t minor
 
 bool has_tentative(const PhotonHeader& h) { return (parse_kinds(h.kinds) & kTentative) != 0; }
 
+std::string_view ledger_mark(const PhotonHeader& h) {
+  return h.pilots > 0 ? kPilotLedgerMark : has_tentative(h) ? kDatedLedgerMark : kLedgerMark;
+}
+
+std::size_t ledger_entry_size(const PhotonHeader& h) {
+  return has_tentative(h) ? kDatedLedgerEntrySize + h.pilots * sizeof(PhotonPilot) : kLedgerEntrySize;
+}
+
 Format format_of(const PhotonHeader& h) {
   Format format = kFormat;
-  format.minor = has_tentative(h) ? kTentativeSince : !h.part.empty() ? kPartSince : !h.identity.emission.empty() ? kEmissionSince : 0;
+  format.minor = h.pilots > 0 ? kPilotsSince : has_tentative(h) ? kTentativeSince : !h.part.empty() ? kPartSince : !h.identity.emission.empty() ? kEmissionSince : 0;
   return format;
 }
 
@@ -96,6 +107,7 @@ std::string header_text(const PhotonHeader& h) {
   text.identity(h.identity);
   if (!h.identity.emission.empty()) text.line("emission", h.identity.emission);
   if (!h.majorants.empty()) text.line("majorants", h.majorants);
+  if (h.pilots > 0) text.line("pilots", text_of(h.pilots));
   if (!h.base_name.empty()) {
     text.line("base", h.base_name);
     text.line("base-digest", h.base_digest);

@@ -13,9 +13,10 @@
 
 namespace tempolux::formats::photons {
 
-inline constexpr Format kFormat{{"\x89TPHOT\r\n", 8}, ".photons", "photon-trace", 1, 3};
+inline constexpr Format kFormat{{"\x89TPHOT\r\n", 8}, ".photons", "photon-trace", 1, 4};
 inline constexpr std::uint32_t kMaxGroupCount = 1u << 24;
-inline constexpr std::string_view kBlockMark = "PHOT", kLedgerMark = "LEDG", kDatedLedgerMark = "LEDU";
+inline constexpr std::string_view kBlockMark = "PHOT", kLedgerMark = "LEDG", kDatedLedgerMark = "LEDU", kPilotLedgerMark = "LEDP";
+inline constexpr std::uint32_t kMostPilots = 256;   ///< of a group
 inline constexpr std::size_t kBlockHeadSize = 16, kLedgerEntrySize = 76, kDatedLedgerEntrySize = 88, kEndBodySize = 104;
 
 /// Bytes of one photon in a block with these columns.
@@ -27,6 +28,10 @@ constexpr std::size_t photon_size(std::uint32_t columns) {
 Format format_of(const PhotonHeader& header);
 /// Has the map tentative photons? Then it is of version 1.3 and has a dated ledger.
 bool has_tentative(const PhotonHeader& header);
+
+/// The mark of the ledger that a file of this header has, and the size of its entries.
+std::string_view ledger_mark(const PhotonHeader& header);
+std::size_t ledger_entry_size(const PhotonHeader& header);
 
 /// The text of a header. std::invalid_argument if a value is out of range.
 std::string header_text(const PhotonHeader& header);

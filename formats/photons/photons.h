@@ -58,6 +58,7 @@ struct PhotonHeader {
   /// Of an overlay: the file it changes, and that file's digest. Groups not in this file come from the base.
   std::string base_name, base_digest;
   std::string majorants;                      ///< of tentative photons: hash of the majorants they were drawn from
+  std::uint32_t pilots = 0;                   ///< pilots of each group in the ledger; only with tentative photons
 };
 
 /// Photons of one group. Blocks of a group follow each other; groups never descend.
@@ -68,6 +69,17 @@ struct PhotonBlock {
   std::vector<std::array<std::uint8_t, 4>> albedos;       ///< if column_albedo
 };
 
+/// What a pilot path met, to be compared when it is walked again in another frame. 32 bytes, in memory as on disk.
+struct PhotonPilot {
+  std::uint64_t extinctions = 0;             ///< hash of the extinctions that it looked at
+  std::uint64_t collisions = 0;              ///< hash of the places where media scattered or absorbed it
+  std::uint64_t vertices = 0;                ///< hash of its start and of the surfaces that it met, with distances
+  double sketch = 0;                         ///< W: sum over the places looked at of +-1 (drawn for the place) x flux x extinction / majorant
+
+  bool operator==(const PhotonPilot&) const = default;
+};
+static_assert(sizeof(PhotonPilot) == 32);
+
 /// What became of one group's flux [W]. All groups' entries make the ledger, from which the totals of an
 /// overlay with its base follow exactly.
 struct GroupFlux {
@@ -75,6 +87,7 @@ struct GroupFlux {
   std::array<double, 3> emitted{}, escaped{}, absorbed{};
   std::int32_t frame = 0;                    ///< at which it was traced; only in files of version 1.3 with tentative photons
   std::uint64_t paths = 0;                   ///< that it started; likewise
+  std::vector<PhotonPilot> pilots;           ///< PhotonHeader::pilots of them, of its first paths
 
   bool operator==(const GroupFlux&) const = default;
 };

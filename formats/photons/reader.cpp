@@ -94,7 +94,7 @@ void PhotonReader::State::open_base(const std::string& path) {
   if (base->is_overlay()) file.fail("its base is an overlay itself", "make it again upon a whole map");
   const PhotonHeader &a = file.header(), &b = base->header();
   if (a.map != b.map || rules_of(a).kinds != rules_of(b).kinds || a.columns != b.columns ||
-      a.majorants != b.majorants || a.origin != b.origin || a.group_count != b.group_count)
+      a.majorants != b.majorants || a.pilots != b.pilots || a.origin != b.origin || a.group_count != b.group_count)
     file.fail("its base " + a.base_name + " has another map, kinds, columns, origin or groups",
               "make it again");
   base_digest.emplace();

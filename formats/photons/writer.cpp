@@ -90,9 +90,13 @@ std::vector<std::uint32_t> PhotonWriter::State::checksums_of(std::string_view by
 void PhotonWriter::State::check_ledger(std::span<const GroupFlux> ledger) const {
   const std::size_t expected = is_overlay() ? groups.size() : header.group_count;
   if (ledger.size() != expected) refuse("the ledger does not have one entry per group");
-  for (std::size_t i = 0; i < ledger.size(); ++i)
+  for (std::size_t i = 0; i < ledger.size(); ++i) {
     if (ledger[i].group != (is_overlay() ? groups[i] : i))
       refuse("the ledger's groups are not those of the file");
+    if (ledger[i].pilots.size() != header.pilots) refuse("a group of the ledger has another number of pilots than the header says");
+    for (const PhotonPilot& pilot : ledger[i].pilots)
+      if (!std::isfinite(pilot.sketch)) refuse("a pilot's sum is not finite");
+  }
 }
 
 void PhotonWriter::State::check_totals(const PhotonTotals& totals) const {
@@ -112,8 +116,9 @@ void PhotonWriter::State::write_ledger(std::span<const GroupFlux> ledger) {
     if (!dated) continue;
     put(body, group.frame);
     put(body, group.paths);
+    put_array(body, std::span(group.pilots));
   }
-  out.write_block(dated ? kDatedLedgerMark : kLedgerMark, {std::uint32_t(ledger.size())}, body);
+  out.write_block(ledger_mark(header), {std::uint32_t(ledger.size())}, body);
 }
 
 PhotonWriter::PhotonWriter(std::function<void(const void*, std::size_t)> sink, const PhotonHeader& header)

@@ -20,6 +20,7 @@ inline void add_to_ledger(const PhotonBatch& batch, std::int32_t frame, formats:
     group.escaped[i] += batch.escaped[c];
     group.absorbed[i] += batch.absorbed[c];
   }
+  if (!batch.pilots.empty()) group.pilots = batch.pilots;
 }
 
 /// What roulette gives may leave a little less than nothing absorbed.
@@ -40,7 +41,10 @@ inline void describe_map(const PhotonTracer& tracer, const PhotonOptions& option
   header.group_count = tracer.group_count();
   header.emitted_count = tracer.photon_count();
   header.kinds = options.kinds();
-  if (options.store_volume) header.majorants = tracer.majorants().hash();
+  if (options.store_volume) {
+    header.majorants = tracer.majorants().hash();
+    header.pilots = std::uint32_t(std::min<std::uint64_t>(options.pilots, tracer.members()));
+  }
   if (tracer.stores_directions()) header.columns |= formats::column_direction;
 }
 

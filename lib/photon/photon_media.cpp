@@ -3,6 +3,7 @@
 
 #include "lib/photon/photon_ledger.h"
 #include "lib/photon/photon_path.h"
+#include "lib/photon/pilot_signature.h"
 #include "lib/photon/photon_trace.h"
 #include "lib/volume/flight.h"
 #include "lib/volume/phase.h"
@@ -38,17 +39,20 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
   // Direct light is recorded only if it was asked for: volume-compose samples the lights.
   const bool records = options_.store_volume && (options_.store_direct || path.diffuse_seen || path.specular_seen);
   for (std::uint32_t step = 0;; ++step) {
-    const FlightNumbers numbers(random.bits(bounce, Purpose::flight, step & 0xffffff));
+    const std::uint64_t bits = random.bits(bounce, Purpose::flight, step & 0xffffff);
+    const FlightNumbers numbers(bits);
     if (!flight.next(numbers.depth, t)) return Flown::through;
     ++batch.medium_steps;
     const Vec3 position = path.ray.origin + path.ray.direction * t.distance;
     Rgb flux = path.flux;
     if (path.inside.any()) flux *= path.inside.transmittance_over(tracer_.frame().materials, t.distance);
     const float extinction = media_->extinction(position);
+    if (path.pilot) [[unlikely]] pilot_signature::look(*path.pilot, bits & 1, flux, extinction, t.majorant);   // the last bit of the word: FlightNumbers leaves it
     if (records && random.get1(bounce, Purpose::medium, (step & 0x7fffff) << 1 | 1) < options_.volume_share)
       record_tentative(path, flux * (1 / (t.majorant * options_.volume_share)), position, extinction, t.majorant, bounce, batch);
     if (!(numbers.accept * t.majorant < extinction)) continue;
 
+    if (path.pilot) [[unlikely]] pilot_signature::collide(*path.pilot, bounce, step);
     const MediumOptions& medium = media_->collided(position, random.get1(bounce, Purpose::medium)).options();
     const Rgb scattered = flux * medium.albedo;
     const float survival =

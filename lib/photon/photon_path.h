@@ -14,6 +14,7 @@ struct PhotonTracer::Path {
   Ray ray;
   Rgb flux;
   FluxBalance* balance = nullptr;   ///< of all paths, or its own
+  formats::PhotonPilot* pilot = nullptr;   ///< takes down what it meets
   bool diffuse_seen = false, specular_seen = false;
   Inside inside;
 };

@@ -12,6 +12,7 @@
 #include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
 #include "lib/photon/photon_path.h"
+#include "lib/photon/pilot_signature.h"
 #include "lib/scene/texture_lookup.h"
 
 namespace tempolux {
@@ -181,14 +182,18 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
 }
 
 PhotonBatch PhotonTracer::trace(std::size_t number) const {
-  PhotonBatch batch;
   const std::uint64_t group = number / batches_per_group_, piece = number % batches_per_group_;
-  batch.block.group = std::uint32_t(group);
-  const std::uint64_t last = std::min(members_, (piece + 1) * kBatch);
-  batch.block.photons.reserve(std::size_t(3 * (last - piece * kBatch)));
+  return trace_members(std::uint32_t(group), piece * kBatch, std::min(members_, (piece + 1) * kBatch));
+}
+
+PhotonBatch PhotonTracer::trace_members(std::uint32_t group, std::uint64_t first, std::uint64_t last) const {
+  PhotonBatch batch;
+  batch.block.group = group;
+  batch.block.photons.reserve(std::size_t(3 * (last - first)));
+  if (first == 0) batch.pilots.resize(std::size_t(std::min<std::uint64_t>(options_.pilots, last)));
   std::uint64_t numbers[kWave];
   if (!lights_.empty())
-    for (std::uint64_t q = piece * kBatch; q < last; q += kWave) {
+    for (std::uint64_t q = first; q < last; q += kWave) {
       const auto count = std::size_t(std::min(last - q, kWave));
       for (std::size_t i = 0; i < count; ++i) numbers[i] = group + (q + i) * group_count_;
       follow({numbers, count}, 0, batch);
@@ -242,6 +247,11 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
     paths[i].balance = batch.by_path ? &batch.balance_of[first_path + i] : &batch;
     if (batch.by_path) [[unlikely]] batch.moved[first_path + i] = std::uint8_t(slot_moves_[e.slot]);
     paths[i].balance->emitted += Rgbd(paths[i].flux);
+    if (!batch.pilots.empty()) [[unlikely]]
+      if (const std::uint64_t member = path_numbers[i] / group_count_; member < batch.pilots.size()) {
+        paths[i].pilot = &batch.pilots[member];
+        pilot_signature::start(*paths[i].pilot, paths[i].ray, paths[i].flux);
+      }
     if (!is_black(paths[i].flux)) alive[count++] = std::uint32_t(i);   // lamps that are off send none
   }
   batch.path_count += started;
@@ -272,6 +282,7 @@ void PhotonTracer::follow(std::span<const std::uint64_t> path_numbers, std::uint
     for (std::size_t i = 0; i < arrived; ++i) {
       const Draw draw{bounce, numbers[i], directions[i]};
       const std::uint32_t number = alive[i];
+      if (paths[number].pilot) [[unlikely]] pilot_signature::meet(*paths[number].pilot, bounce, hits[i]);
       alive[count] = number;
       count += scatter(paths[number], points[i], hits[i].t, draw, batch);
       if (batch.by_path) [[unlikely]] batch.path_of.resize(batch.block.photons.size(), first_path + number);

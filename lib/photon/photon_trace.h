@@ -27,6 +27,7 @@ struct PhotonOptions {
   /// heavier: of ten to a crossing four, which is what a radiance volume can tell apart (docs/methods/volume_photons.md).
   bool store_volume = false;
   float volume_share = 0.4f;
+  std::uint32_t pilots = 0;                  ///< so many of each group's first paths are pilots: what they met is taken down
 
   /// "direct,caustic,indirect,volume" or a part of it. Throws InputError.
   void set_kinds(const std::string& list);
@@ -49,6 +50,7 @@ struct PhotonBatch : FluxBalance {           ///< of all paths; if by_path see b
   std::uint64_t ray_count = 0, path_count = 0;
   std::uint64_t specular_ray_count = 0;      ///< of the rays: those that an event S sent
   std::uint64_t seen_count = 0;              ///< photons stored in the spheres of Lights::aim()
+  std::vector<formats::PhotonPilot> pilots;  ///< of the group, if its first path is in the batch
   std::vector<formats::TouchedPath> touched; ///< if movers are watched: those that they can touch, in order
   bool by_path = false;                      ///< fill in, by number of the path in the list given to trace_paths:
   std::vector<std::uint32_t> path_of;        ///< of each photon
@@ -98,6 +100,11 @@ class PhotonTracer {
   bool stores_directions() const { return options_.store_volume && media_ && media_->directional(); }
   /// Traces batch number b < batch_count(). Thread-safe.
   PhotonBatch trace(std::size_t batch) const;
+  /// Traces paths first .. last - 1 of a group, also such as the map does not have (last > photon_count() / group_count()); their flux is
+  /// that of the map's own paths. Thread-safe.
+  PhotonBatch trace_members(std::uint32_t group, std::uint64_t first, std::uint64_t last) const;
+  /// Paths of each group in the map, N_e.
+  std::uint64_t members() const { return members_; }
   /// Traces these paths, all of one group. Thread-safe.
   PhotonBatch trace_paths(std::span<const std::uint64_t> paths) const;
 

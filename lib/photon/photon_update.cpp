@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "formats/error.h"
 #include "formats/photons/file_reader.h"
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
@@ -53,14 +54,61 @@ class Groups {
 
 struct Traced {
   std::vector<PhotonBatch> batches;
+  std::vector<PhotonBatch> taken_back;       ///< of the corrective pass
 };
+
+std::vector<PhotonBatch> trace_group(const PhotonTracer& tracer, std::uint32_t group) {
+  std::vector<PhotonBatch> batches;
+  const auto [first, last] = tracer.batches_of(group);
+  for (std::size_t b = first; b < last; ++b) batches.push_back(tracer.trace(b));
+  return batches;
+}
+
+bool same(const std::vector<formats::Photon>& stored, const std::vector<PhotonBatch>& traced) {
+  std::size_t at = 0;
+  for (const PhotonBatch& batch : traced)
+    for (const formats::Photon& photon : batch.block.photons)
+      if (at == stored.size() || !(stored[at++] == photon)) return false;
+  return at == stored.size();
+}
+
+constexpr std::size_t kGroupsTogether = 16;  ///< whose pilots are one piece of work
+
+/// How much the pilots of a group have changed, as the strategy counts it.
+double difference(UpdateStrategy strategy, std::span<const formats::PhotonPilot> then, std::span<const formats::PhotonPilot> now) {
+  double sum = 0;
+  for (std::size_t i = 0; i < std::min(then.size(), now.size()); ++i) {
+    const bool collides_elsewhere = then[i].collisions != now[i].collisions;
+    switch (strategy) {
+      case UpdateStrategy::fde: sum += then[i].extinctions != now[i].extinctions; break;
+      case UpdateStrategy::dip: sum += collides_elsewhere; break;
+      case UpdateStrategy::path: sum += collides_elsewhere || then[i].vertices != now[i].vertices; break;
+      default: sum += std::abs(then[i].sketch - now[i].sketch);
+    }
+  }
+  return strategy == UpdateStrategy::hybrid ? sum : sum / double(std::max<std::size_t>(1, then.size()));
+}
+
+/// Sends the pilots of all groups through the scene of the tracer.
+void send_pilots(UpdateStrategy strategy, const PhotonTracer& tracer, PreviousMap& previous) {
+  const std::uint32_t pilots = previous.header.pilots;
+  previous.change.assign(previous.ledger.size(), 0.0);
+  parallel_chunks(previous.ledger.size(), kGroupsTogether, [&](std::size_t first, std::size_t last) {
+    for (std::size_t g = first; g < last; ++g)
+      previous.change[g] = difference(strategy, previous.ledger[g].pilots, tracer.trace_members(std::uint32_t(g), 0, pilots).pilots);
+  });
+  previous.pilot_paths = std::uint64_t(pilots) * previous.ledger.size();
+}
 
 }  // namespace
 
-PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, bool census, Vec3d origin) {
+PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, UpdateStrategy strategy, Vec3d origin) {
+  const bool census = strategy == UpdateStrategy::census;
   formats::PhotonReader reader(path);
   PreviousMap previous;
   previous.header = reader.header();
+  if (sends_pilots(strategy) && previous.header.pilots == 0)
+    throw InputError(path + ": has no pilots, which fde, dip, hybrid and path compare; trace the segment's first map with --pilots 3%, or choose another --strategy");
   if (census) previous.change.assign(previous.header.group_count, 0.0);
   const Media* const media = tracer.media();
   const auto& o = previous.header.origin;
@@ -77,6 +125,7 @@ PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, b
   }
   previous.ledger = reader.ledger();
   previous.digest = reader.digest();
+  if (sends_pilots(strategy)) send_pilots(strategy, tracer, previous);
   return previous;
 }
 
@@ -86,6 +135,7 @@ std::string why_not_updatable(const formats::PhotonHeader& a, const formats::Pho
   if (a.majorants.empty()) return "it has no photons in media: only these maps say how old their groups are";
   if (a.majorants != b.majorants) return "its majorants are others: make all maps of a segment with the same --majorants";
   if (a.group_count != b.group_count || a.emitted_count != b.emitted_count) return "it has another number of groups or paths";
+  if (a.pilots != b.pilots) return "it has " + std::to_string(a.pilots) + " pilots in each group, not " + std::to_string(b.pilots);
   if (a.columns != b.columns) return "it has other columns";
   if (a.origin != b.origin) return "it has another origin";
   if (a.identity.emission != b.identity.emission) return "its paths were started by another table of lamps: it is of another segment";
@@ -104,7 +154,7 @@ std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame,
     const bool due = options.age_floor > 0 && age >= options.age_floor;
     const double wanted = options.strategy == UpdateStrategy::random ? 1
                           : options.strategy == UpdateStrategy::oldest ? age
-                                                                       : age * previous.change[g];
+                                                                       : std::pow(age, options.age_power) * previous.change[g];
     priority[g] = due ? INFINITY : wanted;
   }
   std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
@@ -118,13 +168,15 @@ std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame,
 }
 
 PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader header,
-                                  const std::string& path, const PreviousMap& previous, std::span<const std::uint32_t> groups,
-                                  bool may_overlay, const std::function<void(const void*, std::size_t)>& sink) {
+                                  const MapUpdate& update, const std::function<void(const void*, std::size_t)>& sink) {
+  const std::string& path = update.path;
+  const PreviousMap& previous = update.previous;
+  const std::span<const std::uint32_t> groups = update.groups;
   describe_map(tracer, options, header);
   const bool upon_overlay = !previous.header.base_name.empty();
   std::set<std::uint32_t> differing = upon_overlay ? own_groups(path) : std::set<std::uint32_t>{};
   differing.insert(groups.begin(), groups.end());
-  const bool overlay = may_overlay && differing.size() * 2 <= header.group_count;
+  const bool overlay = update.may_overlay && !update.corrective && differing.size() * 2 <= header.group_count;
   if (overlay) {
     header.base_name = upon_overlay ? previous.header.base_name : file_name(path);
     header.base_digest = upon_overlay ? previous.header.base_digest : previous.digest;
@@ -161,12 +213,21 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
       groups.size(), std::size_t(2 * parallel_thread_count()),
       [&](std::size_t i) -> std::shared_ptr<void> {
         auto traced = std::make_shared<Traced>();
-        const auto [first, last] = tracer.batches_of(groups[i]);
-        for (std::size_t b = first; b < last; ++b) traced->batches.push_back(tracer.trace(b));
+        if (update.corrective) traced->taken_back = trace_group(update.corrective(previous.ledger[groups[i]].frame), groups[i]);
+        traced->batches = trace_group(tracer, groups[i]);
         return traced;
       },
       [&](std::size_t i, void* pointer) {
         keep_until(groups[i]);
+        if (update.corrective) {
+          std::vector<formats::Photon> stored;
+          kept.of(groups[i], [&](const formats::PhotonBlock& block) { stored.insert(stored.end(), block.photons.begin(), block.photons.end()); });
+          const auto& taken_back = static_cast<const Traced*>(pointer)->taken_back;
+          for (const PhotonBatch& batch : taken_back) count(batch, result);
+          if (!same(stored, taken_back))
+            throw InputError(path + ": negative photons do not take back group " + std::to_string(groups[i]) + " of frame " +
+                             std::to_string(previous.ledger[groups[i]].frame) + ": it was traced by other options; trace the map anew");
+        }
         formats::GroupFlux entry;
         bool any = false;
         for (const PhotonBatch& batch : static_cast<const Traced*>(pointer)->batches) {

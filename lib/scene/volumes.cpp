@@ -98,10 +98,10 @@ std::vector<VolumeSource> volumes_of(const Scene& scene, bool allow_outside) {
 }
 
 std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<const std::string> files, Vec3d origin,
-                               std::uint64_t max_memory) {
+                               std::uint64_t max_memory, VdbSeries& series) {
   std::vector<Medium> media;
   for (std::size_t i = 0; i < sources.size(); ++i) {
-    const VdbVolume volume = read_vdb(files[i], sources[i].grid, max_memory);
+    const VdbVolume volume = series.read({files[i], sources[i].grid}, max_memory);
     if (volume.voxels->empty()) continue;    // smoke that has not begun
     Affine scene_from_index = volume.world_from_index;
     scene_from_index.translation -= origin;

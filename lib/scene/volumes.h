@@ -10,6 +10,7 @@
 
 #include "lib/scene/scene.h"
 #include "lib/volume/medium.h"
+#include "lib/volume/vdb_file.h"
 
 namespace tempolux {
 
@@ -35,8 +36,8 @@ struct VolumeSource {
 std::vector<VolumeSource> volumes_of(const Scene& scene, bool allow_outside);
 
 /// Reads `files[i]` for sources[i] and places them in scene space (world - origin). `max_memory`: of the reading process, bytes; 0:
-/// by the file's size. Throws InputError as read_vdb does.
+/// by the file's size. `series` knows what is read next. Throws InputError as read_vdb does.
 std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<const std::string> files, Vec3d origin,
-                               std::uint64_t max_memory);
+                               std::uint64_t max_memory, VdbSeries& series);
 
 }  // namespace tempolux

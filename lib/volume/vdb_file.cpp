@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "formats/error.h"
 #include "lib/core/child_process.h"
@@ -17,6 +18,8 @@ namespace {
 constexpr std::uint64_t kMemory = 400u << 20;        ///< OpenVDB and its libraries take 150 MB of address space
 constexpr std::uint64_t kExpansion = 64;             ///< bytes in memory for one in the file: twice that of constant blocks in zip
 constexpr std::uint64_t kSlowest = 10u << 20;        ///< bytes of the file read in a second, at least
+constexpr std::size_t kMostTogether = 16;            ///< files read by one process: its start is then 3 ms a file
+constexpr std::uint64_t kMostAhead = 16u << 20;      ///< bytes of files read by one process; in memory up to kExpansion times as many
 
 std::uint64_t size_of(const std::string& path) {
   struct stat status {};
@@ -42,8 +45,8 @@ class Printed {
   std::uint64_t at_ = 0;
 };
 
-VdbVolume parse(const std::string& path, const std::vector<unsigned char>& bytes) {
-  Printed printed(path, bytes);
+/// The next volume; `last`: nothing may follow.
+VdbVolume parse(Printed& printed, const std::string& path, bool last) {
   VdbPipeHead head;
   printed.take(&head, sizeof head);
   if (head.magic != VdbPipeHead{}.magic)
@@ -56,7 +59,8 @@ VdbVolume parse(const std::string& path, const std::vector<unsigned char>& bytes
     volume.world_from_index.row[r] = {row[0], row[1], row[2]};
     volume.world_from_index.translation[int(r)] = row[3];
   }
-  if (head.block_count != printed.left() / sizeof(VoxelBlock) || printed.left() % sizeof(VoxelBlock) != 0)
+  const std::uint64_t room = printed.left() / sizeof(VoxelBlock);
+  if (head.block_count > room || (last && printed.left() != head.block_count * sizeof(VoxelBlock)))
     throw InputError(path + ": tempolux-vdb gave another number of voxels than it promised");
   std::vector<VoxelBlock> blocks(head.block_count);
   if (!blocks.empty()) printed.take(blocks.data(), blocks.size() * sizeof(VoxelBlock));
@@ -64,25 +68,65 @@ VdbVolume parse(const std::string& path, const std::vector<unsigned char>& bytes
   return volume;
 }
 
+/// What tempolux-vdb says of these files; `bytes`: of all together, `largest`: of one.
+ChildResult ask(std::span<const VdbName> names, std::uint64_t bytes, std::uint64_t largest, std::uint64_t max_memory) {
+  std::string request;
+  for (const VdbName& name : names) {
+    if (name.path.find('\n') != std::string::npos || name.grid.find('\n') != std::string::npos)
+      throw InputError("a name of a volume holds a line feed; rename it");
+    request += name.path + '\n' + name.grid + '\n';
+  }
+  const std::string program = helper_program("tempolux-vdb", names[0].path + ": reading OpenVDB");
+  ChildLimits limits;
+  limits.memory_bytes = max_memory ? max_memory : kMemory + kExpansion * largest;
+  limits.output_bytes = max_memory ? max_memory : kMemory + kExpansion * bytes;
+  limits.processor_s = int(std::min<std::uint64_t>(1 + bytes / kSlowest, 100'000));
+  return run_child(program, {}, {reinterpret_cast<const unsigned char*>(request.data()), request.size()}, limits);
+}
+
 }  // namespace
 
 VdbVolume read_vdb(const std::string& path, const std::string& grid, std::uint64_t max_memory) {
-  if (path.find('\n') != std::string::npos || grid.find('\n') != std::string::npos)
-    throw InputError("a name of a volume holds a line feed; rename it");
   const std::uint64_t size = size_of(path);
-  const std::string program = helper_program("tempolux-vdb", path + ": reading OpenVDB");
-  ChildLimits limits;
-  limits.memory_bytes = max_memory ? max_memory : kMemory + kExpansion * size;
-  limits.output_bytes = limits.memory_bytes;
-  limits.processor_s = int(std::min<std::uint64_t>(1 + size / kSlowest, 100'000));
-  const std::string request = path + '\n' + grid + '\n';
-  const ChildResult result =
-      run_child(program, {}, {reinterpret_cast<const unsigned char*>(request.data()), request.size()}, limits);
+  const VdbName name{path, grid};
+  const ChildResult result = ask({&name, 1}, size, size, max_memory);
   if (!result.trouble.empty()) throw InputError(path + ": " + result.trouble);
   try {
-    return parse(path, result.output);
+    Printed printed(path, result.output);
+    return parse(printed, path, true);
   } catch (const std::invalid_argument& error) {
     throw InputError(path + ": " + error.what());
+  }
+}
+
+VdbVolume VdbSeries::read(const VdbName& name, std::uint64_t max_memory) {
+  const auto at = std::size_t(std::ranges::find(names_, name) - names_.begin());
+  if (at == names_.size()) return read_vdb(name.path, name.grid, max_memory);
+  if (!ahead_[at]) read_together(at, max_memory);
+  if (!ahead_[at]) return read_vdb(name.path, name.grid, max_memory);
+  return *std::exchange(ahead_[at], std::nullopt);
+}
+
+/// Fills in as many of ahead_ from `first` on as one process may read; none where one of them is in trouble.
+void VdbSeries::read_together(std::size_t first, std::uint64_t max_memory) {
+  std::uint64_t bytes = 0, largest = 0;
+  std::size_t last = first;
+  for (struct stat status {}; last < names_.size() && last - first < kMostTogether && !ahead_[last]; ++last) {
+    if (::stat(names_[last].path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) break;
+    if (bytes + std::uint64_t(status.st_size) > kMostAhead) break;
+    bytes += std::uint64_t(status.st_size);
+    largest = std::max(largest, std::uint64_t(status.st_size));
+  }
+  if (last - first < 2) return;
+  const ChildResult result = ask(std::span(names_).subspan(first, last - first), bytes, largest, max_memory);
+  if (!result.trouble.empty()) return;
+  try {
+    Printed printed(names_[first].path, result.output);
+    std::vector<VdbVolume> volumes;
+    for (std::size_t i = first; i < last; ++i) volumes.push_back(parse(printed, names_[i].path, i + 1 == last));
+    std::ranges::move(volumes, ahead_.begin() + std::ptrdiff_t(first));
+  } catch (const InputError&) {
+  } catch (const std::invalid_argument&) {
   }
 }
 

@@ -1,8 +1,8 @@
 // lib/volume/vdb_pipe.h -- what tempolux-vdb, which alone links OpenVDB, is asked and what it prints.
 //
-// Asked on standard input: the file's path, a line feed, the grid's name (may be empty), a line feed.
-// Printed: VdbPipeHead, the name's bytes, then a VoxelBlock for each block of 8^3 voxels that is not all 0. In trouble: one
-// line on standard error and exit code 2.
+// Asked on standard input, for each file: its path, a line feed, the grid's name (may be empty), a line feed.
+// Printed, for each: VdbPipeHead, the name's bytes, then a VoxelBlock for each block of 8^3 voxels that is not all 0. In trouble: one
+// line on standard error and exit code 2; what it read before has been printed.
 #pragma once
 
 #include <array>

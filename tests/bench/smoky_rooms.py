@@ -79,6 +79,7 @@ def room(case):
 
 
 def write_scene(path, case):
+    """The room of a case; with "parts" what these list instead, with "point" a point lamp there, with "walk" a camera that is at these places in the frames 0, 1, ..."""
     gltf = {"asset": {"version": "2.0"}, "scene": 0, "nodes": [], "meshes": [], "materials": [], "accessors": [], "bufferViews": [],
             "extensionsUsed": ["KHR_materials_specular", "KHR_materials_emissive_strength", "KHR_materials_transmission",
                                "KHR_materials_ior", "KHR_materials_volume"]}
@@ -92,15 +93,25 @@ def write_scene(path, case):
                                   "count": len(values) // (3 if kind == "VEC3" else 1), **more})
         return len(gltf["accessors"]) - 1
 
-    for name, look, (positions, indices) in room(case):
+    for name, look, (positions, indices) in case.get("parts") or room(case):
         bounds = {"min": [min(p[i] for p in positions) for i in range(3)], "max": [max(p[i] for p in positions) for i in range(3)]}
         mesh = {"attributes": {"POSITION": accessor([x for p in positions for x in p], "f", "VEC3", 5126, **bounds)},
                 "indices": accessor(indices, "I", "SCALAR", 5125), "material": len(gltf["materials"])}
         gltf["materials"].append({"name": name, **look})
         gltf["meshes"].append({"primitives": [mesh]})
         gltf["nodes"].append({"name": name, "mesh": len(gltf["meshes"]) - 1})
-    gltf["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.2, "znear": 0.01, "aspectRatio": 16 / 9}}]
-    gltf["nodes"].append({"name": "Camera", "camera": 0, "translation": [0, 1, case.get("eye", 0.95)]})
+    if "point" in case:
+        gltf["extensionsUsed"].append("KHR_lights_punctual")
+        gltf["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 1}]}}
+        gltf["nodes"].append({"name": "Point", "translation": list(case["point"]), "extensions": {"KHR_lights_punctual": {"light": 0}}})
+    gltf["cameras"] = [{"type": "perspective", "perspective": {"yfov": case.get("yfov", 1.2), "znear": 0.01, "aspectRatio": 16 / 9}}]
+    gltf["nodes"].append({"name": "Camera", "camera": 0, "translation": list(case["walk"][0]) if "walk" in case else [0, 1, case.get("eye", 0.95)]})
+    if walk := case.get("walk"):
+        times = [i / 24 for i in range(len(walk))]
+        sampler = {"input": accessor(times, "f", "SCALAR", 5126, min=[times[0]], max=[times[-1]]),
+                   "output": accessor([x for p in walk for x in p], "f", "VEC3", 5126), "interpolation": "LINEAR"}
+        target = {"node": len(gltf["nodes"]) - 1, "path": "translation"}
+        gltf["animations"] = [{"samplers": [sampler], "channels": [{"sampler": 0, "target": target}]}]
     gltf["scenes"] = [{"nodes": list(range(len(gltf["nodes"])))}]
     gltf["buffers"] = [{"byteLength": len(data)}]
     text = json.dumps(gltf).encode()

@@ -104,6 +104,40 @@ photon-trace $sun --frame 0 -q -o sun0.photons && photon-trace $sun --frame 1 -q
 photon-trace $sun --frame 1 --update sun0.photons --strategy all -q -o updated.photons || bad 'update under the sun'
 [ "$(tempolux-info --digest fresh.photons | cut -c 1-32)" = "$(tempolux-info --digest updated.photons | cut -c 1-32)" ] || bad 'an update of all groups is no fresh map'
 
+# By pilots: refused where there are none; where the smoke is as it was nothing is traced; an update of all groups is a fresh map. Further paths
+# keep what the lamps emit.
+expect 2 'has no pilots' photon-trace $sun --frame 1 --update sun0.photons --share 10% --strategy dip -o x.photons
+photon-trace $sun --frame 0 --pilots 3% -q -o pilots.photons && photon-trace $sun --frame 1 --pilots 3% -q -o fresh.photons || bad pilots
+for strategy in fde dip hybrid path census; do
+  photon-trace $sun --frame 1 --update pilots.photons --share 50% --strategy $strategy -q -o $strategy.photons --stats s.json || bad "$strategy"
+  grep -q '"groups_updated": 0' s.json && bad "$strategy sees no change"
+  photon-trace $sun --frame 1 --update fresh.photons --share 50% --strategy $strategy -q -o still.photons --stats s.json || bad "$strategy of the same smoke"
+  grep -q '"groups_updated": 0' s.json && ! grep -q pilot_paths s.json || bad "$strategy traces where nothing has changed"
+done
+[ "$(tempolux-info --groups - dip.photons | grep -c ,1,)" -gt 0 ] || bad 'no group says that it was traced at frame 1'
+photon-trace $sun --frame 1 --update pilots.photons --strategy all -q -o updated.photons
+tempolux-info --diff fresh.photons updated.photons > /dev/null || bad 'with pilots an update of all groups is no fresh map'
+photon-trace $sun --frame 1 --update pilots.photons --max-groups 5 --corrective -q -o corrective.photons &&
+  photon-trace $sun --frame 1 --update pilots.photons --max-groups 5 -q -o deleted.photons || bad 'corrective photons'
+tempolux-info --diff corrective.photons deleted.photons > /dev/null || bad 'corrective photons do not leave what leaving out leaves'
+photon-trace $sun --frame 1 --update fresh.photons --refine 5k -q -o refined.photons || bad refine
+"$python" - <<'END' || bad 'refined'
+import json, subprocess
+a, b = (json.loads(subprocess.run(["tempolux-info", "--json", f + ".photons"], capture_output=True, check=True).stdout) for f in ("fresh", "refined"))
+assert b["emitted_paths"] == a["emitted_paths"] + 5000, b["emitted_paths"]
+assert all(abs(x / y - 1) < 1e-6 for x, y in zip(a["emitted_flux_W"], b["emitted_flux_W"]))
+END
+expect 2 'is the map of another state' photon-trace $sun --frame 1 --update pilots.photons --refine 5k -o x.photons
+expect 2 'has another number of groups or paths' photon-trace $sun --frame 1 --update refined.photons --share 10% -o x.photons
+# What movers change cannot be told apart where all light meets media: said before anything is made.
+room=$HERE/../../pipelines/scenes/S2_cornell_moving.glb
+expect 2 '--moving records: the scene has media' scene-plan "$room" --volume smoke.vdb --frames 0-7 --moving records -q -o moving
+
+# Frames of a range are read together: one that is damaged does not harm those before it, and is named.
+head -c 300 cube.vdb > sun.0001.vdb
+expect 2 'sun.0001.vdb' photon-trace $sun --frames 0-1 -q -o range.####.photons
+cmp range.0000.photons sun0.photons || bad 'frame 0 of a range whose frame 1 is damaged'
+
 for threads in 1 2 3 7; do
   photon-trace "$furnace" $medium --photons 20k --kinds indirect,volume --threads $threads -q -o t$threads.photons
   volume-compose "$furnace" $medium --photons p.photons --base base.exr --threads $threads -q -o t$threads.exr

@@ -12,7 +12,7 @@ import struct
 import sys
 import zlib
 
-from read_photons import Block, MAGIC, Photons, RECORD, encode_photons
+from read_photons import Block, MAGIC, PILOT, Photons, RECORD, encode_photons
 
 folder = sys.argv[1]
 base_digest = sys.argv[2] if len(sys.argv) > 2 else "890904d158e59969b934f4a66bf90810"
@@ -108,8 +108,14 @@ OVERLAY = photons([Block(1, record(flux=(2, 2, 2))), Block(2, record()), Block(3
 
 def tentative(blocks, ledger=None, **header):
     """Photons in a medium: version 1.3."""
-    ledger = [(0, (1.0,) * 3 + (0.5,) * 6, 12, 4)] if ledger is None else ledger
+    ledger = [(0, (1.0,) * 3 + (0.5,) * 6, 12, 4, b"")] if ledger is None else ledger
     return photons(blocks, ledger, **{"kinds": "indirect,tentative", "majorants": "0123456789abcdef" * 2} | header)
+
+
+def piloted(entries=((1, 2, 3, 0.5), (2**64 - 1, 0, 7, -0.25)), **header):
+    """Its ledger has pilots: version 1.4."""
+    more = b"".join(PILOT.pack(*p) for p in entries)
+    return tentative([Block(0, record(kind=4))], [(0, (1.0,) * 3 + (0.5,) * 6, 12, 4, more)], **{"pilots": "2"} | header)
 
 
 TENTATIVE = tentative([Block(0, record(kind=2) + record(kind=4, normal=(32767, 32767)))])
@@ -142,6 +148,7 @@ def accept():
     save("accept/tentative", TENTATIVE)
     save("accept/tentative-with-directions", tentative([Block(0, record(kind=4), b"\1\2\3\4")], columns="direction"))
     save("accept/tentative-of-nothing", tentative([]))
+    save("accept/pilots", piloted())
 
 
 def refuse_headers():
@@ -154,6 +161,7 @@ def refuse_headers():
     save("refuse/header-key-unknown", header_bytes(TEXT + b"colour-of-ink: blue\n"))
     save("refuse/header-key-of-a-later-version", header_bytes(TEXT + b"frames: 0 23\nemission: d4\n"))
     save("refuse/header-part-of-a-later-version", header_bytes(TEXT + b"part: low\n", minor=1))
+    save("refuse/header-key-unknown-1.4", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=4))
     save("refuse/header-key-unknown-1.3", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=3))
     save("refuse/header-key-unknown-1.2", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=2))
     save("refuse/header-key-unknown-1.1", header_bytes(TEXT + b"colour-of-ink: blue\n", minor=1))
@@ -198,6 +206,13 @@ def refuse_blocks():
     save("refuse/tentative-of-version-1.2", changed_text(TENTATIVE, lambda t: t.replace(MAJORANTS, b""), minor=2))
     save("refuse/tentative-without-ledger", tentative([Block(0, record(kind=4))], []))
     save("refuse/tentative-with-undated-ledger", encode_photons(TENTATIVE).replace(b"LEDU", b"LEDG"))
+    save("refuse/pilots-of-version-1.3", changed_text(piloted(), lambda t: t, minor=3))
+    save("refuse/pilots-zero", piloted((), pilots="0"))
+    save("refuse/pilots-above-limit", piloted(((1, 2, 3, 0.5),) * 257, pilots="257"))
+    save("refuse/pilots-without-tentative", header_bytes(TEXT + b"pilots: 1\n", minor=4))
+    save("refuse/pilots-fewer-than-said", piloted(pilots="3"))
+    save("refuse/pilots-without-their-mark", encode_photons(piloted()).replace(b"LEDP", b"LEDU"))
+    save("refuse/pilots-sum-nan", piloted(((1, 2, 3, 0.5), (1, 2, 3, float("nan")))))
     save("refuse/majorants-without-tentative", photons(majorants="0123456789abcdef" * 2))
     save("refuse/majorants-short", tentative([], majorants="abc"))
     save("refuse/majorants-of-a-later-version", header_bytes(TEXT + MAJORANTS, minor=2))

@@ -84,7 +84,7 @@ inline std::vector<GroupFlux> ledger_of(const std::vector<std::uint32_t>& groups
   std::vector<GroupFlux> ledger;
   for (std::uint32_t g : groups) {
     const double x = scale * (1 + 0.1 * g);
-    ledger.push_back({g, {x, 2 * x, 3 * x}, {0.1 * x, 0.2 * x, 0.3 * x}, {0.9 * x, 1.8 * x, 2.7 * x}});
+    ledger.push_back({g, {x, 2 * x, 3 * x}, {0.1 * x, 0.2 * x, 0.3 * x}, {0.9 * x, 1.8 * x, 2.7 * x}, 0, 0, {}});
   }
   return ledger;
 }

@@ -27,13 +27,14 @@ MAGIC = b"\x89TPHOT\r\n"
 RECORD = struct.Struct("<3f3f2HHBB")                    # section 4: position, flux, normal, object, kind, bounce
 POSITION, FLUX, NORMAL, OBJECT, KIND, BOUNCE = 0, 3, 6, 8, 9, 10
 ENTRY, DATED_ENTRY = struct.Struct("<I9d"), struct.Struct("<I9diQ")   # section 6
+PILOT = struct.Struct("<3Qd")
 END = struct.Struct("<4sQ12dI")                         # section 7
 KINDS = ["direct", "caustic", "indirect", "volume", "tentative"]
 COLUMNS = {"none": [], "direction": ["direction"], "albedo": ["albedo"], "direction,albedo": ["direction", "albedo"]}
 HASHES = ["static-geometry", "moving-geometry", "materials", "lights", "media", "emission"]
 REQUIRED = ["map", "kinds", "columns", "origin", "groups", "emitted"]
-KEYS = REQUIRED[:2] + ["part"] + REQUIRED[2:] + ["frames"] + HASHES + ["majorants", "base", "base-digest"]          # and history
-SINCE = {"emission": 1, "part": 2, "majorants": 3}              # minor version; all others: 0
+KEYS = REQUIRED[:2] + ["part"] + REQUIRED[2:] + ["frames"] + HASHES + ["majorants", "pilots", "base", "base-digest"]          # and history
+SINCE = {"emission": 1, "part": 2, "majorants": 3, "pilots": 4}              # minor version; all others: 0
 
 
 @dataclasses.dataclass
@@ -49,7 +50,7 @@ class Photons:
     header: dict            # key: text as in the file
     history: list           # lines
     blocks: list            # of Block, groups never descending
-    ledger: list            # of (group, nine numbers), with tentative photons also frame and paths; empty if the file has none
+    ledger: list            # of (group, nine numbers), with tentative photons also frame, paths and the pilots' bytes; empty if the file has none
     emitted: tuple          # W, three channels
     escaped: tuple
     absorbed: tuple
@@ -78,7 +79,7 @@ def parse_text(text, minor):                                              # sect
             refuse(16, f"key twice: {key}")
         elif key in KEYS and minor >= SINCE.get(key, 0):
             header[key] = value
-        elif minor <= 3:
+        elif minor <= 4:
             refuse(16, f"unknown key: {key}")
     for key in REQUIRED:
         if key not in header:
@@ -102,6 +103,7 @@ def check_header(h, minor):
         "kinds": all(k in KINDS for k in kinds) and len(set(kinds)) == len(kinds),
         "majorants": ("tentative" in kinds) == ("majorants" in h) and (minor >= 3 or "tentative" not in kinds) and
                      re.fullmatch("[0-9a-f]{32}", h.get("majorants", "0" * 32)),
+        "pilots": "pilots" not in h or ("tentative" in kinds and integers(h["pilots"], 1, 1, 256)),
         "part": h.get("part", "low") in ("low", "high"),
         "columns": h["columns"] in COLUMNS,
         "origin": re.fullmatch(" ".join([number] * 3), h["origin"]) and
@@ -193,16 +195,22 @@ def parse_photons(stream):
             refuse(start, "direction above 65534")
         blocks.append(block)
     tentative = "tentative" in header["kinds"].split(",")
-    if mark == (b"LEDU" if tentative else b"LEDG"):                                                   # section 6
+    pilots = int(header.get("pilots", 0))
+    if mark == (b"LEDP" if pilots else b"LEDU" if tentative else b"LEDG"):                            # section 6
         head = take(8)
         count, crc = struct.unpack("<II", head)
         expected = sorted({b.group for b in blocks}) if "base" in header else range(groups)
         if count != len(expected):
             refuse(offset, "ledger of another size")
         entry = DATED_ENTRY if tentative else ENTRY
-        body = take(entry.size * count)
+        size = entry.size + PILOT.size * pilots
+        body = take(size * count)
         chain += checksum(crc, mark, head[:4], body)
-        ledger = [(v[0], v[1:10], *v[10:]) for v in entry.iter_unpack(body)]
+        for one in split(body, size):
+            v, more = entry.unpack(one[:entry.size]), one[entry.size:]
+            if not all(math.isfinite(sketch) for *_, sketch in PILOT.iter_unpack(more)):
+                refuse(offset, "a pilot's sum is not finite")
+            ledger.append((v[0], v[1:10], *v[10:], *([more] if tentative else [])))
         if [e[0] for e in ledger] != list(expected):
             refuse(offset, "ledger of other groups")
         for _, values, *_ in ledger:
@@ -236,7 +244,7 @@ def read_photons(path):
     with open(os.path.join(os.path.dirname(path), p.header["base"]), "rb") as stream:     # section 8
         base = parse_photons(stream)
     same = all(p.header[k] == base.header[k] for k in ("map", "columns", "groups"))
-    same = same and p.header.get("majorants") == base.header.get("majorants")
+    same = same and all(p.header.get(k) == base.header.get(k) for k in ("majorants", "pilots"))
     same = same and set(p.header["kinds"].split(",")) == set(base.header["kinds"].split(","))
     same = same and [float(x) for x in p.header["origin"].split()] == [float(x) for x in base.header["origin"].split()]
     if "base" in base.header or not base.ledger or not same:
@@ -267,8 +275,9 @@ def encode_photons(p):
     totals = p.emitted + p.escaped + p.absorbed
     if p.ledger or "base" in p.header:
         dated = "majorants" in p.header
-        head = struct.pack("<4sI", b"LEDU" if dated else b"LEDG", len(p.ledger))
-        body = b"".join((DATED_ENTRY if dated else ENTRY).pack(group, *values, *more) for group, values, *more in p.ledger)
+        head = struct.pack("<4sI", b"LEDP" if "pilots" in p.header else b"LEDU" if dated else b"LEDG", len(p.ledger))
+        body = b"".join(DATED_ENTRY.pack(group, *values, *more[:2]) + more[2] if dated else ENTRY.pack(group, *values)
+                        for group, values, *more in p.ledger)
         crc = struct.pack("<I", zlib.crc32(head + body))
         out += [head, crc, body]
         crcs += crc

@@ -54,6 +54,8 @@ std::string facts_as_text(const Facts& facts);
 /// Photons, irradiance points or records as points, one by one in file order: PLY (binary, with colours for
 /// viewers: the brightest is white) or CSV.
 void export_photons(const std::string& path, const std::string& format, Output& output);
+/// A line of CSV for each group of a .photons file: when it was traced, with how many paths. InputError if the file does not say.
+void print_groups(const std::string& path, Output& output);
 void export_irradpoints(const std::string& path, const std::string& format, Output& output);
 void export_irradcache(const std::string& path, const std::string& format, Output& output);
 /// Throws InputError for a file of another type.

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -31,6 +32,7 @@ Facts header_facts(const PhotonHeader& header) {
       {"map", header.map},         {"kinds", header.kinds},        {"columns", column_names(header.columns)},
       {"origin_m", header.origin}, {"groups", header.group_count}, {"emitted_paths", header.emitted_count}};
   if (!header.part.empty()) facts["part"] = header.part;
+  if (header.pilots > 0) facts["pilots_of_a_group"] = header.pilots;
   if (!header.base_name.empty()) {
     facts["overlay_of"] = header.base_name;
     facts["base_digest"] = header.base_digest;
@@ -52,6 +54,18 @@ Facts total_facts(const PhotonTotals& totals) {
           {"stored_flux_W", totals.stored_flux},
           {"escaped_flux_W", totals.escaped_flux},
           {"absorbed_flux_W", totals.absorbed_flux}};
+}
+
+/// How old the groups are: of each frame at which some were traced their number and paths.
+Facts group_facts(const std::vector<GroupFlux>& ledger) {
+  std::map<std::int32_t, std::pair<std::uint64_t, std::uint64_t>> by_frame;
+  for (const GroupFlux& group : ledger) {
+    ++by_frame[group.frame].first;
+    by_frame[group.frame].second += group.paths;
+  }
+  Facts facts = Facts::array();
+  for (const auto& [frame, count] : by_frame) facts.push_back({{"frame", frame}, {"groups", count.first}, {"paths", count.second}});
+  return facts;
 }
 
 std::string ply_header(std::uint64_t count) {
@@ -124,6 +138,7 @@ Facts photon_facts(const std::string& path) {
   }
   facts.update(total_facts(totals));
   facts["by_kind"] = kind_facts(summary);
+  if (!reader.header().majorants.empty()) facts["groups_traced_at"] = group_facts(reader.ledger());
   facts["by_object"] = Facts::array();
   for (const auto& [object, share] : summary.by_object) {
     Facts line = {{"object", object}};
@@ -162,6 +177,25 @@ Facts photon_difference(const std::string& a, const std::string& b) {
   }
   facts["digests"] = {reader_a.digest(), reader_b.digest()};
   return facts;
+}
+
+void print_groups(const std::string& path, Output& output) {
+  PhotonReader reader(path, {.digest = false});
+  std::vector<std::uint64_t> photons(reader.header().group_count);
+  PhotonBlock block;
+  while (reader.read_block(block)) photons[block.group] += block.photons.size();
+  if (reader.ledger().empty()) throw InputError(path + ": does not say what became of its groups: it has no ledger");
+  const bool dated = !reader.header().majorants.empty();
+  std::string text = std::string("group,") + (dated ? "frame,paths," : "") + "photons,emitted_r_W,emitted_g_W,emitted_b_W\n";
+  for (const GroupFlux& group : reader.ledger()) {
+    char line[200];
+    int length = std::snprintf(line, sizeof line, "%u,", unsigned(group.group));
+    if (dated) length += std::snprintf(line + length, sizeof line - std::size_t(length), "%d,%llu,", int(group.frame), (unsigned long long)(group.paths));
+    std::snprintf(line + length, sizeof line - std::size_t(length), "%llu,%.9g,%.9g,%.9g\n", (unsigned long long)(photons[group.group]),
+                  group.emitted[0], group.emitted[1], group.emitted[2]);
+    text += line;
+  }
+  output.write(text.data(), text.size());
 }
 
 void export_photons(const std::string& path, const std::string& format, Output& output) {

@@ -36,7 +36,12 @@ constexpr ManualText kTexts[] = {
      "photon-trace house.glb --frame 0 --importance plan/state/view.0000 -o 0.photons\n"
      "# The light of a segment without what moves, and what that changes at each frame.\n"
      "photon-trace room.glb --frame 0 --map static -o s.photons --paths s.paths\n"
-     "photon-trace room.glb --frames 0-23 --map dynamic --static s.paths -o d.####.photons",
+     "photon-trace room.glb --frames 0-23 --map dynamic --static s.paths -o d.####.photons\n"
+     "# Smoke: frame 0 anew, of each frame after it a tenth of the paths; 30k more for frame 12\n"
+     "photon-trace room.glb --frame 0 --kinds indirect,volume --majorants plan/state/majorants.0000 -o p.0000.photons\n"
+     "photon-trace room.glb --frames 1-23 --kinds indirect,volume --majorants plan/state/majorants.0000 --update p.####.photons --share 10% "
+     "--strategy census -o p.####.photons\n"
+     "photon-trace room.glb --frame 12 --kinds indirect,volume --majorants plan/state/majorants.0000 --update p.0012.photons --refine 30k -o more.photons",
      "scene-plan irradcache-build tempolux-info"},
     {"photonmap-split",
      "Divides the light of photons or irradiance points in two files that add up to the whole to the last bit. By "

@@ -22,6 +22,12 @@ const T* value_for(const std::vector<T>& values, std::size_t i, std::size_t n, c
   return &values[values.size() == 1 ? 0 : i];
 }
 
+/// The file that shows a volume at a frame.
+std::string file_of(const VolumeSource& source, int frame) {
+  const int at = source.frames ? std::clamp(frame, source.frames->first, source.frames->second) : frame;
+  return has_frame_pattern(source.pattern) ? frame_name(source.pattern, at) : source.pattern;
+}
+
 std::vector<VolumeSource> sources_of(const VolumeOptions& options) {
   std::vector<VolumeSource> sources;
   const std::size_t n = options.files.size();
@@ -103,13 +109,19 @@ const MajorantGrid* VolumeInput::majorants_for(int frame, Vec3d origin) {
 std::vector<Medium> VolumeInput::parse(int frame, Vec3d origin) {
   std::vector<std::string> files;
   for (const VolumeSource& source : sources_) {
-    const int at = source.frames ? std::clamp(frame, source.frames->first, source.frames->second) : frame;
-    files.push_back(has_frame_pattern(source.pattern) ? frame_name(source.pattern, at) : source.pattern);
+    files.push_back(file_of(source, frame));
     tool_.depends_on(files.back(), InputRole::of_scene);
+  }
+  if (!series_) {
+    std::vector<VdbName> names;
+    for (const int f : tool_.common().frames)
+      for (const VolumeSource& source : sources_)
+        if (const VdbName name{file_of(source, f), source.grid}; std::ranges::find(names, name) == names.end()) names.push_back(name);
+    series_.emplace(std::move(names));
   }
   for (const std::string& file : files)
     if (std::ranges::find(files_, file) == files_.end()) files_.push_back(file);
-  return read_media(sources_, files, origin, tool_.common().max_memory_bytes);
+  return read_media(sources_, files, origin, tool_.common().max_memory_bytes, *series_);
 }
 
 std::string VolumeInput::hash(const std::vector<Medium>& media) {

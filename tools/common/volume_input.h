@@ -9,6 +9,7 @@
 
 #include "lib/scene/volumes.h"
 #include "lib/volume/majorants_file.h"
+#include "lib/volume/vdb_file.h"
 #include "tools/common/tool_main.h"
 
 namespace tempolux::tools {
@@ -39,6 +40,7 @@ class VolumeInput {
   Tool& tool_;
   std::vector<VolumeSource> sources_;
   std::vector<std::string> files_;
+  std::optional<VdbSeries> series_;
   const MajorantGrid* majorants_for(int frame, Vec3d origin);
   std::vector<Medium> parse(int frame, Vec3d origin);
   struct Kept {

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <numeric>
 
+#include "formats/error.h"
+#include "lib/photon/photon_refine.h"
 #include "tests/support/closed_box.h"
 #include "tests/support/media.h"
 
@@ -60,10 +62,10 @@ class PhotonUpdate : public testing::Test {
     return written(name, [&](const auto& sink) { write_photon_map(*room.photons, options_, header(frame), sink, {}); });
   }
   std::string updated(const std::string& name, const std::string& from, const Room& room, int frame, const UpdateOptions& how, bool same = false) {
-    const PreviousMap previous = read_previous(path(from), *room.photons, how.strategy == UpdateStrategy::census, {});
+    const PreviousMap previous = read_previous(path(from), *room.photons, how.strategy, {});
     groups_ = choose_groups(previous, frame, same, how);
     return written(name, [&](const auto& sink) {
-      write_updated_map(*room.photons, options_, header(frame), path(from), previous, groups_, true, sink);
+      write_updated_map(*room.photons, options_, header(frame), {path(from), previous, groups_, true, {}}, sink);
     });
   }
   bool is_overlay(const std::string& name) const { return !formats::PhotonReader(path(name)).header().base_name.empty(); }
@@ -119,9 +121,9 @@ TEST_F(PhotonUpdate, OverlayUponOverlayKeepsItsBase) {
   ASSERT_TRUE(is_overlay("2.photons"));
   EXPECT_EQ(formats::PhotonReader(path("2.photons")).header().base_name, "0.photons");
   // The same written whole, which is not possible in another folder's name.
-  const PreviousMap previous = read_previous(path("1.photons"), *thick.photons, false, {});
+  const PreviousMap previous = read_previous(path("1.photons"), *thick.photons, UpdateStrategy::oldest, {});
   const std::string whole = written("whole.photons", [&](const auto& sink) {
-    write_updated_map(*thick.photons, options_, header(2), path("1.photons"), previous, groups_, false, sink);
+    write_updated_map(*thick.photons, options_, header(2), {path("1.photons"), previous, groups_, false, {}}, sink);
   });
   EXPECT_EQ(whole, two);
 }
@@ -129,8 +131,8 @@ TEST_F(PhotonUpdate, OverlayUponOverlayKeepsItsBase) {
 TEST_F(PhotonUpdate, CensusSeesChangeAndOnlyThat) {
   const Room thin(0.5f, options_), thick(2, options_);
   fresh("0.photons", thin, 0);
-  const PreviousMap none = read_previous(path("0.photons"), *thin.photons, true, {});
-  const PreviousMap much = read_previous(path("0.photons"), *thick.photons, true, {});
+  const PreviousMap none = read_previous(path("0.photons"), *thin.photons, UpdateStrategy::census, {});
+  const PreviousMap much = read_previous(path("0.photons"), *thick.photons, UpdateStrategy::census, {});
   const double still = std::accumulate(none.change.begin(), none.change.end(), 0.0);
   const double sum = std::accumulate(much.change.begin(), much.change.end(), 0.0);
   // Extinction is kept to 1/65534 of the majorant: the rest of what did not change is below 1e-4 of what did.
@@ -148,6 +150,105 @@ TEST_F(PhotonUpdate, CensusSeesChangeAndOnlyThat) {
   ASSERT_EQ(groups_.size(), 5u);
   for (const std::uint32_t g : groups_)
     EXPECT_GE(much.change[g], [&] { auto sorted = much.change; std::ranges::sort(sorted, std::greater<>()); return sorted[4]; }());
+}
+
+/// Pilots are paths of the map: their signatures cost it nothing, and walked again through the same smoke they are the same.
+TEST_F(PhotonUpdate, PilotsTellWhatHasChanged) {
+  PhotonOptions plain = options_;
+  options_.pilots = 7;
+  const Room thin(0.5f, options_), same(0.5f, options_), thick(2, options_), unwatched(0.5f, plain);
+  const std::string watched = fresh("0.photons", thin, 0);
+  options_.pilots = 0;
+  EXPECT_EQ(watched, fresh("plain.photons", unwatched, 0));
+  EXPECT_THROW(read_previous(path("plain.photons"), *thick.photons, UpdateStrategy::fde, {}), InputError);
+  const auto change = [&](const Room& room, UpdateStrategy strategy) { return read_previous(path("0.photons"), *room.photons, strategy, {}).change; };
+  for (const auto strategy : {UpdateStrategy::fde, UpdateStrategy::dip, UpdateStrategy::hybrid, UpdateStrategy::path})
+    for (const double c : change(same, strategy)) EXPECT_EQ(c, 0);
+  // Of smoke that has changed everywhere each pilot that looks at any sees it; some scatter elsewhere; what is scattered elsewhere
+  // was looked at; and where surfaces stand, paths differ only by smoke.
+  const auto fde = change(thick, UpdateStrategy::fde), dip = change(thick, UpdateStrategy::dip), way = change(thick, UpdateStrategy::path);
+  double looked = 0, moved = 0;
+  for (std::size_t g = 0; g < fde.size(); ++g) {
+    EXPECT_LE(dip[g], fde[g]);
+    EXPECT_EQ(dip[g], way[g]);
+    looked += fde[g];
+    moved += dip[g];
+  }
+  EXPECT_GT(moved, 0.1 * looked);
+  EXPECT_LT(moved, 0.9 * looked);
+}
+
+/// The sketch: E[(difference)^2] = sum of squares of flux x change of extinction / majorant over the places.
+TEST_F(PhotonUpdate, SketchesGiveTheChangeInTheMean) {
+  options_.pilots = 100;
+  const Room thin(0.5f, options_), more(0.501f, options_);
+  double difference = 0, wanted = 0;
+  for (std::uint32_t g = 0; g < 63; ++g) {
+    const PhotonBatch a = thin.photons->trace_members(g, 0, 100), b = more.photons->trace_members(g, 0, 100);
+    for (std::size_t q = 0; q < 100; ++q)
+      if (a.pilots[q].collisions == b.pilots[q].collisions && a.pilots[q].vertices == b.pilots[q].vertices)
+        difference += std::pow(a.pilots[q].sketch - b.pilots[q].sketch, 2);
+    for (const PhotonBatch* batch : {&a, &b})   // places of paths that differ are few: 1 in 2000 places
+      for (const formats::Photon& p : batch->block.photons) {
+        if (p.kind != formats::PathKind::tentative) continue;
+        const Vec3 at{p.position[0], p.position[1], p.position[2]};
+        const double change = double(more.photons->media()->extinction(at)) - double(thin.photons->media()->extinction(at));
+        const double share = double(options_.volume_share), flux_per_majorant = share * double(p.flux[0] + p.flux[1] + p.flux[2]) / 3;
+        wanted += 0.5 / share * std::pow(change * flux_per_majorant, 2);
+      }
+  }
+  // 63 x 100 pilots of some ten places each: the mean of their squares is known to 3 %.
+  EXPECT_NEAR(difference / wanted, 1, 0.1);
+}
+
+/// Photons of flux -1 through the old smoke take away just what there was; through other smoke they would not.
+TEST_F(PhotonUpdate, CorrectivePhotonsTakeBackTheGroup) {
+  const Room thin(0.5f, options_), thick(2, options_);
+  fresh("0.photons", thin, 0);
+  const PreviousMap previous = read_previous(path("0.photons"), *thick.photons, UpdateStrategy::oldest, {});
+  const std::vector<std::uint32_t> some{3, 17, 40};
+  const auto with = [&](const std::string& name, const std::function<const PhotonTracer&(int)>& corrective) {
+    return written(name, [&](const auto& sink) {
+      write_updated_map(*thick.photons, options_, header(1), {path("0.photons"), previous, some, true, corrective}, sink);
+    });
+  };
+  EXPECT_EQ(with("a.photons", {}), with("b.photons", [&](int frame) -> const PhotonTracer& {
+    EXPECT_EQ(frame, 0);
+    return *thin.photons;
+  }));
+  EXPECT_THROW(with("c.photons", [&](int) -> const PhotonTracer& { return *thick.photons; }), InputError);
+}
+
+TEST(SpreadPaths, AddsUpAndGoesWhereVarianceFallsMost) {
+  // On paper: moments 4 and 1, ten paths each; 10 more: 20 and 10 are in proportion to 2 and 1.
+  EXPECT_EQ(spread_paths(std::vector<double>{4, 1}, std::vector<std::uint64_t>{10, 10}, 10), (std::vector<std::uint64_t>{20, 10}));
+  // 14 in proportion to 2 and 1 would take some of the second away: the first gets all that are new.
+  EXPECT_EQ(spread_paths(std::vector<double>{4, 1, 0}, std::vector<std::uint64_t>{2, 10, 2}, 2), (std::vector<std::uint64_t>{4, 10, 2}));
+  EXPECT_EQ(spread_paths(std::vector<double>{0, 0}, std::vector<std::uint64_t>{3, 4}, 3), (std::vector<std::uint64_t>{5, 5}));
+  EXPECT_EQ(spread_paths(std::vector<double>{1, 1, 1}, std::vector<std::uint64_t>{5, 5, 5}, 2), (std::vector<std::uint64_t>{6, 6, 5}));
+}
+
+/// Many further paths in some groups change no mean: emitted flux stays to the last digits, and the light in the smoke within its noise.
+TEST_F(PhotonUpdate, RefinedMapsKeepTheirFlux) {
+  const Room thick(2, options_);
+  fresh("0.photons", thick, 0);
+  GroupMoments groups = read_moments(path("0.photons"), *thick.photons);
+  for (std::size_t g = 0; g < groups.moments.size(); ++g) groups.moments[g] = g % 5 == 0 ? 1 : 0;
+  written("1.photons", [&](const auto& sink) { write_refined_map(*thick.photons, options_, header(0), path("0.photons"), groups, 13000, sink); });
+  const auto totals = [&](const std::string& name) {
+    formats::PhotonReader reader(path(name));
+    formats::PhotonBlock block;
+    double worth = 0;
+    while (reader.read_block(block))
+      for (const formats::Photon& p : block.photons) worth += p.kind == formats::PathKind::tentative ? double(p.flux[0]) : 0;
+    for (const formats::GroupFlux& g : reader.ledger()) EXPECT_EQ(g.paths, name == "1.photons" && g.group % 5 == 0 ? 1100u : 100u);
+    EXPECT_EQ(reader.header().emitted_count, name == "1.photons" ? 19300u : 6300u);
+    return std::pair(reader.totals().emitted_flux[0], worth);
+  };
+  const auto before = totals("0.photons"), after = totals("1.photons");
+  EXPECT_NEAR(after.first, before.first, 1e-6 * before.first);
+  // 6300 paths: 2 % of what they are worth in the smoke. Equal flux of all paths would show the groups that have eleven times as many.
+  EXPECT_NEAR(after.second, before.second, 0.06 * before.second);
 }
 
 TEST_F(PhotonUpdate, RefusesMapsOfOtherPaths) {

@@ -1,0 +1,142 @@
+#include "lib/photon/photon_refine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+
+#include "formats/error.h"
+#include "lib/core/parallel.h"
+#include "lib/photon/photon_ledger.h"
+
+namespace tempolux {
+namespace {
+
+/// All of a batch times a factor.
+void scale(PhotonBatch& batch, double factor) {
+  for (formats::Photon& photon : batch.block.photons)
+    for (float& flux : photon.flux) flux = float(double(flux) * factor);
+  for (Rgbd* flux : {&batch.emitted, &batch.escaped, &batch.absorbed}) *flux = *flux * factor;
+}
+
+struct Refined {
+  std::vector<PhotonBatch> fresh;            ///< new paths of a group
+};
+
+}  // namespace
+
+std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::span<const std::uint64_t> paths, std::uint64_t extra) {
+  const std::size_t n = moments.size();
+  std::vector<std::uint64_t> result(paths.begin(), paths.end());
+  if (n == 0 || extra == 0) return result;
+  std::vector<double> wanted(n);
+  const bool dark = std::ranges::all_of(moments, [](double m) { return !(m > 0); });
+  for (std::size_t g = 0; g < n; ++g) wanted[g] = dark ? 1 : std::sqrt(std::max(0.0, moments[g]));
+  // Groups in the order in which a growing level reaches them; the level at which `extra` paths are spent.
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  const auto begins = [&](std::size_t g) { return wanted[g] > 0 ? double(paths[g]) / wanted[g] : INFINITY; };
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return std::pair(begins(a), a) < std::pair(begins(b), b); });
+  double weight = 0, had = 0, level = 0;
+  std::size_t count = 0;
+  for (; count < n && begins(order[count]) < INFINITY; ++count) {
+    if (count > 0 && level <= begins(order[count])) break;
+    weight += wanted[order[count]];
+    had += double(paths[order[count]]);
+    level = (had + double(extra)) / weight;
+  }
+  // Whole numbers: each what is below, the largest rests one more.
+  std::vector<std::pair<double, std::size_t>> rests;
+  std::uint64_t spent = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t g = order[i];
+    const double more = std::max(0.0, level * wanted[g] - double(paths[g]));
+    const auto whole = std::min(std::uint64_t(more), extra - spent);
+    result[g] += whole;
+    spent += whole;
+    rests.emplace_back(double(whole) - more, g);
+  }
+  std::ranges::sort(rests);
+  for (std::size_t i = 0; spent < extra; i = (i + 1) % rests.size(), ++spent) ++result[rests[i].second];
+  return result;
+}
+
+GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer) {
+  formats::PhotonReader reader(path, {.digest = false});
+  GroupMoments groups;
+  groups.header = reader.header();
+  if (groups.header.majorants.empty()) throw InputError(path + ": has no photons in media; trace it with --kinds volume among others");
+  if (groups.header.majorants != tracer.majorants().hash())
+    throw InputError(path + ": its majorants are others than those of this frame; give the --majorants that it was traced with");
+  std::vector<double> squares(groups.header.group_count);
+  formats::PhotonBlock block;
+  while (reader.read_block(block))
+    for (const formats::Photon& photon : block.photons) {
+      if (photon.kind != formats::PathKind::tentative) continue;
+      const Vec3 position{photon.position[0], photon.position[1], photon.position[2]};
+      const double collides = double((photon.flux[0] + photon.flux[1] + photon.flux[2]) / 3) *
+                              double(tracer.media() ? tracer.media()->extinction(position) : 0);
+      squares[block.group] += collides * collides;
+    }
+  groups.ledger = reader.ledger();
+  for (const formats::GroupFlux& entry : groups.ledger) {
+    const auto n = double(std::max<std::uint64_t>(1, entry.paths));
+    groups.paths.push_back(entry.paths);
+    // Flux is by 1 / n: of a path alone it is n times as much.
+    groups.moments.push_back(squares[entry.group] * n);
+  }
+  return groups;
+}
+
+PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader header, const std::string& path,
+                                  const GroupMoments& groups, std::uint64_t extra, const std::function<void(const void*, std::size_t)>& sink) {
+  describe_map(tracer, options, header);
+  const std::vector<std::uint64_t> paths = spread_paths(groups.moments, groups.paths, extra);
+  header.emitted_count = std::accumulate(paths.begin(), paths.end(), std::uint64_t(0));
+  PhotonMapResult result;
+  formats::PhotonWriter writer(
+      [&](const void* data, std::size_t size) {
+        sink(data, size);
+        result.byte_count += size;
+      },
+      header);
+  formats::PhotonReader reader(path, {.digest = false});
+  formats::PhotonBlock block;
+  bool more = reader.read_block(block);
+  std::vector<formats::GroupFlux> ledger = groups.ledger;
+  parallel_ordered(
+      paths.size(), std::size_t(2 * parallel_thread_count()),
+      [&](std::size_t g) -> std::shared_ptr<void> {
+        auto refined = std::make_shared<Refined>();
+        // The tracer's flux is by 1 / members.
+        const double factor = double(tracer.members()) / double(std::max<std::uint64_t>(1, paths[g]));
+        for (std::uint64_t q = groups.paths[g]; q < paths[g]; q += PhotonTracer::kBatch) {
+          refined->fresh.push_back(tracer.trace_members(std::uint32_t(g), q, std::min(paths[g], q + PhotonTracer::kBatch)));
+          scale(refined->fresh.back(), factor);
+        }
+        return refined;
+      },
+      [&](std::size_t g, void* pointer) {
+        const double factor = double(groups.paths[g]) / double(std::max<std::uint64_t>(1, paths[g]));
+        for (; more && block.group == g; more = reader.read_block(block)) {
+          if (factor != 1)
+            for (formats::Photon& photon : block.photons)
+              for (float& flux : photon.flux) flux = float(double(flux) * factor);
+          writer.write(block);
+        }
+        formats::GroupFlux& entry = ledger[g];
+        for (auto* flux : {&entry.emitted, &entry.escaped, &entry.absorbed})
+          for (double& f : *flux) f *= factor;
+        for (const PhotonBatch& batch : static_cast<const Refined*>(pointer)->fresh) {
+          if (!batch.block.photons.empty()) writer.write(batch.block);
+          const std::int32_t frame = entry.frame;
+          add_to_ledger(batch, frame, entry);
+          count(batch, result);
+        }
+        close_ledger(entry);
+      });
+  result.totals = writer.finish({}, ledger);
+  return result;
+}
+
+}  // namespace tempolux

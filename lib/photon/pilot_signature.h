@@ -1,0 +1,44 @@
+// lib/photon/pilot_signature.h -- what a pilot path met, as hashes: equal if and (but for 2^-64) only if it met the same.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+#include "formats/photons/photons.h"
+#include "lib/core/random.h"
+#include "lib/trace/trace.h"
+
+namespace tempolux {
+
+namespace pilot_signature {
+
+inline void add(std::uint64_t& hash, std::uint64_t word) { hash = mix64(hash ^ word) + 0x9e3779b97f4a7c15ull; }
+inline std::uint64_t bits(float a, float b) { return std::uint64_t(std::bit_cast<std::uint32_t>(a)) << 32 | std::bit_cast<std::uint32_t>(b); }
+
+/// Where the path begins, and with which flux [W].
+inline void start(formats::PhotonPilot& pilot, const Ray& ray, Rgb flux) {
+  for (const auto& [a, b] : {std::pair{ray.origin.x, ray.origin.y}, std::pair{ray.origin.z, ray.direction.x},
+                             std::pair{ray.direction.y, ray.direction.z}, std::pair{flux.r, flux.g}, std::pair{flux.b, 0.0f}})
+    add(pilot.vertices, bits(a, b));
+}
+
+/// It looks at a place of a medium, a tentative collision: flux [W], extinction and majorant [1/m]; `positive`: a bit drawn for the place.
+inline void look(formats::PhotonPilot& pilot, bool positive, Rgb flux, float extinction, float majorant) {
+  add(pilot.extinctions, std::bit_cast<std::uint32_t>(extinction));
+  const double share = double((flux.r + flux.g + flux.b) / 3) * double(extinction) / double(majorant);
+  pilot.sketch += positive ? share : -share;
+}
+
+/// A medium scatters or absorbs it there.
+inline void collide(formats::PhotonPilot& pilot, std::uint32_t bounce, std::uint32_t step) {
+  add(pilot.collisions, std::uint64_t(bounce) << 32 | step);
+}
+
+/// It meets a surface after `distance` [m].
+inline void meet(formats::PhotonPilot& pilot, std::uint32_t bounce, const Hit& hit) {
+  add(pilot.vertices, std::uint64_t(bounce) << 32 | std::bit_cast<std::uint32_t>(hit.t));
+  add(pilot.vertices, std::uint64_t(hit.surface) << 32 | hit.triangle);
+}
+
+}  // namespace pilot_signature
+}  // namespace tempolux
