@@ -3,3 +3,9 @@
 $(pictures): $(OUT)/frames/%.exr: $(OUT)/clear/%.exr $$(photons_$$*:%=$(OUT)/photons/%.photons) $(OUT)/options/smoke $(BIN)/volume-compose
 	$(RUN) $(BIN)/volume-compose $(SCENE) --frame $* --base $< --photons $(OUT)/photons/$(photons_$*).photons $(options_smoke) \
 	  -o $@ --stats $(@:.exr=.json)
+
+# SURFACES=textures: indirect light of the surfaces as the smoke has it, photons counted in elements and smoothed, in place of points and cache.
+ifneq ($(filter textures,$(SURFACES)),)
+$(plan_photons:%=$(OUT)/textures/%.meshirrad): $(OUT)/textures/%.meshirrad: $(OUT)/photons/%.photons $(OUT)/options/textures $(BIN)/st-filter
+	$(RUN) $(BIN)/st-filter mesh $(SCENE) --frame $* --photons $< $(options_textures) -o $@ --stats $(@:.meshirrad=.json)
+endif

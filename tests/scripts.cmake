@@ -31,6 +31,9 @@ add_test(NAME formats.read_flow COMMAND sh formats/read_flow_test.sh $<TARGET_FI
 add_test(NAME formats.read_paths COMMAND sh formats/read_paths_test.sh $<TARGET_FILE:paths_test>
          WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 
+add_test(NAME formats.read_meshirrad COMMAND sh formats/read_meshirrad_test.sh $<TARGET_FILE:meshirrad_test>
+         WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+
 # Stages together, run by make at the top of the tree.
 add_test(NAME pipelines.rerun COMMAND sh tests/pipelines/rerun.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})

@@ -39,7 +39,7 @@ struct Options {
   bool half_float = false, learn_lights = false;
   int width = 640, height = 360;
 
-  bool traces_paths() const { return light.photons.empty() && light.irradcache.empty() && light.points.empty(); }
+  bool traces_paths() const { return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty(); }
 };
 
 /// The neighbours in time that motion needs; empty unless it is asked for.
@@ -140,6 +140,8 @@ void check(Options& options, const std::vector<int>& frames) {
                        ": a frame is OpenEXR; name it f.exr, then tempolux-info --png f.png f.exr");
   if (options.integrator == "photons" && !(options.light.irradcache.empty() && options.light.points.empty()))
     throw InputError("--integrator photons reads no cache and no points; leave them out, or the integrator");
+  if (!options.light.meshirrad.empty() && !(options.light.irradcache.empty() && options.light.points.empty() && options.integrator == "auto"))
+    throw InputError("--meshirrad and --irradcache, --points or --integrator: a light texture is all indirect light by itself; leave out one");
   if (options.integrator == "photons" && options.light.photons.empty())
     throw InputError("--integrator photons: name the photon map with --photons FILE");
   if (!options.light.dynamic.empty() && options.light.photons.empty())
@@ -183,6 +185,8 @@ void add_light_options(tools::Tool& tool, Options& options) {
                  ".photons file of the frame, photon-trace --map dynamic, or a pattern: --photons is then the segment's static map")
       ->type_name("FILE");
   app.add_option("--irradcache", options.light.irradcache, ".irradcache file, or a pattern: indirect light")
+      ->type_name("FILE");
+  app.add_option("--meshirrad", options.light.meshirrad, ".meshirrad file of st-filter mesh, or a pattern: indirect light, in place of a cache")
       ->type_name("FILE");
   app.add_option(
          "--points", options.light.points,

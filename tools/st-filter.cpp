@@ -2,6 +2,7 @@
 //
 //     st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o 10.exr
 //     st-filter f.####.exr --flow flow.####.exr --frames 0-47 -o filtered.####.exr
+//     st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad          (tools/common/filter_mesh.h)
 //
 // How: docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/error.h"
@@ -17,6 +19,7 @@
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
 #include "tools/common/keep_memory.h"
+#include "tools/common/filter_mesh.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 
@@ -179,6 +182,7 @@ void filter_range(tools::Tool& tool, const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "mesh") return tools::filter_mesh(argc - 1, argv + 1);
   tools::Tool tool("st-filter", "Filter frames of few samples, in space and along the pixel flow in time.", argc, argv);
   Options options;
   CLI::App& app = tool.app();

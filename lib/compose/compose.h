@@ -11,6 +11,7 @@
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
 #include "lib/volume/medium.h"
+#include "lib/volume/vdb_write.h"
 
 namespace tempolux {
 
@@ -33,6 +34,9 @@ class MediaLight {
   void finish();
   /// Source: light scattered towards the eye per length, [W/m^3/sr]: sum over media of sigma_s fluence / 4 pi.
   Rgb scattered(Vec3 point) const;
+  /// scattered() over extinction at the centres of the volume's cells, world space = scene space + `origin`: radiance that the smoke there
+  /// would send towards the eye if it were opaque (source function) [W/m^2/sr]; black where there is none. After finish().
+  ColourGrid source(Vec3d origin) const;
   const std::vector<FluenceSums>& sums() const { return sums_; }
   const FluenceVolume& volume() const { return volumes_.front(); }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "lib/gather/mesh_light.h"
 #include "lib/render/localised_light.h"
 #include "lib/render/shading.h"
 
@@ -13,6 +14,7 @@ constexpr std::uint32_t kMirrorsInARow = 16;
 }  // namespace
 
 std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const {
+  if (mesh) return mesh->irradiance(surface, geometric);
   if (localised) return localised->at(surface, shading, direct_view);
   if (records) return records->irradiance(surface.position, shading, direct_view);
   return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric)) : std::nullopt;

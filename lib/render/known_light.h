@@ -13,12 +13,14 @@
 namespace tempolux {
 
 class LocalisedLight;
+class MeshLight;
 
 /// Irradiance [W/m^2] told by records, points and photons. Each part may be missing: the path then finds that light itself.
 /// All must outlive it. Thread-safe.
 class KnownLight {
  public:
   const RecordStore* records = nullptr;   ///< kind indirect where the eye looks
+  const MeshLight* mesh = nullptr;        ///< in place of records: a light texture of kind indirect
   const LocalisedLight* localised = nullptr;   ///< in place of records: of what stands, and of what movers change
   const PointLookup* points = nullptr;    ///< all kinds where a ray from a matte surface ends
   const PhotonLight* photons = nullptr;   ///< kind caustic; indirect, too, if it has it and there are no records
@@ -27,7 +29,7 @@ class KnownLight {
   int bright_samples = 0;                 ///< at the first such place of an eye path; one at each later one
   /// Do eye paths fork at the first Lambert lobe under a gloss, to follow both? A gloss reflects 4 % as a rule: one ray in 25 that
   /// meets something bright makes a dot. Where nothing is known both would be whole paths: a fork costs as much as it gains then.
-  bool forks() const { return records || localised || points || photons; }
+  bool forks() const { return records || mesh || localised || points || photons; }
 
   /// Irradiance of kind indirect at the first Lambert lobe of an eye path; both normals are unit and on the side seen. None where no
   /// record is near: a ray of the hemisphere is to find it. `direct_view`: the camera ray itself met the place; then records with

@@ -18,6 +18,17 @@ struct VdbPipeHead {
   std::uint64_t block_count = 0;
   std::uint64_t name_size = 0;
 };
+/// With the argument `write` it makes a file instead: it is given this, the grid's name, and counts[0] x counts[1] x counts[2] colours of three
+/// float32, z fastest, and prints the file.
+struct VdbWriteHead {
+  std::array<char, 8> magic{'T', 'P', 'X', 'V', 'D', 'B', 'W', '\n'};
+  std::array<double, 3> voxel{}, first_centre{};   ///< m: edges of a voxel, centre of the first
+  std::array<std::int32_t, 3> counts{};
+  std::uint32_t reserved = 0;
+  std::uint64_t name_size = 0;
+};
+
+static_assert(sizeof(VdbWriteHead) == 80);
 static_assert(sizeof(VoxelBlock) == 12 + 2048 && sizeof(VdbPipeHead) == 120);
 
 }  // namespace tempolux

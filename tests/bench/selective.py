@@ -10,7 +10,7 @@ RMSE from the sixth frame on, the share of these frames in which it is below old
 "plain" is without the factor age, "corrective" with negative photons.
 
 refine: S6 at frame 12, 299 880 paths and 54 264 more by --refine, against as many spread evenly (a fresh map of 354 144), several seeds, to
-a reference of 6 million.
+a reference of 6 million; all by the same filter, so that what differs is noise.
 
 deviation: directions of photons from a point lamp in 400 bins of equal solid angle, over 30 passes of --refine; standard deviation over mean, by
 flux and by number (the paper's figure 2).
@@ -66,11 +66,11 @@ def scenes(options):
            ["--volume", folder / "chimney_####.vdb", "--volume-frames", "24-47", *chimney.OPTIONS], 24, 47)
 
 
-def compose(runner, scene, smoke, frames, photons, out):
+def compose(runner, scene, smoke, frames, photons, out, *more):
     """Frames of this layer; the same rays and samples of the lamp for each map, so that they cancel."""
     base = runner.folder / "base"
     runner.run("volume-compose", scene, *smoke, "--frames", frames, "--photons", photons, "--base", base / "f.####.exr",
-               "--spp", 2, "--light-samples", 1, "-o", out)
+               "--spp", 2, "--light-samples", 1, *more, "-o", out)
 
 
 def measure_updates(options, runner):
@@ -123,7 +123,8 @@ def measure_refine(options, runner):
     runner.run("frame-render", scene, *smoke, "--frame", 12, "--photons", maps["reference"], "--size", options.size, "--spp", 1,
                "--channels", "RGBA,layers,Z", "-o", runner.folder / "base/f.0012.exr")
     frame = {name: runner.folder / f"{name}.exr" for name in maps}
-    compose(runner, scene, smoke, 12, maps["reference"], frame["reference"])
+    width = ["--filter-width", 1]              # cells, of all: else more photons would be smoothed less
+    compose(runner, scene, smoke, 12, maps["reference"], frame["reference"], *width)
     sums = dict.fromkeys(("plain", "refined", "even"), 0.0)
     for seed in range(options.seeds):
         common = [scene, *smoke, *kinds, "--seed", seed]
@@ -131,7 +132,7 @@ def measure_refine(options, runner):
         runner.run("photon-trace", *common, "--photons", PATHS, "--update", maps["plain"], "--refine", 54264, "-o", maps["refined"])
         runner.run("photon-trace", *common, "--photons", PATHS + 54264, "-o", maps["even"])
         for name in sums:
-            compose(runner, scene, smoke, 12, maps[name], frame[name])
+            compose(runner, scene, smoke, 12, maps[name], frame[name], *width)
             sums[name] += runner.rmse(frame[name], frame["reference"]) ** 2 / options.seeds
     print("\n| S6, frame 12 | MSE of the layer volume | over even |\n|---|---:|---:|")
     for name, words in (("plain", f"{PATHS} paths"), ("even", "54 264 more, evenly"), ("refined", "54 264 more, --refine")):

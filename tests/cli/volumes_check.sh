@@ -85,6 +85,13 @@ frame-render "$furnace" $medium --size 32x32 --photons p.photons --spp 8 --chann
 volume-compose "$furnace" $medium --photons p.photons --base base.exr -q -o composed.exr || bad compose
 check composed.exr .02 2 5 1.25
 
+# The light in the smoke alone: in the furnace radiance 2, 5, 1.25 all around, scattered without loss. Read back as a density its red is 2.
+photon-trace "$furnace" $medium --photons 300k --kinds direct,indirect,volume -q -o all.photons
+volume-compose "$furnace" $medium --photons all.photons --direct photons --radiance-only light.vdb -q || bad 'radiance alone'
+expect 2 "grid .radiance. is not a density but Tree_vec3s" frame-render "$furnace" --volume light.vdb $tiny
+expect 2 'leave out --base and -o' volume-compose "$furnace" $medium --photons p.photons --radiance-only x.vdb --base base.exr -o made.exr
+expect 2 'or --radiance-only' volume-compose "$furnace" $medium --photons p.photons -o made.exr
+
 # Without the medium the file is as if there were no such option, and no medium is known.
 frame-render "$furnace" --volume none --size 8x8 --spp 1 --integrator path -q -o none.exr && frame-render "$furnace" --size 8x8 --spp 1 --integrator path -q -o plain.exr
 [ "$(tempolux-info --digest none.exr | cut -c 1-32)" = "$(tempolux-info --digest plain.exr | cut -c 1-32)" ] || bad '--volume none is not nothing'

@@ -13,6 +13,10 @@ IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, co
   const SceneFrame& frame = tracer.frame();
   if (!options.photons.empty()) read_maps(tool, options, tracer, number);
   if (!options.points.empty()) read_points(tool, options, tracer, lights, seed, number);
+  if (!options.meshirrad.empty()) {
+    tool.stats().phase("read light texture");
+    read_mesh(tool, frame_name(options.meshirrad, number), frame);
+  }
   if (!options.irradcache.empty()) {
     tool.stats().phase("read cache");
     read_cache(tool, frame_name(options.irradcache, number), frame, options.influence);
@@ -44,7 +48,7 @@ void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options,
 
 void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number) {
   const SceneFrame& frame = tracer.frame();
-  const bool alone = options.irradcache.empty() && options.points.empty();   // photons tell indirect light, too
+  const bool alone = options.irradcache.empty() && options.points.empty() && options.meshirrad.empty();   // photons tell indirect light, too
   const LightNeeded needed = alone ? LightNeeded::all : LightNeeded::caustic;
   const auto shift = [&](const formats::PhotonMap& map) {
     return Vec3d{map.header.origin[0], map.header.origin[1], map.header.origin[2]} - frame.origin;
@@ -69,6 +73,17 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
   photon_light.caustic_only = !alone;
   photons_ = std::make_unique<PhotonLight>(tracer, map.photons, moved, photon_light);
   known_.photons = photons_.get();
+}
+
+void IndirectLight::read_mesh(Tool& tool, const std::string& name, const SceneFrame& frame) {
+  tool.depends_on(name);
+  formats::MeshirradFile file = formats::load_meshirrad(name);
+  check_identity(tool, name, file.header.identity, frame);
+  if (file.header.kinds != "indirect")
+    throw InputError(name + ": holds light of kinds " + file.header.kinds + ", of which frames sample or look up some by themselves; make it with --kinds indirect");
+  history_ = file.header.history;
+  mesh_ = std::make_unique<MeshLight>(std::move(file));
+  known_.mesh = mesh_.get();
 }
 
 void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds) {

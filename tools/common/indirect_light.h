@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "lib/gather/mesh_light.h"
 #include "lib/render/known_light.h"
 #include "lib/render/localised_light.h"
 #include "tools/common/gather_input.h"
@@ -11,7 +12,7 @@
 namespace tempolux::tools {
 
 struct IndirectLightOptions {
-  std::string photons, irradcache, points;   ///< files, or patterns; "": none
+  std::string photons, irradcache, points, meshirrad;   ///< files, or patterns; "": none
   std::string dynamic;                       ///< the same: photons is then the segment's static map
   std::string high;                          ///< the same: points is then the low part of photonmap-split
   int high_samples = 4;                      ///< of an eye path
@@ -31,6 +32,7 @@ class IndirectLight {
  private:
   void read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed, int number);
   void read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
+  void read_mesh(Tool& tool, const std::string& name, const SceneFrame& frame);
   void read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds);
 
   std::string history_;
@@ -40,6 +42,7 @@ class IndirectLight {
   std::unique_ptr<PointLookup> lookup_;
   std::unique_ptr<BrightPoints> bright_;
   std::unique_ptr<LocalisedLight> localised_;
+  std::unique_ptr<MeshLight> mesh_;
   KnownLight known_;
 };
 

@@ -95,6 +95,7 @@ FileType file_type(const std::string& path) {
   if (head.starts_with("\x89TIRPT")) return FileType::irradpoints;
   if (head.starts_with("\x89TIRRC")) return FileType::irradcache;
   if (head.starts_with("\x89TRADS")) return FileType::radsamples;
+  if (head.starts_with("\x89TMESH")) return FileType::meshirrad;
   if (path == "-") return FileType::photons;   // whose reader says what is wrong
   if (head.find_first_not_of(" \t\r\n") < size && head[head.find_first_not_of(" \t\r\n")] == '{')
     return FileType::json;
@@ -116,6 +117,8 @@ Facts facts_of(const std::string& path, bool allow_nan) {
       return irradcache_facts(path);
     case FileType::radsamples:
       return radsamples_facts(path);
+    case FileType::meshirrad:
+      return meshirrad_facts(path);
     case FileType::image:
       return image_facts(path, allow_nan);
     case FileType::json:
@@ -140,6 +143,8 @@ Facts difference_of(const std::string& a, const std::string& b) {
       return irradcache_difference(a, b);
     case FileType::radsamples:
       return radsamples_difference(a, b);
+    case FileType::meshirrad:
+      return meshirrad_difference(a, b);
     case FileType::image:
       return image_difference(a, b);
     case FileType::json:
@@ -158,6 +163,7 @@ void export_points(const std::string& path, const std::string& format, Output& o
       return export_irradcache(path, format, output);
     case FileType::paths:
     case FileType::radsamples:
+    case FileType::meshirrad:
     case FileType::image:
     case FileType::json:
       break;

@@ -125,14 +125,21 @@ constexpr ManualText kTexts[] = {
      "mirrors and glass more samples. With coverage edges are put "
      "together from the surfaces that a pixel sees, else they stay as they are.\n"
      "\n"
-     "Frames of other programs, which know neither variance nor samples, are filtered as far as a viewer cannot see it.",
+     "Frames of other programs, which know neither variance nor samples, are filtered as far as a viewer cannot see it.\n"
+     "\n"
+     "st-filter mesh SCENE --photons FILE -o FILE makes light textures instead: photons are counted by small triangles of the surfaces and smoothed "
+     "along them; frame-render --meshirrad reads them (docs/methods/light_textures.md). Its options: st-filter mesh --help.",
      "frame .exr: read and written (formats/frames/frames.md)\n"
-     "flow .exr: where pixels go and came from (formats/flow/flow.md)",
+     "flow .exr: where pixels go and came from (formats/flow/flow.md)\n"
+     ".meshirrad: written by st-filter mesh (formats/meshirrad/meshirrad.md)",
      "frame-render room.glb --frames 0-47 --spp 2 --for-filter --pixel-error 0.016 --seed-mode frame --irradcache c.####.irradcache "
      "--channels RGBA,layers,Z,N,id,albedo,motion,coverage,samples -o f.####.exr\n"
      "st-filter f.####.exr --frames 0-47 -o filtered.####.exr\n"
      "# One frame, by its five files.\n"
-     "st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o filtered.0010.exr",
+     "st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o filtered.0010.exr\n"
+     "# A light texture, and a frame by it.\n"
+     "st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad\n"
+     "frame-render room.glb --frame 12 --size 640x360 --meshirrad 12.meshirrad -o 12.exr",
      "frame-render aqm-compare tempolux-info"},
     {"volume-compose",
      "Puts the smoke of a scene into a frame: photons in media (photon-trace --kinds ...,volume) are summed in cells and smoothed, "

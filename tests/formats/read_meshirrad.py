@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Read and write .meshirrad files. Written from formats/meshirrad/meshirrad.md and formats/conventions.md alone.
+
+    read_meshirrad.py FILE            header and totals as JSON
+    read_meshirrad.py FILE COPY       also write it again
+
+As a module: read_meshirrad(path) -> Mesh; write_meshirrad(path, mesh).
+"""
+import dataclasses
+import json
+import math
+import re
+import struct
+import sys
+
+from containers import REAL, cut, encode_container, read_container, refuse, save
+
+MAGIC, MARK = b"\x89TMESH\r\n", b"MESH"
+# section 3: surface, triangle, cell, cuts, side, position, normal, area, photons, sums, irradiance, object, reserved
+RECORD = struct.Struct("<3I2H3f2HfI3q3f2H")
+SURFACE, TRIANGLE, CELL, CUTS, SIDE, POSITION, NORMAL, AREA, PHOTONS, SUMS, IRRADIANCE, OBJECT = 0, 1, 2, 3, 4, 5, 8, 10, 11, 12, 15, 18
+END = "<QQ"                                     # section 4, without mark and chain
+KINDS = ["direct", "caustic", "indirect"]
+KEYS = ["kinds", "origin", "cell", "unit", "filter"]
+
+
+def positive(text):
+    return re.fullmatch(REAL, text) and math.isfinite(float(text)) and float(text) > 0
+
+
+RULES = {
+    "kinds": lambda v: v != "" and ",".join(k for k in KINDS if k in v.split(",")) == v,
+    "cell": positive,
+    "unit": positive,
+    "filter": lambda v: v == "none" or (v.split(" ")[0] in ("box", "gaussian", "bilateral") and v.count(" ") == 1 and positive(v.split(" ")[1])),
+}
+
+
+@dataclasses.dataclass
+class Mesh:
+    header: dict            # key: text as in the file
+    history: list           # lines
+    elements: list          # of tuples as RECORD has them
+
+
+def read_meshirrad(path):
+    header, history, blocks, end = read_container(path, MAGIC, MARK, KEYS, RULES, lambda h: [RECORD.size], END)
+    m = Mesh(header, history, [])
+    last, following = None, None               # side done last; (side, cuts, cell) that must come next
+    for offset, _, parts in blocks:
+        for i, e in enumerate(RECORD.iter_unpack(parts[0])):
+            side = e[SURFACE], e[TRIANGLE], e[SIDE]
+            in_order = (side, e[CUTS], e[CELL]) == following if following else e[CELL] == 0 and (last is None or side > last)
+            numbers = e[POSITION:POSITION + 3] + (e[AREA],) + e[IRRADIANCE:IRRADIANCE + 3]
+            good = (1 <= e[CUTS] <= 1024 and e[SIDE] <= 1 and all(map(math.isfinite, numbers)) and min(numbers[3:]) >= 0 and
+                    max(e[NORMAL:NORMAL + 2]) <= 65534 and min(e[SUMS:SUMS + 3]) >= 0 and e[-1] == 0)
+            if not (in_order and good):
+                refuse(offset + RECORD.size * i, "element out of range or order")
+            last, following = side, None if e[CELL] + 1 == e[CUTS] ** 2 else (side, e[CUTS], e[CELL] + 1)
+            m.elements.append(e)
+    if following or end != totals(m):
+        refuse(0, "cells are missing, or totals are not those of the elements")
+    return m
+
+
+def totals(m):
+    return len(m.elements), sum(e[PHOTONS] for e in m.elements)
+
+
+def encode_meshirrad(m):
+    """The bytes of a file, in blocks of 65536."""
+    blocks = [(len(some), [b"".join(RECORD.pack(*e) for e in some)]) for some in cut(m.elements)]
+    return encode_container(MAGIC, MARK, KEYS, m.header, m.history, blocks, struct.pack(END, *totals(m)))
+
+
+def write_meshirrad(path, m):
+    save(path, encode_meshirrad(m))
+
+
+def cell_of(n, u, v):
+    """Section 3: the cell of barycentrics u, v (of corners 1 and 2)."""
+    x, y = u * n, v * n
+    j = min(int(y), n - 1)
+    i = min(int(x), n - 1 - j)
+    tip = i + j + 1 < n and (x - i) + (y - j) > 1
+    return j * (2 * n - j) + 2 * i + tip
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (2, 3):
+        sys.exit(__doc__)
+    try:
+        file = read_meshirrad(sys.argv[1])
+    except (ValueError, OSError) as error:
+        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
+        sys.exit(2)
+    print(json.dumps({"header": file.header, "history": file.history, "elements": totals(file)[0], "photons": totals(file)[1]}, indent=1))
+    if len(sys.argv) == 3:
+        write_meshirrad(sys.argv[2], file)

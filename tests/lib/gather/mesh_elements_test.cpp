@@ -1,0 +1,138 @@
+// Light textures: even light stays even to the last element of a wall, walls do not mix, flux is kept, adding and taking away are inverses.
+#include "lib/gather/mesh_elements.h"
+
+#include <gtest/gtest.h>
+
+#include "formats/octahedral.h"
+#include "lib/core/random.h"
+#include "lib/gather/mesh_light.h"
+#include "tests/support/scenes.h"
+
+namespace tempolux {
+namespace {
+
+/// A room of 2 m, and photons in it: one in the middle of each element of the inner sides, worth `irradiance(position)` over its area.
+class LightTexture : public testing::Test {
+ protected:
+  static constexpr double kCell = 0.21;
+  LightTexture() {
+    room_.add_room({-1, -1, -1}, {1, 1, 1}, test::matte(Rgb(0.5f)));
+    tracer_ = std::make_unique<Tracer>(room_.frame());
+  }
+  template <class Irradiance>
+  std::vector<formats::Photon> photons(const Irradiance& irradiance) {
+    std::vector<formats::Photon> photons;
+    for (const formats::MeshElement& e : light_texture(room_.frame(), full(), {MeshFilter::Kind::none, 1})) {
+      const Vec3 p{e.position[0], e.position[1], e.position[2]};
+      formats::Photon& photon = photons.emplace_back();
+      photon.position = e.position;
+      photon.normal = e.normal;
+      photon.kind = formats::PathKind::indirect;
+      for (float& flux : photon.flux) flux = irradiance(p) * e.area;
+    }
+    return photons;
+  }
+  /// A photon on each side of each triangle, so that all elements are listed; only those of inner sides.
+  MeshSums full() {
+    MeshSums sums(*tracer_, kCell, 1e-9);
+    std::vector<formats::Photon> some;
+    for (int i = 0; i < 3000; ++i) {
+      const PathRandom random(7, std::uint64_t(i));
+      const Vec2 a = random.get2(0, Purpose::test), b = random.get2(1, Purpose::test);
+      const int axis = i % 3, other1 = (axis + 1) % 3, other2 = (axis + 2) % 3;
+      Vec3 p, n;
+      p[axis] = b.x < 0.5f ? -1.0f : 1.0f;
+      n[axis] = -p[axis];
+      p[other1] = 2 * a.x - 1;
+      p[other2] = 2 * a.y - 1;
+      formats::Photon& photon = some.emplace_back();
+      photon.position = {p.x, p.y, p.z};
+      photon.normal = formats::encode_normal({n.x, n.y, n.z});
+      photon.flux = {1, 1, 1};
+    }
+    sums.add(some, {});
+    EXPECT_EQ(sums.lost(), 0u);
+    return sums;
+  }
+  std::vector<formats::MeshElement> texture(const std::vector<formats::Photon>& photons, const MeshFilter& filter) {
+    MeshSums sums(*tracer_, kCell, 1e-12);
+    sums.add(photons, {});
+    return light_texture(room_.frame(), sums, filter);
+  }
+
+  test::HandMadeScene room_;
+  std::unique_ptr<Tracer> tracer_;
+};
+
+TEST_F(LightTexture, EvenLightStaysEvenAndWallsDoNotMix) {
+  const auto irradiance = [](Vec3 p) { return p.y < -0.999f ? 2.0f : 1.0f; };   // the floor has twice as much
+  const auto even = photons(irradiance);
+  ASSERT_GT(even.size(), 1000u);
+  for (const auto kind : {MeshFilter::Kind::none, MeshFilter::Kind::box, MeshFilter::Kind::gaussian, MeshFilter::Kind::bilateral})
+    for (const formats::MeshElement& e : texture(even, {kind, 0.3, 0.5f}))
+      EXPECT_NEAR(e.irradiance[1], irradiance({e.position[0], e.position[1], e.position[2]}), 1e-4) << int(kind);
+}
+
+TEST_F(LightTexture, TheBilateralFilterKeepsFluxAndEdges) {
+  const auto step = [](Vec3 p) { return p.x < 0 ? 1.0f : 4.0f; };
+  const auto uneven = photons(step);
+  double wanted = 0;
+  for (const formats::Photon& p : uneven) wanted += double(p.flux[0]);
+  const auto middle = [&](MeshFilter::Kind kind, double& flux) {
+    double sum = 0, area = 0;
+    flux = 0;
+    for (const formats::MeshElement& e : texture(uneven, {kind, 0.3, 0.5f})) {
+      flux += double(e.irradiance[0] * e.area);
+      if (std::abs(e.position[1]) < 0.999f || e.position[0] > -0.2f || e.position[0] < -0.4f) continue;
+      sum += double(e.irradiance[0] * e.area);   // of floor and ceiling, a width beside the step
+      area += double(e.area);
+    }
+    return sum / area;
+  };
+  double flux = 0;
+  EXPECT_LT(middle(MeshFilter::Kind::bilateral, flux), 1.25);
+  EXPECT_NEAR(flux, wanted, 1e-4 * wanted);
+  EXPECT_GT(middle(MeshFilter::Kind::gaussian, flux), 1.35);   // 1 + 3 x share of a Gaussian beyond its deviation, .16
+}
+
+TEST_F(LightTexture, TakingAwayLeavesWhatWasThere) {
+  const auto all = photons([](Vec3 p) { return 1 + p.x * p.y; });
+  const std::span<const formats::Photon> some(all.data(), all.size() / 3), rest(all.data() + some.size(), all.size() - some.size());
+  MeshSums both(*tracer_, kCell, 1e-12), one(*tracer_, kCell, 1e-12);
+  both.add(some, {});
+  both.add(rest, {});
+  both.add(some, {}, -1);
+  one.add(rest, {});
+  for (const auto& [side, cells] : both.cells()) {
+    const auto found = one.cells().find(side);
+    if (found != one.cells().end()) EXPECT_EQ(cells, found->second);
+    else
+      for (const auto& cell : cells) EXPECT_EQ(cell, MeshSums::Cell{});
+  }
+}
+
+TEST_F(LightTexture, IsReadWhereItWasMade) {
+  formats::MeshirradFile file;
+  file.elements = texture(photons([](Vec3 p) { return 2 + p.z; }), {MeshFilter::Kind::none, 1});
+  const auto elements = file.elements;
+  const MeshLight light(std::move(file));
+  for (const formats::MeshElement& e : elements) {
+    const auto n = formats::decode_normal(e.normal);
+    const Vec3 normal{float(n[0]), float(n[1]), float(n[2])}, p{e.position[0], e.position[1], e.position[2]};
+    Hit hit;
+    ASSERT_TRUE(tracer_->intersect({p + normal * 0.01f, -normal, 0, 1}, hit));
+    EXPECT_EQ(light.irradiance(tracer_->surface_point(hit), normal).r, e.irradiance[0]);
+    EXPECT_EQ(light.irradiance(tracer_->surface_point(hit), -normal).r, 0);
+  }
+}
+
+TEST_F(LightTexture, WidthsFollowFromThePhotons) {
+  // 24 m^2, 256 photons in 4 pi s^2: of 1e6 photons s = sqrt(256 x 24 / (4 pi 1e6)).
+  const MeshOptions options = with_widths({}, room_.frame(), 1'000'000);
+  EXPECT_NEAR(options.filter.width, std::sqrt(256 * 24 / (4 * 3.14159265 * 1e6)), 1e-6);
+  EXPECT_EQ(options.cell, options.filter.width);
+  EXPECT_EQ(with_widths({0.1, {MeshFilter::Kind::box, 0.4}}, room_.frame(), 5).cell, 0.1);
+}
+
+}  // namespace
+}  // namespace tempolux
