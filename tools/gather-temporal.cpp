@@ -22,10 +22,6 @@ using namespace tempolux;
 
 namespace {
 
-/// Of min_weight: what covers a pixel once there are records, as of irradcache-build for the frames after the first: a stricter first
-/// frame keeps the others from adding a few everywhere.
-constexpr float kLaterWeight = 0.5f;
-
 struct Options {
   std::vector<std::string> inputs;   // final SCENE
   std::string points, previous, output, cache, age_weight = "2";
@@ -120,9 +116,7 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   const TemporalScene scene{tracer, lights, lookup, points.read.points, points.anchored, chain.before ? &*chain.before : nullptr};
   GatherOptions rays = options.gather;
   rays.seed = tool.common().seed_for_frame(number);
-  PlacementOptions placement = options.placement;
-  if (chain.before) placement.min_weight *= kLaterWeight;
-  const TemporalGather gather(scene, rays, placement, options.temporal, tools::sample_unit(frame));
+  const TemporalGather gather(scene, rays, options.placement, options.temporal, tools::sample_unit(frame));
   const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width, options.height);
   const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
     seen_through(tracer, view, looks, seen);
@@ -130,7 +124,7 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   tool.stats().phase("records", true);
   TemporalCounts counts;
   if (chain.before) gather.advance(chain.kept, counts);
-  RecordStore store({.least_cosine = least_cosine_of(placement.error_bound)});
+  RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
   gather.place(views, options.width, options.height, chain.kept, store, counts, [&](double done) { tool.progress(done); });
   tool.stats().phase("write");
   write_cache(options, frame, store, history, cache_output);
@@ -162,7 +156,8 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--rays", options.gather.rays,
                  "gather rays per record, one a cell; up to 72 times as many cells where neighbours found light uneven or small")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
-  app.add_option("--refresh", options.temporal.refresh, "share of a record's cells that get a ray in a frame in which its light changed")
+  app.add_option("--refresh", options.temporal.refresh, "share of the cells of records whose light changed that get a ray in a frame: what moves comes first, the others are drawn by age, "
+                 "a quarter of this share at least")
       ->capture_default_str()->check(tools::number_between(0, 1));
   app.add_option("--age-weight", options.age_weight, "cells get new rays with probability as their age, 1, or its square, 2; or the oldest first")
       ->capture_default_str()->check(CLI::IsMember({"1", "2", "oldest"}));
@@ -172,7 +167,7 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
       ->capture_default_str()->check(tools::number_above(0));
   app.add_option("--min-weight", options.placement.min_weight,
-                 "sum of records' weights at which a pixel is covered; in frames after the first half of it")
+                 "sum of records' weights at which a pixel is covered")
       ->capture_default_str()->check(tools::number_between(1e-6, 0.99));
   app.add_flag("--free-radii", options.free_radii, "leave radii as each record's own rays tell");
   tool.leave_out_of_history(app.add_flag("--resume", options.resume, "take frames that an earlier run of this command has finished as they are"));

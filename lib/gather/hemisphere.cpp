@@ -3,12 +3,33 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <unordered_map>
 
 namespace tempolux {
 namespace {
 
 /// Integral of tan over a ring's share of the projected hemisphere: asin sqrt s - sqrt(s (1 - s)).
 double ring_integral(double s) { return std::asin(std::sqrt(s)) - std::sqrt(s * (1 - s)); }
+
+/// Unit vectors in the tangent plane, in the middle of each sector and at its lower edge.
+struct Azimuths {
+  std::vector<Vec3d> middle, lower;
+};
+
+/// Made once for each number of sectors and thread: records take turns with a few of them.
+const Azimuths& azimuths(int sectors) {
+  constexpr std::size_t kMost = 64;
+  thread_local std::unordered_map<int, Azimuths> known;
+  if (const auto found = known.find(sectors); found != known.end()) return found->second;
+  if (known.size() >= kMost) known.clear();
+  Azimuths& made = known[sectors];
+  for (int k = 0; k < sectors; ++k) {
+    const double middle = 2 * M_PI * (k + 0.5) / sectors, lower = 2 * M_PI * double(k) / sectors;
+    made.middle.push_back({std::cos(middle), std::sin(middle), 0});
+    made.lower.push_back({std::cos(lower), std::sin(lower), 0});
+  }
+  return made;
+}
 
 }  // namespace
 
@@ -33,15 +54,16 @@ void Hemisphere::irradiance_and_rotational_gradient(const Frame& frame, Irradian
   const int M = rings_, N = sectors_;
   Rgbd sum{0.0};
   std::array<Vec3d, 3> gradient{};
+  const Azimuths& around = azimuths(N);
   for (int k = 0; k < N; ++k) {
-    const double middle = 2 * M_PI * (k + 0.5) / N;
+    const Vec3d u = around.middle[std::size_t(k)];
     Rgbd turn{0.0};
     for (int j = 0; j < M; ++j) {
       const Rgbd here(radiance[cell(j, k)]);
       sum += here;
       turn += here * ring_tangent_[std::size_t(j)];
     }
-    const Vec3d v{-std::sin(middle), std::cos(middle), 0};
+    const Vec3d v{-u.y, u.x, 0};
     for (int c = 0; c < 3; ++c) gradient[std::size_t(c)] += v * (turn[c] * M_PI / (double(M) * N));
   }
   record.irradiance = Rgb(sum * (M_PI / (double(M) * N)));
@@ -49,25 +71,33 @@ void Hemisphere::irradiance_and_rotational_gradient(const Frame& frame, Irradian
 }
 
 void Hemisphere::translational_gradient(const Frame& frame, IrradianceRecord& record) const {
-  const int M = rings_, N = sectors_;
-  std::array<Vec3d, 3> gradient{};
-  for (int k = 0; k < N; ++k) {
-    const double middle = 2 * M_PI * (k + 0.5) / N, lower = 2 * M_PI * double(k) / N;
-    Rgbd along{0.0}, across{0.0};
-    for (int j = 0; j < M; ++j) {
-      const Rgbd here(radiance[cell(j, k)]);
-      const double near_here = double(inverse_distance[cell(j, k)]);
-      const double s_lower = std::sqrt(double(j) / M), s_upper = std::sqrt(double(j + 1) / M);
-      if (j > 0) {
-        const double near = std::max(near_here, double(inverse_distance[cell(j - 1, k)]));
-        along += (here - Rgbd(radiance[cell(j - 1, k)])) * (s_lower * (1 - s_lower * s_lower) * near);
-      }
-      const std::size_t before = cell(j, (k + N - 1) % N);
-      const double near = std::max(near_here, double(inverse_distance[before]));
-      across += (here - Rgbd(radiance[before])) * ((s_upper - s_lower) * near);
+  const std::size_t M = std::size_t(rings_), N = std::size_t(sectors_);
+  // Ring by ring, by sector: what the sectors of a ring bring stands side by side.
+  thread_local std::vector<double> sums;
+  sums.assign(6 * N, 0.0);
+  double* const along[3] = {&sums[0], &sums[N], &sums[2 * N]};
+  double* const across[3] = {&sums[3 * N], &sums[4 * N], &sums[5 * N]};
+  for (std::size_t j = 0; j < M; ++j) {
+    const Rgb* const light = &radiance[j * N];
+    const float* const inverse = &inverse_distance[j * N];
+    const double s_lower = std::sqrt(double(j) / double(M)), s_upper = std::sqrt(double(j + 1) / double(M));
+    const double inwards = s_lower * (1 - s_lower * s_lower), wide = s_upper - s_lower;
+    for (std::size_t k = 0; k < N; ++k) {
+      const std::size_t before = k == 0 ? N - 1 : k - 1;
+      const double weight = wide * double(std::max(inverse[k], inverse[before]));
+      for (int c = 0; c < 3; ++c) across[c][k] += (double(light[k][c]) - double(light[before][c])) * weight;
     }
-    const Vec3d u{std::cos(middle), std::sin(middle), 0}, v_lower{-std::sin(lower), std::cos(lower), 0};
-    for (int c = 0; c < 3; ++c) gradient[std::size_t(c)] += u * (along[c] * 2 * M_PI / N) + v_lower * across[c];
+    if (j == 0) continue;
+    for (std::size_t k = 0; k < N; ++k) {
+      const double weight = inwards * double(std::max(inverse[k], (inverse - N)[k]));
+      for (int c = 0; c < 3; ++c) along[c][k] += (double(light[k][c]) - double((light - N)[k][c])) * weight;
+    }
+  }
+  const Azimuths& around = azimuths(sectors_);
+  std::array<Vec3d, 3> gradient{};
+  for (std::size_t k = 0; k < N; ++k) {
+    const Vec3d u = around.middle[k], v_lower{-around.lower[k].y, around.lower[k].x, 0};
+    for (std::size_t c = 0; c < 3; ++c) gradient[c] += u * (along[c][k] * 2 * M_PI / double(N)) + v_lower * across[c][k];
   }
   for (std::size_t c = 0; c < 3; ++c) record.translational[c] = frame.to_world(Vec3(gradient[c]));
 }

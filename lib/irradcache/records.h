@@ -71,6 +71,8 @@ class RecordStore {
   /// slope: radius / distance to what is seen, the error bound. Records below `first` stay as they are. To be called before
   /// add(record).
   void clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first = 0);
+  /// Gives a record a smaller radius. Not of a store that is only read.
+  void shrink(std::uint32_t record, float radius);
   std::span<const IrradianceRecord> records() const { return records_; }
   std::uint64_t refused() const { return refused_; }
 
@@ -155,7 +157,6 @@ class RecordStore {
   template <class Body> void for_each_cell_of(const Level& level, const IrradianceRecord& record, const Body& body) const;
   Entry entry_of(std::uint32_t record) const;
   void pack(Level& level) const;
-  void shrink(std::uint32_t record, float radius);
   /// found(entry) of those that are near and face about the same way (a little more than valid ones), in order, until true.
   template <class Found>
   static bool any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine, const Found& found);

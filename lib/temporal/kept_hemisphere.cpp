@@ -15,12 +15,33 @@ std::array<float, 3> array_of(const Rgb& c) { return {c.r, c.g, c.b}; }
 std::array<float, 3> array_of(Vec3 v) { return {v.x, v.y, v.z}; }
 Vec3 vec_of(const std::array<float, 3>& a) { return {a[0], a[1], a[2]}; }
 
+/// Random shares in [0, 1) by which a cell's mantissas are rounded up in the record's present update.
+std::array<float, 3> rounding_of(const formats::RadsamplesRecord& record, std::uint32_t cell) {
+  const std::uint64_t bits = mix64(record.key ^ mix64(std::uint64_t(record.updates) << 32 | cell));
+  const auto share = [&](int from) { return float((bits >> from) & 0x1fffff) * 0x1p-21f; };
+  return {share(0), share(21), share(42)};
+}
+
 }  // namespace
 
 void keep_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance) {
-  const std::uint64_t bits = PathRandom(kept.record.key, cell).bits(2, Purpose::gather, kept.record.updates);
-  const auto share = [&](int from) { return float((bits >> from) & 0x1fffff) * 0x1p-21f; };
-  kept.samples[cell].rgbe = formats::encode_rgbe(array_of(radiance), {share(0), share(21), share(42)});
+  kept.samples[cell].rgbe = formats::encode_rgbe(array_of(radiance), rounding_of(kept.record, cell));
+}
+
+void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio) {
+  std::array<std::uint8_t, 4>& rgbe = kept.samples[cell].rgbe;
+  const Rgb scaled{float(rgbe[0]) * ratio.r, float(rgbe[1]) * ratio.g, float(rgbe[2]) * ratio.b};
+  const float largest = max_component(scaled);
+  if (rgbe[3] >= 11 && largest >= 128 && largest < 255) {   // as encode_rgbe() would: the exponent stays
+    const std::array<float, 3> up = rounding_of(kept.record, cell);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto whole = std::uint8_t(scaled[int(c)]);
+      rgbe[c] = std::uint8_t(whole + (scaled[int(c)] - float(whole) + up[c] >= 1));
+    }
+    return;
+  }
+  const std::array<float, 3> old = formats::decode_rgbe(rgbe);
+  keep_radiance(kept, cell, Rgb(old[0], old[1], old[2]) * ratio);
 }
 
 void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float distance, const RadianceSource& source,

@@ -27,6 +27,7 @@ struct KeptHemisphere {
 struct KeptHemispheres {
   std::vector<KeptHemisphere> records;
   std::vector<Rgb> point_light;         ///< W/m^2 of all kinds, of the points that anchors name
+  bool changed = false;                 ///< was there anything for the records to follow in the last frame? not in files
 };
 
 /// Distances are kept in this unit, m, over 1024.
@@ -38,6 +39,8 @@ struct SampleUnits {
 
 /// Keeps a cell's radiance; random numbers for its rounding are those of key, cell and update.
 void keep_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance);
+/// keep_radiance of the present radiance times a ratio, by channel.
+void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio);
 /// Keeps what a ray brought, at the age that the sample has.
 void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float distance, const RadianceSource& source,
               std::size_t anchored_points, SampleUnits units);

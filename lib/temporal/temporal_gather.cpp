@@ -12,13 +12,17 @@
 namespace tempolux {
 namespace {
 
-constexpr int kSteps = 26;             ///< of strata: 8 x 9 times the rays, in steps of 2^(1/4)
+constexpr int kSteps = 27;             ///< of strata: 8 x 9 times the rays, in steps of 2^(1/4), and one
 constexpr float kLargestRatio = 2;     ///< of an anchor's light: beyond, and below its inverse, cells are traced again
+constexpr int kStepForEvenness = 1;    ///< 2^(1/4): at equal rays noise is 9 % more, worth 19 % of them (docs/methods/temporal.md)
 constexpr std::uint32_t kFixed = 0xffffffff;
 constexpr int kFadingFrames = 4;
+constexpr std::uint32_t kAhead = 12;   ///< cells: of the light that is fetched from memory
+constexpr float kLeastAged = 0.25f;    ///< of `refresh`: drawn by age however many cells are traced anyway
 
-/// Why a cell is traced.
-enum Mark : std::uint8_t { unmarked = 0, moved, lost, unanchored, aged, all };
+/// What becomes of a cell: it stays, it is scaled as its anchor's light, or why it is traced.
+enum Mark : std::uint8_t { unmarked = 0, scaled, moved, lost, unanchored, aged, all };
+bool is_traced(std::uint8_t mark) { return mark > scaled; }
 
 Box3 grown(const Box3& box, float by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
 bool holds(const Box3& box, Vec3 p) {
@@ -38,22 +42,24 @@ bool deforms(const SceneFrame& frame, std::uint32_t surface) {
 }
 
 void add(const TemporalCounts& from, TemporalCounts& to) {
-  to.cells += from.cells, to.moved += from.moved, to.lost += from.lost, to.unanchored += from.unanchored, to.aged += from.aged;
-  to.scaled += from.scaled, to.kept += from.kept;
+  to.moved += from.moved, to.lost += from.lost, to.unanchored += from.unanchored, to.aged += from.aged;
+  to.scaled += from.scaled;
   to.update += from.update;
 }
 
 }  // namespace
 
-/// What became of an anchor's light.
-struct TemporalGather::PointChange {
-  Rgb ratio{1.0f};
-  bool same = true, lost = false;
+struct TemporalGather::Marked {
+  std::vector<std::uint8_t> marks;    ///< by cell
+  std::size_t count = 0;              ///< of those that are traced
+  bool changed = false;
 };
 
 struct TemporalGather::Changes {
   std::vector<Box3> boxes;            ///< m: what has moved
-  std::vector<PointChange> points;    ///< by anchor
+  /// By anchor: unmarked, scaled or lost; and by how much its light has changed. Apart, as the one is asked for each cell.
+  std::vector<std::uint8_t> points;
+  std::vector<Rgb> ratios;
   bool anything = false, materials = false;
 };
 
@@ -113,27 +119,26 @@ TemporalGather::Changes TemporalGather::changes(const KeptHemispheres& kept) con
   changes.boxes = swept_boxes(*scene_.before, now);
   changes.materials = now.hashes.materials != scene_.before->hashes.materials;
   changes.anything = changes.materials || !changes.boxes.empty();
-  changes.points.resize(kept.point_light.size());
+  changes.points.resize(kept.point_light.size(), unmarked);
+  changes.ratios.resize(changes.points.size(), Rgb(1.0f));
   for (std::size_t i = 0; i < changes.points.size(); ++i) {
-    PointChange& change = changes.points[i];
     const Rgb before = kept.point_light[i], light = scene_.points[i].total();
     if (before == light) continue;
-    change.same = false;
+    changes.points[i] = scaled;
     changes.anything = true;
     for (int c = 0; c < 3; ++c) {
       if (before[c] == light[c]) continue;
-      change.ratio[c] = light[c] / before[c];   // infinite: the next line
-      change.lost |= !(change.ratio[c] <= kLargestRatio && change.ratio[c] * kLargestRatio >= 1);
+      const float ratio = changes.ratios[i][c] = light[c] / before[c];   // infinite: the next line
+      if (!(ratio <= kLargestRatio && ratio * kLargestRatio >= 1)) changes.points[i] = lost;
     }
   }
   return changes;
 }
 
-/// Marks the cells that are traced again along their old ray. False if nothing about the record's light has changed.
+/// Marks the cells that are scaled or traced again along their old ray. False if nothing about the record's light has changed.
 bool TemporalGather::mark(const KeptHemisphere& kept, const Changes& changes, const GatherDirections& directions,
                           std::vector<std::uint8_t>& marks) const {
   const std::size_t cells = kept.samples.size();
-  bool changed = changes.materials;
   marks.assign(cells, changes.materials ? std::uint8_t(moved) : std::uint8_t(unmarked));
   for (std::size_t c = 0; c < cells; ++c) {
     const std::uint16_t flags = kept.samples[c].flags;
@@ -141,9 +146,7 @@ bool TemporalGather::mark(const KeptHemisphere& kept, const Changes& changes, co
     if (flags & formats::sample_dynamic) {
       marks[c] = moved;
     } else if (flags & formats::sample_anchored) {
-      const PointChange& change = changes.points[kept.anchors[c]];
-      if (change.lost) marks[c] = lost;
-      else changed |= !change.same;
+      marks[c] = changes.points[kept.anchors[c]];
     } else if (flags & formats::sample_near) {   // what neither has an anchor nor more along it is black, whatever the light
       marks[c] = unanchored;
     }
@@ -159,8 +162,7 @@ bool TemporalGather::mark(const KeptHemisphere& kept, const Changes& changes, co
       if (directions.aim(c, kept.draw_of(c), ray, key) && meets(ray, distance, box)) marks[c] = moved;
     });
   }
-  for (const std::uint8_t mark : marks) changed |= mark != unmarked;
-  return changed;
+  return std::any_of(marks.begin(), marks.end(), [](std::uint8_t mark) { return mark != unmarked; });
 }
 
 /// Traces the marked cells along the rays that their ages say.
@@ -174,7 +176,7 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
   thread_local std::vector<RadianceSource> sources;
   rays.clear(), keys.clear(), cells.clear();
   for (const std::uint32_t c : strata.order) {
-    if (!marks[c]) continue;
+    if (!is_traced(marks[c])) continue;
     Ray ray;
     std::uint64_t key = 0;
     if (directions.aim(c, kept.draw_of(c), ray, key)) {
@@ -218,9 +220,10 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, const RecordStore::E
   r.set = place.surface < scene_.tracer.frame().static_count ? formats::SurfaceSet::static_set : formats::SurfaceSet::dynamic_set;
   r.footprint = seen.footprint;
   r.expected_share = expected.lit_share;
-  // As many cells as FinalGather::gather has rays: one each, so that each can be drawn again.
+  // As many cells as FinalGather::gather has rays, one each, so that each can be drawn again; and a step more for what even rays lose
+  // against those that go where light is uneven.
   const float times = std::clamp(FinalGather::kEnoughLit / std::max(expected.lit_share, 1e-6f), 1.0f, 8.0f);
-  const double steps = 4 * (std::ceil(std::log2(double(times))) + std::log2(1 + double(expected.further_share)));
+  const double steps = kStepForEvenness + 4 * (std::ceil(std::log2(double(times))) + std::log2(1 + double(expected.further_share)));
   const GatherStrata& strata = strata_[std::size_t(std::clamp(std::lround(steps), 0l, long(kSteps) - 1))];
   r.rings = std::uint16_t(strata.rings);
   r.sectors = std::uint16_t(strata.sectors);
@@ -232,51 +235,81 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, const RecordStore::E
   return kept;
 }
 
-bool TemporalGather::update(KeptHemisphere& kept, const Changes& changes, TemporalCounts& counts) const {
-  thread_local std::vector<std::uint8_t> marks;
+/// Takes a record along with what it rides on and marks the cells that are traced again. False if nothing about its light has changed.
+bool TemporalGather::look(KeptHemisphere& kept, const Changes& changes, Marked& marked) const {
+  if (kept.record.set == formats::SurfaceSet::dynamic_set) ride(kept);
+  const SurfacePoint place = place_of(kept);
+  const GatherDirections directions(place, kept.normal(), kept.record.rings, kept.record.sectors, kept.record.key);
+  marked.changed = mark(kept, changes, directions, marked.marks);
+  marked.count = std::size_t(std::count_if(marked.marks.begin(), marked.marks.end(), is_traced));
+  return marked.changed;
+}
+
+void TemporalGather::update(KeptHemisphere& kept, const Changes& changes, double aged_share, Marked& marked, TemporalCounts& counts) const {
   thread_local std::vector<std::uint16_t> ages;
   thread_local std::vector<std::uint32_t> drawn;
   thread_local AgeDraw lot;
   formats::RadsamplesRecord& r = kept.record;
-  counts.cells += kept.samples.size();
-  if (r.set == formats::SurfaceSet::dynamic_set) ride(kept);
+  std::vector<std::uint8_t>& marks = marked.marks;
   const SurfacePoint place = place_of(kept);
   const GatherDirections directions(place, kept.normal(), r.rings, r.sectors, r.key);
-  if (!mark(kept, changes, directions, marks)) {
-    ++counts.kept;
-    return false;
-  }
   ++r.updates;
-  std::size_t marked = 0;
   ages.resize(marks.size());
   for (std::size_t c = 0; c < marks.size(); ++c) {
-    marked += marks[c] != unmarked;
     ages[c] = formats::age_of(kept.samples[c]);
-    if (ages[c] < formats::kMaxAge) ++kept.samples[c].flags;
+    kept.samples[c].flags = std::uint16_t(kept.samples[c].flags + (ages[c] < formats::kMaxAge));
   }
   // From all cells, the marked ones too: were those left out, cells that have come to see what is always traced again would keep
   // that direction for good, and others would join them.
-  const auto wanted = std::size_t(std::ceil(double(options_.refresh) * double(marks.size())));
-  lot.draw(ages, wanted - std::min(wanted, marked), options_.age_weight, mix64(r.key + r.updates), drawn);
+  lot.draw(ages, std::size_t(std::ceil(aged_share * double(marks.size() - marked.count))), options_.age_weight, mix64(r.key + r.updates), drawn);
   for (const std::uint32_t c : drawn) {
     marks[c] = aged;
     kept.samples[c].flags = std::uint16_t((kept.samples[c].flags & ~formats::kMaxAge) | 1);
   }
-  for (const std::uint8_t mark : marks)
-    counts.moved += mark == moved, counts.lost += mark == lost, counts.unanchored += mark == unanchored, counts.aged += mark == aged;
+  std::array<std::size_t, all + 1> numbers{};
+  for (const std::uint8_t mark : marks) ++numbers[mark];
+  counts.scaled += numbers[scaled], counts.moved += numbers[moved], counts.lost += numbers[lost];
+  counts.unanchored += numbers[unanchored], counts.aged += numbers[aged];
   for (std::uint32_t c = 0; c < marks.size(); ++c) {
-    if (marks[c] || !(kept.samples[c].flags & formats::sample_anchored)) continue;
-    const PointChange& change = changes.points[kept.anchors[c]];
-    if (change.same) continue;
-    const std::array<float, 3> old = formats::decode_rgbe(kept.samples[c].rgbe);
-    keep_radiance(kept, c, Rgb(old[0], old[1], old[2]) * change.ratio);
-    ++counts.scaled;
+    const std::uint32_t ahead = std::min<std::uint32_t>(c + kAhead, std::uint32_t(marks.size()) - 1);
+    if (marks[ahead] == scaled) __builtin_prefetch(&changes.ratios[kept.anchors[ahead]]);
+    if (marks[c] == scaled) scale_radiance(kept, c, changes.ratios[kept.anchors[c]]);
   }
   shoot(place, kept, directions, strata_of(r.rings, r.sectors), marks, counts.update);
   const bool beside = std::any_of(changes.boxes.begin(), changes.boxes.end(),
                                   [&](const Box3& box) { return holds(grown(box, std::min(r.clearance_reach, 1e15f)), kept.position()); });
   finish(place, kept, beside, false);
-  return true;
+}
+
+/// Looks at all records, then updates those that change: how many cells are drawn by age follows from how many are traced anyway.
+void TemporalGather::update_all(KeptHemispheres& kept, const Changes& changes, const std::vector<bool>& gone, TemporalCounts& counts) const {
+  std::vector<Marked> marked(kept.records.size());
+  std::mutex mutex;
+  std::size_t traced = 0, others = 0;
+  parallel_chunks(marked.size(), 16, [&](std::size_t first, std::size_t last) {
+    std::size_t here = 0, all = 0, unmoved = 0, cells = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      if (gone[i]) continue;
+      cells += kept.records[i].samples.size();
+      if (!look(kept.records[i], changes, marked[i])) {
+        ++unmoved;
+        continue;
+      }
+      here += marked[i].count;
+      all += marked[i].marks.size();
+    }
+    const std::lock_guard lock(mutex);
+    counts.cells += cells, counts.kept += unmoved, traced += here, others += all - here;
+  });
+  const double refresh = double(options_.refresh), cells = double(traced + others);
+  const double aged_share = others > 0 ? std::max((refresh * cells - double(traced)) / double(others), refresh * double(kLeastAged)) : 0;
+  parallel_chunks(marked.size(), 16, [&](std::size_t first, std::size_t last) {
+    TemporalCounts local;
+    for (std::size_t i = first; i < last; ++i)
+      if (marked[i].changed) update(kept.records[i], changes, aged_share, marked[i], local);
+    const std::lock_guard lock(mutex);
+    add(local, counts);
+  });
 }
 
 void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) const {
@@ -289,14 +322,7 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
   }
   const Changes changes = this->changes(kept);
   if (changes.anything) {
-    std::mutex mutex;
-    parallel_chunks(before, 16, [&](std::size_t first, std::size_t last) {
-      TemporalCounts local;
-      for (std::size_t i = first; i < last; ++i)
-        if (!gone[i]) update(kept.records[i], changes, local);
-      const std::lock_guard lock(mutex);
-      add(local, counts);
-    });
+    update_all(kept, changes, gone, counts);
     for (std::size_t i = 0; i < before; ++i) {
       std::uint8_t& fading = kept.records[i].record.fading;
       if (gone[i] || fading == 0) continue;
@@ -315,24 +341,13 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
   for (std::size_t i = 0; i < before; ++i)
     if (!gone[i] && moved_to[i] != i) kept.records[moved_to[i]] = std::move(kept.records[i]);
   kept.records.resize(moved_to[before]);
-  if (changes.anything) thin_out(kept, counts);
+  kept.changed = changes.anything;
   kept.point_light.clear();
 }
 
-/// Records begin to fade where those before them weigh by a whole record more than when they were placed.
-void TemporalGather::thin_out(KeptHemispheres& kept, TemporalCounts& counts) const {
-  RecordStore store({.least_cosine = least_cosine_of(placement_.error_bound)});
-  fill(kept, store);
-  std::vector<std::uint8_t> fades(kept.records.size());
-  for (std::uint32_t i = 0; i < kept.records.size(); ++i) {
-    std::uint8_t& fading = kept.records[i].record.fading;
-    if (fading == 0 && store.weight_of_earlier(i, fades) >= 1 + kept.records[i].record.birth_weight) fading = 1;
-    fades[i] = fading > 0;
-    counts.fading += fades[i];
-  }
-}
-
-void TemporalGather::fill(const KeptHemispheres& kept, RecordStore& store) const {
+/// The records of a store, narrowed as they were when they were placed. Some begin to fade: those before them weigh by a whole record more
+/// than then.
+void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const {
   for (const KeptHemisphere& k : kept.records) {
     IrradianceRecord record = result_of(k.record);
     const std::size_t first = k.record.narrows_from == kFixed ? ~std::size_t(0) : k.record.narrows_from;
@@ -340,11 +355,21 @@ void TemporalGather::fill(const KeptHemispheres& kept, RecordStore& store) const
     record.radius *= float(kFadingFrames - k.record.fading) / kFadingFrames;
     TEMPOLUX_CHECK(store.add(record));
   }
+  if (!kept.changed) return;
+  std::vector<std::uint8_t> fades(kept.records.size());
+  for (std::uint32_t i = 0; i < kept.records.size(); ++i) {
+    std::uint8_t& fading = kept.records[i].record.fading;
+    const bool begins = fading == 0 && store.weight_of_earlier(i, fades) >= 1 + kept.records[i].record.birth_weight;
+    if (begins) fading = 1;
+    fades[i] = fading > 0;
+    counts.fading += fades[i];
+    if (begins) store.shrink(i, store.records()[i].radius * float(kFadingFrames - 1) / kFadingFrames);
+  }
 }
 
 void TemporalGather::place(const PixelViews& views, int width, int height, KeptHemispheres& kept, RecordStore& store,
                            TemporalCounts& counts, const std::function<void(double)>& progress) const {
-  fill(kept, store);
+  fill(kept, store, counts);
   std::vector<KeptHemisphere> batch(kPlacedTogether);
   RecordSource source;
   source.gather = [&](const SeenPoint& seen, const RecordStore::Expected& expected, std::size_t slot, GatherCounts& gathered) {

@@ -12,7 +12,9 @@
 namespace tempolux {
 
 struct TemporalOptions {
-  float refresh = 0.1f;                       ///< of a record's cells, that get a ray in a frame in which its light changed
+  /// Of the cells of the records whose light changed in a frame: that are traced. Those that must be count: so many others are drawn by age
+  /// as are left, a quarter of this share at least.
+  float refresh = 0.05f;
   AgeWeight age_weight = AgeWeight::square;   ///< of cells that get a new ray
 };
 
@@ -52,19 +54,21 @@ class TemporalGather {
   /// - the point that stands for what it met has other light now: the cell's radiance is scaled by the ratio, per channel, or
   ///   traced again along its old direction beyond 1/2 to 2;
   /// - no point stands for what it met (mirrors, corners): traced again alike.
-  /// Of a record that changes, further cells get a new ray in their place of the hemisphere, drawn by age, up to `refresh` of all.
-  /// Then records fade away, in four frames, where those before them weigh by a whole record more than when they were placed.
+  /// Of a record that changes, further cells get a new ray in their place of the hemisphere, drawn by age: see TemporalOptions::refresh.
   void advance(KeptHemispheres& kept, TemporalCounts& counts) const;
-  /// The records of a store, and then new ones where they do not cover what the camera sees; those are kept, too.
+  /// The records of a store, and then new ones where they do not cover what the camera sees; those are kept, too. After a change records
+  /// fade away, in four frames, where those before them weigh by a whole record more than when they were placed.
   void place(const PixelViews& views, int width, int height, KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts,
              const std::function<void(double)>& progress = {}) const;
 
  private:
-  struct PointChange;
   struct Changes;
   struct Shots;
   const GatherStrata& strata_of(int rings, int sectors) const;
-  bool update(KeptHemisphere& kept, const Changes& changes, TemporalCounts& counts) const;
+  struct Marked;
+  bool look(KeptHemisphere& kept, const Changes& changes, Marked& marked) const;
+  void update(KeptHemisphere& kept, const Changes& changes, double aged_share, Marked& marked, TemporalCounts& counts) const;
+  void update_all(KeptHemispheres& kept, const Changes& changes, const std::vector<bool>& gone, TemporalCounts& counts) const;
   bool mark(const KeptHemisphere& kept, const Changes& changes, const GatherDirections& directions, std::vector<std::uint8_t>& marks) const;
   void shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions, const GatherStrata& strata,
              std::span<const std::uint8_t> marks, GatherCounts& counts) const;
@@ -73,8 +77,7 @@ class TemporalGather {
   SurfacePoint place_of(const KeptHemisphere& kept) const;
   void ride(KeptHemisphere& kept) const;
   Changes changes(const KeptHemispheres& kept) const;
-  void thin_out(KeptHemispheres& kept, TemporalCounts& counts) const;
-  void fill(const KeptHemispheres& kept, RecordStore& store) const;
+  void fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const;
 
   TemporalScene scene_;
   GatherOptions gather_options_;

@@ -21,7 +21,7 @@ parser.add_argument("--frames", type=int, default=24)
 parser.add_argument("--size", default="320x180")
 parser.add_argument("--photons", default="200k")
 parser.add_argument("--judge", type=int, nargs="*", default=[8])
-parser.add_argument("--refresh", default="0.1")
+parser.add_argument("--refresh", default="0.05")
 options = parser.parse_args()
 options.work.mkdir(parents=True, exist_ok=True)
 

@@ -198,6 +198,39 @@ TEST(TemporalGather, AnchoredCellsFollowTheirPointsLittleByLittle) {
   }
 }
 
+// Scaling mantissas in place is keeping the scaled radiance anew: the same random numbers, the same bytes.
+TEST(KeptHemisphere, ScalingInPlaceIsKeepingTheProduct) {
+  KeptHemisphere a;
+  a.record.key = 99;
+  a.samples.resize(1);
+  int in_place = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const float x = std::exp2(0.01f * float(i % 4000) - 20);
+    a.record.updates = std::uint32_t(i);
+    keep_radiance(a, 0, Rgb(x, 0.7f * x, float(i % 3) * x));
+    KeptHemisphere b = a;
+    const Rgb ratio(0.5f + 1.5f * float(i % 101) / 101, 0.5f + 1.5f * float(i % 31) / 31, 0.5f + 1.5f * float(i % 7) / 7);
+    const std::array<float, 3> old = formats::decode_rgbe(a.samples[0].rgbe);
+    in_place += a.samples[0].rgbe[3] > 0;
+    scale_radiance(a, 0, ratio);
+    keep_radiance(b, 0, Rgb(old[0], old[1], old[2]) * ratio);
+    ASSERT_EQ(a.samples[0].rgbe, b.samples[0].rgbe) << i;
+  }
+  EXPECT_GT(in_place, 10000);
+  scale_radiance(a, 0, Rgb(0.0f));
+  EXPECT_EQ(a.samples[0].rgbe, (std::array<std::uint8_t, 4>{}));
+}
+
+// Where all cells are traced anyway none is drawn by age but a quarter of `refresh` of the others: here, of none.
+TEST(TemporalGather, WhatMustBeTracedCountsAsRefreshed) {
+  Room room(1), brighter(3);
+  TemporalCounts counts, later;
+  const KeptHemispheres kept = kept_in(room, counts);
+  advanced(room, brighter, kept, later, {.refresh = 0.5f});
+  EXPECT_EQ(later.lost, later.cells);
+  EXPECT_EQ(later.aged, 0u);
+}
+
 // Light that is three times as strong at once: cells are traced again along their old rays, age as they are, and are right at once.
 TEST(TemporalGather, BeyondHalfAndTwiceCellsAreTracedAgain) {
   Room room(1), brighter(3), dark(0);
