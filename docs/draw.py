@@ -4,6 +4,8 @@
   draw.py points POINTS.csv FRAME.json OUT.png [WIDTH]   points where the frame's camera sees them, nearest on top,
                                                          as squares WIDTH metres wide
   draw.py dots POINTS.csv FRAME.json FRAME.png OUT.png   as dots over the darkened frame
+  draw.py kept KEPT.radsamples FRAME.json FRAME.png OUT.png   likewise records with their samples, the redder the more of these
+                                                         met what moves
   draw.py plan PLAN.json OUT.png                         a column for each frame, a row for each concern of the scene;
                                                          equal colours in a row: equal content
 
@@ -11,6 +13,7 @@ POINTS.csv: tempolux-info --export csv; FRAME.json: tempolux-info --json of the 
 import csv
 import json
 import math
+import os
 import struct
 import sys
 import zlib
@@ -97,6 +100,22 @@ def dots(table, frame, picture, out):
     write_png(out, image)
 
 
+def kept(samples, frame, picture, out):
+    sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "tests", "formats"))
+    from read_radsamples import DYNAMIC, read_radsamples
+    file, frame = read_radsamples(samples), json.load(open(frame))
+    origin, rows = [float(x) for x in file.header["origin"].split()], []
+    for r in file.records:
+        met = sum(bool(s.flags & DYNAMIC) for s in r.samples) / len(r.samples)
+        place = [a + b for a, b in zip(r.position, origin)]
+        rows.append({**dict(zip(("x_m", "y_m", "z_m", "nx", "ny", "nz"), (*place, *r.normal))), "share": 1.0 if r.set else met})
+    image = [[tuple(v * 2 // 5 for v in pixel) for pixel in row] for row in read_png(picture)]
+    for _, x, y, row in seen(rows, frame, len(image[0]), len(image)):
+        hot = min(1.0, 4 * row["share"])
+        splat(image, x, y, 2, (255, round(255 - 195 * hot), round(255 - 235 * hot)))
+    write_png(out, image)
+
+
 def plan(document, out):
     document = json.load(open(document))
     columns = []
@@ -116,7 +135,7 @@ def plan(document, out):
 
 
 if __name__ == "__main__":
-    commands = {"points": points, "dots": dots, "plan": plan}
+    commands = {"points": points, "dots": dots, "kept": kept, "plan": plan}
     if len(sys.argv) < 4 or sys.argv[1] not in commands:
         sys.exit(__doc__)
     commands[sys.argv[1]](*sys.argv[2:])

@@ -34,6 +34,14 @@ $draw points "$work/photons.csv" "$work/frame.json" $out/photon-trace.png 0.02
 $draw points "$work/points.csv" "$work/frame.json" $out/irradcache-build-points.png 0.08
 $draw dots "$work/records.csv" "$work/frame.json" $out/frame-render.png $out/irradcache-build-records.png
 
+# Records that keep their samples, after two frames.
+for f in 10 11 12; do
+  "$bin/photon-trace" $scene --frame $f --photons 200k --kinds indirect -o "$work/k.photons"
+  "$bin/irradcache-build" points $scene --frame $f --photons "$work/k.photons" -o "$work/k.$f.irradpoints"
+done
+"$bin/gather-temporal" final $scene --frames 10-12 --points "$work/k.##.irradpoints" --size 320x180 -o "$work/k.##.radsamples" --cache "$work/k.##.irradcache"
+$draw kept "$work/k.12.radsamples" "$work/frame.json" $out/frame-render.png $out/gather-temporal.png
+
 # The frame of one sample, and filtered with two frames before and after.
 for f in 10 11 12 13 14; do
   "$bin/frame-render" $scene --frame $f --size 320x180 --spp 1 --pixel-error 0 --seed-mode frame --irradcache "$work/c.irradcache" --points "$work/p.irradpoints" \

@@ -1,5 +1,5 @@
 # pipelines/split.mk -- bright points are divided from the others and sampled explicitly, as lamps are; split.md is its page.
-# Included by Makefile.example where plan.mk has plan_split, and not with MOVING=time, which keeps what rays brought.
+# Included by Makefile.example where plan.mk has plan_split, which it has not where records follow from others.
 STAGES += split
 split_stage = split
 $(shell mkdir -p $(OUT)/split)

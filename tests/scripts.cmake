@@ -52,6 +52,9 @@ set_tests_properties(pipelines.filter PROPERTIES TIMEOUT 300)
 add_test(NAME pipelines.dynamic COMMAND sh tests/pipelines/dynamic.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.dynamic PROPERTIES TIMEOUT 300)
+add_test(NAME pipelines.temporal COMMAND sh tests/pipelines/temporal.sh $<TARGET_FILE_DIR:scene-plan>
+         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.temporal PROPERTIES TIMEOUT 300)
 add_test(NAME pipelines.split COMMAND sh tests/pipelines/split.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.split PROPERTIES TIMEOUT 300)

@@ -103,8 +103,8 @@ void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options&
 }
 
 /// Decides what of a frame's light follows from that of what stands: as asked, or by a pilot. What it then costs is noted for the
-/// estimate.
-void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options, int camera, Plan& plan) {
+/// estimate. split: bright points are to be divided from the others.
+void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options, int camera, bool split, Plan& plan) {
   const UpdatableLight light = updatable_light(plan);
   if (plan.photon_kinds.empty()) return;
   if (light.segments == 0)
@@ -120,21 +120,25 @@ void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options
   MovingChoice choice = choose_moving(pilot_moving(frame, input.emission(frame.frame), view, 0), light.segments, light.states);
   if (options.moving != "auto") {
     choice.because = "--moving " + options.moving;
-    choice.method = options.moving == "light" ? MovingMethod::light : MovingMethod::records;
+    choice.method = options.moving == "light"     ? MovingMethod::light
+                    : options.moving == "records" ? MovingMethod::records
+                                                  : MovingMethod::time;
+  } else if (choice.method == MovingMethod::time && split) {
+    choice.method = MovingMethod::light;
+    choice.because += "; bright points are divided from the others, which records over time cannot take";
   }
   options.run.moving_cost = choice.cost;
   use_moving(plan, kMovingMethods[std::size_t(choice.method)], choice.because);
 }
 
-/// Decides whether bright points are divided from the others: as asked, or by a pilot of the middle one of the frames asked for.
-void decide_split(tools::Tool& tool, tools::SceneInput& input, const Options& options, int camera, Plan& plan) {
-  if (plan.photon_kinds.empty() || plan.indirect == "paths") return;
-  if (options.split != "auto") return use_split(plan, options.split == "on", "--split " + options.split);
+/// Are bright points to be divided from the others: as asked, or by a pilot of the middle one of the frames asked for.
+SplitChoice split_choice(tools::Tool& tool, tools::SceneInput& input, const Options& options, int camera, const Plan& plan) {
+  if (plan.photon_kinds.empty() || plan.indirect == "paths") return {false, ""};
+  if (options.split != "auto") return {options.split == "on", "--split " + options.split};
   tool.stats().phase("pilot of bright spots", true);
   const SceneFrame frame = input.at(plan.frames[plan.frames.size() / 2]);
   const CameraView view(frame.camera(camera), frame.origin, options.run.width, options.run.height);
-  const SplitChoice choice = choose_split(pilot_split(frame, input.emission(frame.frame), view, 0));
-  use_split(plan, choice.split, choice.because);
+  return choose_split(pilot_split(frame, input.emission(frame.frame), view, 0));
 }
 
 void plan_range(tools::Tool& tool, Options& options, bool write) {
@@ -154,8 +158,9 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
   const MediaHash media = [&](int frame) { return input.media_hash(frame); };
   Plan plan = make_plan(scene, tool.common().frames, camera, input.time(), input.has_media() ? media : MediaHash{});
   decide_indirect(tool, input, options, camera, plan);
-  decide_moving(tool, input, options, camera, plan);
-  decide_split(tool, input, options, camera, plan);
+  const SplitChoice split = split_choice(tool, input, options, camera, plan);
+  decide_moving(tool, input, options, camera, split.split, plan);
+  use_split(plan, split.split, split.because);
   for (const std::string& warning : plan.warnings) tool.warn(options.scene + ": " + warning);
   if (write && !plan.photon_kinds.empty()) {
     tool.stats().phase("views", true);
@@ -208,9 +213,9 @@ int main(int argc, char** argv) {
       ->check(tools::number_between(1, 1 << 20));
   app.add_option("--moving", options.moving,
                  "what of a frame's light follows from that of what stands, where something moves: anew (nothing), light (photons and "
-                 "points), records (they, too); auto: the cheapest by a pilot")
+                 "points), records (they, too), time (photons and points; records keep their incoming light from frame to frame); auto: the cheapest by a pilot")
       ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "anew", "light", "records"}));
+      ->check(CLI::IsMember({"auto", "anew", "light", "records", "time"}));
   app.add_option("--split", options.split,
                  "are bright points divided from the others and sampled explicitly: on, off; auto: where a pilot finds that it pays")
       ->capture_default_str()

@@ -290,21 +290,22 @@ void use_moving(Plan& plan, const std::string& method, const std::string& becaus
   if (plan.photon_kinds.empty()) return;
   if (plan.media && method != "anew") throw InputError("light that follows from that of what stands: the scene has media, which all light meets; use anew");
   const auto states = states_by_segment(plan);
-  const bool records = method == "records" && plan.indirect == "records";
-  plan.moving = method == "anew" || states.empty() ? "anew" : records ? "records" : "light";
+  const bool records = (method == "records" || method == "time") && plan.indirect == "records";
+  plan.moving = method == "anew" || states.empty() ? "anew" : records ? method : "light";
   const bool light = plan.moving != "anew";
   for (const auto& entry : states) plan.segments[entry.first].updated = light;
   const auto before = std::ranges::find(plan.stages, "frame-render", &Stage::name);
   plan.stages.insert(before, {{"photon-trace --map dynamic", light, because},
-                             {"irradcache-build records --update", plan.moving == "records", because}});
+                             {"irradcache-build records --update", plan.moving == "records", because},
+                             {"gather-temporal final", plan.moving == "time", because}});
 }
 
 void use_split(Plan& plan, bool split, const std::string& because) {
   if (plan.photon_kinds.empty() || plan.indirect == "paths") return;
-  const bool updated = plan.moving == "records";
+  const bool updated = plan.moving == "records" || plan.moving == "time";
   plan.split = split && !updated;
   const auto before = std::ranges::find(plan.stages, "irradcache-build records", &Stage::name);
-  plan.stages.insert(before, {"photonmap-split", plan.split, split && updated ? "records follow from those of what stands" : because});
+  plan.stages.insert(before, {"photonmap-split", plan.split, split && updated ? "records follow from others" : because});
 }
 
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,

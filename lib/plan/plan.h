@@ -78,8 +78,8 @@ struct Plan {
   /// How indirect light is found: "records", "gather" (in the pixel) or "paths". The last two leave out stages.
   std::string indirect = "records";
   int record_rays = 500;            ///< gather rays of a record, irradcache-build records --rays
-  /// What of each state of light follows from that of what stands: "anew" (nothing), "light" (photons and points) or "records" (they,
-  /// too).
+  /// What of each state of light follows from that of what stands: "anew" (nothing), "light" (photons and points), "records" (they,
+  /// too) or "time" (photons and points; records from those of the state before in the segment).
   std::string moving = "anew";
   bool split = false;               ///< bright points are divided from the others and sampled explicitly
   bool media = false;               ///< has the scene media?
@@ -105,7 +105,7 @@ UpdatableLight updatable_light(const Plan& plan);
 /// decides.
 void use_moving(Plan& plan, const std::string& method, const std::string& because);
 /// Has points divided where `split` says so and it can be: points are read, by records made anew or in pixels; not by records that follow
-/// from those of what stands. `because`: the fact that decides.
+/// from those of what stands or of the frame before. `because`: the fact that decides.
 void use_split(Plan& plan, bool split, const std::string& because);
 /// The media at a frame: content hash (SceneHashes::media). An empty function: there are none.
 using MediaHash = std::function<std::string(int frame)>;

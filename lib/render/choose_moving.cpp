@@ -22,6 +22,7 @@ constexpr int kNeighbours = 200;
 
 constexpr double kLeastLight = 0.2, kLightByTouched = 3;   ///< of a state's photons and points
 constexpr double kLeastRecords = 0.1;                      ///< of a state's records
+constexpr double kRecordsOverTime = 0.35, kFirstOverTime = 1.2;   ///< of a state's records; of those that are kept from it on
 
 std::string per_cent(double share) {
   char text[16];
@@ -119,9 +120,12 @@ MovingChoice choose_moving(const MovingPilot& pilot, std::size_t segments, std::
   const std::string frames = std::to_string(states) + " states of light in " + std::to_string(segments) +
                              (segments == 1 ? " segment" : " segments");
   if (!(cost.light < 1)) return {MovingMethod::anew, {}, touched + "; " + frames};
-  const bool records = cost.records < 1;
-  return {records ? MovingMethod::records : MovingMethod::light, {cost.light, records ? cost.records : 1, cost.photon_bytes},
-          touched + " and " + gathered + "; " + frames};
+  const double over_time = kFirstOverTime * once + kRecordsOverTime * (1 - once);
+  const MovingMethod method = std::min(cost.records, over_time) >= 1 ? MovingMethod::light
+                              : cost.records <= over_time            ? MovingMethod::records
+                                                                     : MovingMethod::time;
+  const double of_records = method == MovingMethod::light ? 1 : std::min(cost.records, over_time);
+  return {method, {cost.light, of_records, cost.photon_bytes}, touched + " and " + gathered + "; " + frames};
 }
 
 }  // namespace tempolux

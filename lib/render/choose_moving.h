@@ -9,9 +9,10 @@
 
 namespace tempolux {
 
-/// What of each frame's light follows from that of the scene as it stands: nothing; photons and points; records, too.
-enum class MovingMethod : std::uint8_t { anew, light, records };
-inline constexpr const char* kMovingMethods[] = {"anew", "light", "records"};
+/// What of each frame's light follows from that of the scene as it stands: nothing; photons and points; records, too. Or photons and points,
+/// and records from those of the frame before.
+enum class MovingMethod : std::uint8_t { anew, light, records, time };
+inline constexpr const char* kMovingMethods[] = {"anew", "light", "records", "time"};
 
 /// What a pilot saw of a frame and its movers.
 struct MovingPilot {
@@ -36,8 +37,8 @@ struct MovingChoice {
 };
 
 /// With what stands computed once for each of `segments`, `states` of light then cost a share of themselves each:
-/// .2 + 3 touched_share for photons and points, .1 + gathered_share for records (docs/methods/dynamic.md has the measurements).
-/// Whatever comes out cheaper.
+/// .2 + 3 touched_share for photons and points, .1 + gathered_share for records (docs/methods/dynamic.md has the measurements). Records over
+/// time cost .35 of themselves, and 1.2 in a segment's first state (docs/methods/temporal.md). Whatever comes out cheaper.
 MovingChoice choose_moving(const MovingPilot& pilot, std::size_t segments, std::size_t states);
 
 }  // namespace tempolux

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """A furnished room of 8 x 6 x 3 m, 200 000 triangles, a lamp under its ceiling, in which a ball of 0.5 m moves for 48 frames.
 
-    python3 tests/bench/moving_room.py room.glb [triangles]
+    python3 tests/bench/moving_room.py room.glb [triangles] [lamp]
 
-What stands: floor, ceiling and four walls, three tables, two cupboards, six bumpy cushions. The ball glides over the floor past a table.
+With `lamp` the ball stands and the lamp glides under the ceiling instead. What stands: floor, ceiling and four walls, three tables, two cupboards, six bumpy cushions. The ball glides over the floor past a table.
 """
 import math
 import sys
@@ -58,7 +58,7 @@ def furniture(triangles):
         yield f"Cushion{i}", CLOTH, ball((x, y, z), 0.2, rows, 0.08)
 
 
-def make(path, triangles=200_000):
+def make(path, triangles=200_000, lamp_moves=False):
     """Writes the room as .glb; the number of triangles it has."""
     gltf = {"asset": {"version": "2.0"}, "scene": 0, "nodes": [], "meshes": [], "materials": [], "accessors": [],
             "bufferViews": [], "extensionsUsed": ["KHR_materials_specular", "KHR_materials_emissive_strength"]}
@@ -87,6 +87,8 @@ def make(path, triangles=200_000):
     mover = len(gltf["nodes"]) - 1
     begin, end = [2.6, 0.26, 3.0], [5.4, 0.26, 3.6]
     gltf["nodes"][mover]["translation"] = begin
+    if lamp_moves:
+        mover, begin, end = mover + 1, [-0.9, 0, 0], [0.9, 0, 0.4]
     times, places = array("f", [0, LAST_S]), array("f", begin + end)
     gltf["animations"] = [{"samplers": [{"input": accessor(times, "SCALAR", 5126, min=[0], max=[LAST_S]),
                                          "output": accessor(places, "VEC3", 5126)}],
@@ -104,4 +106,4 @@ def make(path, triangles=200_000):
 
 
 if __name__ == "__main__":
-    print(make(sys.argv[1], *map(int, sys.argv[2:])))
+    print(make(sys.argv[1], *(int(a) for a in sys.argv[2:] if a != "lamp"), lamp_moves="lamp" in sys.argv))

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
-"""What gathering over time costs and errs against gathering each frame anew: the table of docs/methods/temporal.md.
+"""What gathering over time costs and errs against gathering each frame anew: the tables of docs/methods/temporal.md.
 
-    python3 tests/bench/temporal.py BIN SCENE WORK [--frames N] [--size WxH] [--photons N] [--judge F ...]
+    python3 tests/bench/temporal.py BIN SCENE WORK [--frames N] [--size WxH] [--photons N] [--judge F ...] [--seeds N] [--light anew] [--pixels] [--paths SPP]
 
-Points of each frame come from static and dynamic photons, as with MOVING=time. Both sides read the same points. Error: of the indirect layer,
-one sample a pixel, against records of 16 times the rays from the same points. Flicker: RMS of the change from one frame to the next beyond that of
-the reference. Processor seconds are those of the phase `records`, median over the frames after a segment's first.
+Points of each frame come from static and dynamic photons, as with MOVING=time, or with `--light anew` from photons of the frame alone: where a lamp
+moves no light stands. Both sides read the same points and take turns. Error: of the indirect layer, one sample a pixel, against records of 16 times the
+rays from the same points, over N seeds. Flicker: RMS of the change from one frame to the next beyond that of the reference. Processor seconds are those of
+the phase `records`, median over the frames after a segment's first. `--pixels`: frames too, as Makefile.example renders them; `--paths SPP`: a frame by path
+tracing, its error and that of the chain against 64 SPP samples.
 """
 import argparse
 import json
@@ -13,6 +15,7 @@ import statistics
 import subprocess
 from pathlib import Path
 
+SEGMENT = 24
 parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
 parser.add_argument("bin", type=Path)
 parser.add_argument("scene", type=Path)
@@ -21,84 +24,155 @@ parser.add_argument("--frames", type=int, default=24)
 parser.add_argument("--size", default="320x180")
 parser.add_argument("--photons", default="200k")
 parser.add_argument("--judge", type=int, nargs="*", default=[8])
+parser.add_argument("--seeds", type=int, default=4, help="with which error is judged")
 parser.add_argument("--refresh", default="0.05")
+parser.add_argument("--light", choices=("follows", "anew"), default="follows")
+parser.add_argument("--pixels", action="store_true")
+parser.add_argument("--paths", type=int, default=0)
 options = parser.parse_args()
 options.work.mkdir(parents=True, exist_ok=True)
+scene, frames, size = options.scene.resolve(), range(options.frames), ("--size", options.size)
 
 
 def run(tool, *words):
     subprocess.run([options.bin / tool, *map(str, words), "-q"], check=True, cwd=options.work)
 
 
+def stats(file):
+    return json.load(open(options.work / file))
+
+
 def phase(file, name="records"):
-    return sum(p["cpu_s"] for p in json.load(open(options.work / file))["phases"] if p["name"] == name)
+    return sum(p["cpu_s"] for p in stats(file)["phases"] if p["name"] == name)
 
 
-scene, frames = options.scene.resolve(), range(options.frames)
-last_static = None
-stage = {"photons": [], "points": []}
-for f in frames:
-    first = f // 24 * 24
-    if first != last_static:
-        run("photon-trace", scene, "--frame", f, "--photons", options.photons, "--kinds", "caustic,indirect", "--map", "static",
-            "-o", "s.photons", "--paths", "s.paths")
-        run("irradcache-build", "points", scene, "--frame", f, "--map", "static", "--photons", "s.photons", "-o", "s.irradpoints")
-        last_static = first
-    if not (options.work / f"p.{f:04}.irradpoints").exists():
-        run("photon-trace", scene, "--frame", f, "--map", "dynamic", "--static", "s.paths", "-o", "d.photons", "--stats", "d.json")
-        run("irradcache-build", "points", scene, "--frame", f, "--photons", "s.photons", "--update", "s.irradpoints", "--dynamic", "d.photons",
-            "-o", f"p.{f:04}.irradpoints", "--stats", "p.json")
-        stage["photons"].append(json.load(open(options.work / "d.json"))["cpu_s"])
-        stage["points"].append(json.load(open(options.work / "p.json"))["cpu_s"])
-fresh, kept, shares, records, retraced = [], [], [], [], []
-previous = None
-for f in frames:   # in turns: what else runs on the machine slows both alike
-    name = f"{f:04}"
-    run("irradcache-build", "records", scene, "--frame", f, "--points", f"p.{name}.irradpoints", "--size", options.size, "-o",
-        f"f.{name}.irradcache", "--stats", "f.json")
-    follows = ["--previous", f"s.{f - 1:04}.radsamples"] if f % 24 else []
-    run("gather-temporal", "final", scene, "--frame", f, "--points", f"p.{name}.irradpoints", "--size", options.size, "--refresh",
-        options.refresh, *follows, "-o", f"s.{name}.radsamples", "--cache", f"t.{name}.irradcache", "--stats", "t.json")
-    if f >= 1:
-        (options.work / f"s.{f - 1:04}.radsamples").unlink(missing_ok=True)
-    counts = json.load(open(options.work / "t.json"))
-    anew = json.load(open(options.work / "f.json"))["counts"]
-    records.append((f, anew["records"], counts["counts"]["records"]))
-    if f % 24:
-        fresh.append(phase("f.json"))
-        kept.append(phase("t.json"))
-        shares.append((counts["counts"]["update_rays"] + counts["counts"]["birth_rays"]) / anew["gather_rays"])
-        retraced.append([counts["counts"][k] / counts["counts"]["cells"] for k in ("cells_moved", "cells_lost", "cells_unanchored", "cells_aged")])
-print(f"{scene.name}, {options.size}, {options.frames} frames, refresh {options.refresh}")
-if stage["photons"]:
-    print(f"photons {statistics.median(stage['photons']):.3f} s, points {statistics.median(stage['points']):.3f} s a frame, whole runs")
-print(f"records: fresh {statistics.median(fresh):.3f} s, over time {statistics.median(kept):.3f} s: {statistics.median(fresh) / statistics.median(kept):.2f} x")
-print(f"rays: {100 * statistics.mean(shares):.1f} % of fresh gathering's; cells traced again: "
-      + ", ".join(f"{word} {100 * statistics.mean(r[i] for r in retraced):.1f} %" for i, word in enumerate(("moved", "lost", "unanchored", "aged"))))
-print("records by frame (fresh, over time):", *(f"{f}: {a:.0f}, {b:.0f};" for f, a, b in records[:: max(1, len(records) // 6)]))
+def points(f):
+    return f"p.{f:04}.irradpoints"
 
 
-def picture(cache, f, out):
-    run("frame-render", scene, "--frame", f, "--size", options.size, "--spp", 1, "--pixel-error", 0, "--irradcache", cache, "--points",
-        f"p.{f:04}.irradpoints", "--channels", "RGBA,layers", "-o", out)
+def previous(f):
+    return f - 1 if f % SEGMENT else None
+
+
+def light():
+    """Points of all frames; CPU seconds of photons and points."""
+    spent = {"photons": [], "points": []}
+    for f in frames:
+        if (options.work / points(f)).exists():
+            continue
+        map_of = ("--photons", options.photons, "--kinds", "caustic,indirect")
+        if options.light == "anew":
+            run("photon-trace", scene, "--frame", f, *map_of, "-o", "d.photons", "--stats", "d.json")
+            run("irradcache-build", "points", scene, "--frame", f, "--photons", "d.photons", "-o", points(f), "--stats", "p.json")
+        else:
+            if f % SEGMENT == 0 or not spent["photons"]:
+                run("photon-trace", scene, "--frame", f, *map_of, "--map", "static", "-o", "s.photons", "--paths", "s.paths")
+                run("irradcache-build", "points", scene, "--frame", f, "--map", "static", "--photons", "s.photons", "-o", "s.irradpoints")
+            run("photon-trace", scene, "--frame", f, "--map", "dynamic", "--static", "s.paths", "-o", "d.photons", "--stats", "d.json")
+            run("irradcache-build", "points", scene, "--frame", f, "--photons", "s.photons", "--update", "s.irradpoints", "--dynamic", "d.photons",
+                "-o", points(f), "--stats", "p.json")
+        spent["photons"].append(stats("d.json")["cpu_s"])
+        spent["points"].append(stats("p.json")["cpu_s"])
+    return {k: statistics.median(v) if v else None for k, v in spent.items()}
+
+
+def anew(f, out, *words):
+    run("irradcache-build", "records", scene, "--frame", f, "--points", points(f), *size, "-o", out, "--stats", "f.json", *words)
+
+
+def pixels(cache, f, out, *words):
+    run("frame-render", scene, "--frame", f, *size, "--irradcache", cache, "--points", points(f), "-o", out, "--stats", "r.json", *words)
+
+
+def costs():
+    """Both sides frame by frame, and their counts."""
+    rows = []
+    for f in frames:
+        name = f"{f:04}"
+        anew(f, f"f.{name}.irradcache")
+        follows = ["--previous", f"s.{previous(f):04}.radsamples"] if previous(f) is not None else []
+        run("gather-temporal", "final", scene, "--frame", f, "--points", points(f), *size, "--refresh", options.refresh, *follows, "-o",
+            f"s.{name}.radsamples", "--cache", f"t.{name}.irradcache", "--stats", "t.json")
+        if f >= 1:
+            (options.work / f"s.{f - 1:04}.radsamples").unlink(missing_ok=True)
+        fresh, over = stats("f.json"), stats("t.json")
+        row = {"frame": f, "first": previous(f) is None, "fresh": phase("f.json"), "time": phase("t.json"), "fresh_all": fresh["cpu_s"], "time_all": over["cpu_s"],
+               "fresh_records": fresh["counts"]["records"], "time_records": over["counts"]["records"], "fresh_rays": fresh["counts"]["gather_rays"],
+               **{k: over["counts"][k] for k in ("cells", "cells_moved", "cells_lost", "cells_unanchored", "cells_aged", "birth_rays", "update_rays")}}
+        if options.pixels and f % 8 == 1:
+            pixels(f"t.{name}.irradcache", f, "pixels.exr", "--spp", 4, "--pixel-error", 0.016, "--learn-lights")
+            row["pixels"] = stats("r.json")["cpu_s"]
+        rows.append(row)
+    (options.work / "rows.json").write_text(json.dumps(rows))
+    return rows
 
 
 def compared(test, reference, at):
     run("aqm-compare", test, reference, "--layer", "indirect", "--frames", at, "--json", "e.json", "--allow-stale")
-    return json.load(open(options.work / "e.json"))
+    return stats("e.json")
 
 
+def judge(f):
+    """RMSE, bias, flicker of frame f: anew with one seed, anew with a seed for each frame, over time."""
+    found = {"fixed": [], "frame": [], "time": []}
+    layer = ("--spp", 1, "--pixel-error", 0, "--channels", "RGBA,layers")
+    first = f // SEGMENT * SEGMENT
+    both = [g for g in (f - 1, f) if g >= 0]
+    for g in both:
+        anew(g, "r.irradcache", "--rays", 8000, "--seed", 1000)
+        pixels("r.irradcache", g, f"reference.{g:04}.exr", *layer)
+    for seed in range(options.seeds):
+        run("gather-temporal", "final", scene, "--frames", f"{first}-{f}", "--points", "p.####.irradpoints", *size, "--refresh", options.refresh, "--seed", seed,
+            "-o", "j.####.radsamples", "--cache", "jtime.####.irradcache")
+        for g in range(first, f + 1):
+            (options.work / f"j.{g:04}.radsamples").unlink()
+        if first == f:   # the frame before is another segment's last: its records are made anew
+            anew(f - 1, f"jtime.{f - 1:04}.irradcache", "--seed", seed)
+        for g in both:
+            anew(g, f"jfixed.{g:04}.irradcache", "--seed", seed)
+            anew(g, f"jframe.{g:04}.irradcache", "--seed", 100 * seed + g % 2 + 10)
+            for side in found:
+                pixels(f"j{side}.{g:04}.irradcache", g, f"{side}.{g:04}.exr", *layer)
+        for side in found:
+            total = compared(f"{side}.####.exr", "reference.####.exr", f"{both[0]}-{f}")
+            last = total["frames"][-1]
+            found[side].append((last["rmse"], last["bias"], total["total"]["flicker"]))
+    for side, rows in found.items():
+        rms = [(sum(r[i] ** 2 for r in rows) / len(rows)) ** 0.5 for i in (0, 2)]
+        print(f"frame {f}: {side}: RMSE {rms[0]:.6f}, bias {100 * statistics.mean(r[1] for r in rows):.3f} %, flicker {rms[1]:.6f} ({len(rows)} seeds)", flush=True)
+
+
+def paths(f):
+    """A frame by path tracing, and by the chain: relMSE against many paths, CPU seconds."""
+    for name, spp, seed in (("paths", options.paths, 0), ("many", 64 * options.paths, 1)):
+        run("frame-render", scene, "--frame", f, *size, "--integrator", "path", "--spp", spp, "--seed", seed, "-o", f"{name}.exr", "--stats", f"{name}.json")
+    pixels(f"t.{f:04}.irradcache", f, "chain.exr", "--spp", 4, "--pixel-error", 0.016, "--learn-lights")
+    for name in ("paths", "chain"):
+        run("aqm-compare", f"{name}.exr", "many.exr", "--json", "e.json", "--allow-stale")
+        print(f"frame {f}: {name}: RMSE {stats('e.json')['total']['rmse']:.5f}, {stats('r.json' if name == 'chain' else 'paths.json')['cpu_s']:.2f} CPU s of its pixels")
+
+
+spent = light()
+print(f"{scene.name}, {options.size}, {options.frames} frames, refresh {options.refresh}, light {options.light}", flush=True)
+if spent["photons"]:
+    print(f"photons {spent['photons']:.3f} s, points {spent['points']:.3f} s a frame, whole runs")
+rows = costs()
+later = [r for r in rows if not r["first"]]
+if later:
+    def median(key):
+        return statistics.median(r[key] for r in later)
+
+    def share(*keys, of="cells"):
+        return 100 * sum(r[k] for r in later for k in keys) / sum(r[of] for r in later)
+    print(f"records: fresh {median('fresh'):.3f} s, over time {median('time'):.3f} s: {median('fresh') / median('time'):.2f} x; "
+          f"all frames {sum(r['fresh'] for r in rows) / sum(r['time'] for r in rows):.2f} x; whole runs {median('fresh_all'):.3f}, {median('time_all'):.3f} s")
+    print(f"of fresh gathering's rays: traced again {share('cells_moved', 'cells_lost', 'cells_unanchored', 'cells_aged', of='fresh_rays'):.1f} %, with births and what goes on "
+          f"from hits {share('update_rays', 'birth_rays', of='fresh_rays'):.1f} %; of the cells: "
+          + ", ".join(f"{k[6:]} {share(k):.2f} %" for k in ("cells_moved", "cells_lost", "cells_unanchored", "cells_aged")))
+    print("records by frame (fresh, over time):", *(f"{r['frame']}: {r['fresh_records']:.0f}, {r['time_records']:.0f};" for r in rows[:: max(1, len(rows) // 8)] + rows[-1:]))
+    if options.pixels:
+        print(f"pixels {statistics.median(r['pixels'] for r in rows if 'pixels' in r):.3f} s a frame")
+if options.paths:
+    paths(rows[-1]["frame"])
 for f in options.judge:
-    for g in (f - 1, f):
-        for seed in ("fixed", "frame"):
-            run("irradcache-build", "records", scene, "--frame", g, "--points", f"p.{g:04}.irradpoints", "--size", options.size, "--seed-mode", seed,
-                "-o", f"j{seed}.{g:04}.irradcache")
-            picture(f"j{seed}.{g:04}.irradcache", g, f"{seed}.{g:04}.exr")
-        run("irradcache-build", "records", scene, "--frame", g, "--points", f"p.{g:04}.irradpoints", "--size", options.size, "--rays", 8000,
-            "-o", "r.irradcache")
-        picture("r.irradcache", g, f"reference.{g:04}.exr")
-        picture(f"t.{g:04}.irradcache", g, f"time.{g:04}.exr")
-    for side in ("fixed", "frame", "time"):
-        found = compared(f"{side}.####.exr", "reference.####.exr", f"{f - 1}-{f}")
-        last = found["frames"][-1]
-        print(f"frame {f}: {side}: RMSE {last['rmse']:.6f}, bias {100 * last['bias']:.3f} %, flicker {found['total']['flicker']:.6f}")
+    judge(f)

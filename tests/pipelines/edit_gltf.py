@@ -10,6 +10,7 @@ OUT may be a .glb, or a .gltf that gets its buffer as a .bin file beside it.
   still                 no animation
   event KIND            of frames 0 to 8 at frame 4 the moving box is elsewhere (teleports), larger (grows), there from then on (born), there no
                         more (gone), or the lamp has no area (lamp-off); else all stands
+  nudge FRAME           the moving box is two centimetres aside at FRAME
   mirror                the first material that emits nothing is a perfect mirror
   drop NAME             without the key NAME at the top level (cameras, for example)
 """
@@ -108,6 +109,14 @@ def event(gltf, binary, kind):
     animate(gltf, binary, node, {f: before if f < 4 else at if f == 4 else after for f in range(9)}, path, "STEP")
 
 
+def nudge(gltf, binary, frame):
+    animation = gltf["animations"][0]
+    channel = next(c for c in animation["channels"] if c["target"]["path"] == "translation")
+    accessor = gltf["accessors"][animation["samplers"][channel["sampler"]]["output"]]
+    offset = gltf["bufferViews"][accessor["bufferView"]].get("byteOffset", 0) + accessor.get("byteOffset", 0) + 12 * int(frame)
+    struct.pack_into("<f", binary, offset, struct.unpack_from("<f", binary, offset)[0] + 0.02)
+
+
 def mirror(gltf, binary):
     material = next(m for m in gltf["materials"] if not any(m.get("emissiveFactor", [0])))
     material["pbrMetallicRoughness"] |= {"metallicFactor": 1, "roughnessFactor": 0}
@@ -124,7 +133,7 @@ def main():
     source, target, edit, *arguments = sys.argv[1:]
     gltf, binary = read_glb(source)
     edits = {"same": same, "camera-from": camera_from, "emission": emission, "lamp": lamp, "still": still,
-             "mirror": mirror, "event": event, "drop": drop}
+             "mirror": mirror, "nudge": nudge, "event": event, "drop": drop}
     edits[edit](gltf, binary, *arguments)
     if target.endswith(".gltf"):
         buffer = target[:-5] + ".bin"

@@ -74,6 +74,18 @@ def touching(s):
         looked_at(s, f"camera 1e-6 m before a {title}", image, 256, radiance)
 
 
+@case("caches", "kept from frame to frame")
+def over_time_in_a_furnace(s):
+    """A plate that lies 1e-7 m above the floor, rises, touches the ceiling and is gone: what is kept holds for the furnace in each frame."""
+    from family_time import KEYS, over_time
+
+    def plate(scene, wall):
+        moved = scene.quad((-0.5, 0, 0.5), (0.5, 0, 0.5), (0.5, 0, -0.5), (-0.5, 0, -0.5), scene.material(RHO, 1.0))
+        scene.animate(moved, "translation", KEYS, [(0, 1e-5 - 1, 0), (0, -0.5, 0), (0, 1 - 1e-5, 0), (0, 5, 0)], "STEP")
+    for f, image in enumerate(over_time(s, furnace_room(s, plate), (32, 24))[0]):
+        s.near(f"frame {f}: radiance", 1 / (1 - RHO), image.mean(), 2 * tolerance(s))
+
+
 @case("caches", "all misses")
 def misses(s):
     """A floor under a lamp and nothing above it: no gather ray hits. No light, and the largest radius of records that

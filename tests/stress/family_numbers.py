@@ -14,6 +14,8 @@ ROWS = [
     ("sums of many huge terms", "formats/exact_sum_test.cpp", "ExactSum", "OfManyHugeValuesIsFinite"),
     ("sums have no order", "formats/exact_sum_test.cpp", "ExactSum", "HasNoOrderAndJoins"),
     ("half floats at the upper end", "lib/image/exr_io_test.cpp", "Exr", "ValuesAboveHalfAreRefusedWithTheirPlace"),
+    ("RGBE of kept samples, from end to end", "formats/radsamples_test.cpp", "RadianceSample", "RgbeComesBackWithinAStepFromEndToEnd"),
+    ("half distances of kept samples, from end to end", "formats/radsamples_test.cpp", "RadianceSample", "HalvesComeBackAndStayInTheirRange"),
 ]
 
 

@@ -263,6 +263,12 @@ TEST(Plan, LightIsComputedAnewWhereNothingWouldBeSaved) {
   use_indirect(moving, "gather", "a test");
   use_moving(moving, "records", "a test");
   EXPECT_EQ(moving.moving, "light") << "there are no records";
+  Plan kept = plan_of(scene, {0, 1, 2, 3});
+  use_moving(kept, "time", "a test");
+  EXPECT_EQ(kept.moving, "time");
+  EXPECT_TRUE(kept.segments.front().updated);
+  use_split(kept, true, "a test");
+  EXPECT_FALSE(kept.split);
   Plan asked = plan_of(scene, {0, 1, 2, 3});
   use_moving(asked, "anew", "a test");
   EXPECT_EQ(plan_makefile(asked, "plan", {}).find("stands_"), std::string::npos);

@@ -1,0 +1,57 @@
+#!/bin/sh
+# MOVING=time on the room whose box slides: sh tests/pipelines/temporal.sh BIN
+# Run at the top of the tree; BIN is the folder with the tools. Frames are those of MOVING=anew but for noise; a second run makes nothing; one
+# processor makes the same frames; after an edit of one frame those from there to its segment's end are made again, no others; killed and typed again it
+# makes the same; where nothing moves nothing of it runs; the plan takes it by itself.
+bin=$1 failed=0 scene=pipelines/scenes/S2_cornell_moving.glb
+work=$(mktemp -d) || exit 3
+trap 'rm -rf "$work"' EXIT
+bad() { echo "FAILED: $*"; failed=1; }
+edit() { python3 -B tests/pipelines/edit_gltf.py "$@" || exit 1; }
+make_it() {
+  make -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0-7 TIME='--segment 4' SIZE=48x27 PHOTONS=10k POINTS='--point-count 1k' \
+    CACHE='--rays 50 --error-bound 0.5' PIXELS='--spp 2 --pixel-error 0' CHANNELS=RGBA,layers "$@"
+}
+run() { make_it "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }; }
+digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
+gathered() { grep -o 'gather-temporal final .*--frame 000[0-7]' "$work/log" | grep -o '000[0-7]$' | tr '\n' ' '; }
+
+cp $scene "$work/scene.glb"
+run SCENE="$work/scene.glb" MOVING=anew OUT="$work/anew"
+run SCENE="$work/scene.glb" MOVING=time OUT="$work/time"
+grep -qx 'plan_moving := time' "$work/time/plan/plan.mk" || bad 'plan.mk does not say time'
+[ "$(gathered | tr ' ' '\n' | sort | tr -d '\n')" = 00000001000200030004000500060007 ] || bad "gathered over time: $(gathered)"
+grep -q 'frame 0004 .*--previous' "$work/log" && bad 'the second segment follows from the first'
+"$bin/aqm-compare" "$work/time/frames/%04d.exr" "$work/anew/frames/%04d.exr" --frames 0-7 --layer indirect --json "$work/c.json" -q > /dev/null
+# 10 000 paths and 50 rays a record: two seeds of MOVING=anew differ by 4 %.
+python3 -c 'import json, sys; t = json.load(open(sys.argv[1]))["total"]; e = t["rmse"] / t["mean_reference"]; print(e); sys.exit(e > 0.08)' "$work/c.json" ||
+  bad 'differs from MOVING=anew by more than 8 %'
+digests "$work/time" > "$work/expected"
+
+run SCENE="$work/scene.glb" MOVING=time OUT="$work/time"
+grep -q 'Nothing to be done' "$work/log" || bad "a second run: $(head -3 "$work/log")"
+run SCENE="$work/scene.glb" MOVING=auto OUT="$work/auto"
+grep -qx 'plan_moving := time' "$work/auto/plan/plan.mk" || bad "auto: $(grep plan_moving "$work/auto/plan/plan.mk")"
+digests "$work/auto" | diff "$work/expected" - || bad 'auto: other frames'
+run SCENE="$work/scene.glb" MOVING=time OUT="$work/one" -j1 RUN='taskset -c 0'
+digests "$work/one" | diff "$work/expected" - || bad 'one processor, one job: other frames'
+
+# Killed in the middle of records, and typed again.
+make_it SCENE="$work/scene.glb" MOVING=time OUT="$work/killed" > "$work/log" 2>&1 &
+for i in $(seq 200); do [ -e "$work/killed/kept/0001.radsamples" ] && break; sleep 0.05; done
+kill -9 $! 2>/dev/null
+wait $! 2>/dev/null
+sleep 0.5
+run SCENE="$work/scene.glb" MOVING=time OUT="$work/killed"
+digests "$work/killed" | diff "$work/expected" - || bad 'killed and typed again: other frames'
+
+# The box takes another way at frame 1: its segment's frames are made again, those of the other are not.
+edit $scene "$work/scene.glb" nudge 1
+run SCENE="$work/scene.glb" MOVING=time OUT="$work/time"
+case "$(gathered)" in *000[4-7]*) bad "an edit at frame 1 gathered $(gathered)";; *0001*) ;; *) bad "an edit at frame 1 gathered $(gathered)";; esac
+
+edit $scene "$work/still.glb" still
+run SCENE="$work/still.glb" MOVING=auto OUT="$work/still"
+ls "$work/still/kept" > /dev/null 2>&1 && bad 'nothing moves: a folder for what is kept'
+[ $failed = 0 ] && echo ok
+exit $failed
