@@ -13,7 +13,7 @@ namespace tempolux {
 
 /// What a random number is drawn for; part of its key, so that no two uses share numbers.
 enum class Purpose : std::uint32_t {
-  emit = 1, lobe, scatter, roulette, light_choice, light_point, pixel, scramble, gather, points, place, test, flight, medium, phase
+  emit = 1, lobe, scatter, roulette, light_choice, light_point, pixel, scramble, gather, points, place, test, flight, medium, phase, sun
 };
 
 /// Finaliser with full avalanche on 64 bits (Stafford's mix 13, as in SplitMix64).

@@ -23,9 +23,13 @@ Rgb EnvironmentLight::Corners::radiance(double x, double y) const {
   return (upper_left * (1 - fx) + upper_right * fx) * (1 - fy) + (lower_left * (1 - fx) + lower_right * fx) * fy;
 }
 
-double EnvironmentLight::Corners::luminance(double x, double y) const {
-  const auto l = [](const Rgb& pixel) { return tempolux::luminance(Rgbd(pixel)); };
-  return even + lerp(lerp(l(upper_left), l(upper_right), x), lerp(l(lower_left), l(lower_right), x), y);
+double EnvironmentLight::Luminances::at(double x, double y) const {
+  return lerp(lerp(upper_left, upper_right, x), lerp(lower_left, lower_right, x), y);
+}
+
+EnvironmentLight::Luminances EnvironmentLight::luminances(const Corners& corners) const {
+  const auto l = [this](const Rgb& pixel) { return even_ + tempolux::luminance(Rgbd(pixel)); };
+  return {l(corners.upper_left), l(corners.upper_right), l(corners.lower_left), l(corners.lower_right)};
 }
 
 EnvironmentLight::EnvironmentLight(const Environment& environment, double even)
@@ -44,7 +48,7 @@ EnvironmentLight::Corners EnvironmentLight::corners(std::uint32_t row, std::uint
   const std::size_t lower = std::size_t(std::min(row, height_ - 1)) * width_;
   const std::size_t right = column + 1 == width_ ? 0 : column + 1;
   const std::vector<Rgb>& pixels = environment_.radiance;
-  return {pixels[upper + column], pixels[upper + right], pixels[lower + column], pixels[lower + right], even_};
+  return {pixels[upper + column], pixels[upper + right], pixels[lower + column], pixels[lower + right]};
 }
 
 /// The mean over a row is that of its pixels whatever the latitude; over latitude the hat functions are integrated
@@ -75,7 +79,7 @@ void EnvironmentLight::build_distribution() {
     for (std::size_t row = first; row < last; ++row) {
       double sum = 0;
       for (std::uint32_t x = 0; x < width_; ++x)
-        sum += weight[x] = corners(std::uint32_t(row), x).luminance(0.5, 0.5);
+        sum += weight[x] = luminances(corners(std::uint32_t(row), x)).at(0.5, 0.5);
       const double a = polar(std::uint32_t(row)), b = polar(std::uint32_t(row) + 1);
       row_weight[row] = sum * (std::cos(a) - std::cos(b));
       const double scale = sum > 0 ? (kUnits - width_) / sum : 0;
@@ -93,9 +97,10 @@ void EnvironmentLight::build_distribution() {
 }
 
 EnvironmentLight::Place EnvironmentLight::place_of(Vec3 direction) const {
-  const Vec3d d(direction);
-  const double polar_angle = std::atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y);
-  const double longitude = std::atan2(d.x, d.z) - environment_.rotation_rad;
+  const Vec3& d = direction;
+  // In float: right to a thousandth of a pixel of a map of 8192 columns.
+  const auto polar_angle = double(std::atan2(std::sqrt(d.x * d.x + d.z * d.z), d.y));
+  const double longitude = double(std::atan2(d.x, d.z)) - environment_.rotation_rad;
   // Columns from the first centre, in [0, width).
   double along = (0.5 - longitude / (2 * kPiD)) * width_ - 0.5;
   along -= std::floor(along / width_) * width_;
@@ -106,11 +111,6 @@ EnvironmentLight::Place EnvironmentLight::place_of(Vec3 direction) const {
   return place;
 }
 
-Rgb EnvironmentLight::radiance(Vec3 direction) const {
-  const Place place = place_of(direction);
-  return corners(place.row, place.column).radiance(place.x, place.y);
-}
-
 double EnvironmentLight::probability(std::uint32_t row, std::uint32_t column) const {
   const double of_row = row_end_[row] - (row > 0 ? row_end_[row - 1] : 0);
   const std::uint32_t* ends = &cell_end_[std::size_t(row) * width_];
@@ -119,12 +119,11 @@ double EnvironmentLight::probability(std::uint32_t row, std::uint32_t column) co
 }
 
 /// A cap is uniform over its area, all else bilinear over longitude and latitude.
-double EnvironmentLight::pdf(const Place& place, double sin_polar) const {
+double EnvironmentLight::pdf(const Place& place, const Luminances& at, double sin_polar) const {
   const double of_cell = probability(place.row, place.column);
   if (!(of_cell > 0)) return 0;
-  const Corners at = corners(place.row, place.column);
   const double a = polar(place.row), b = polar(place.row + 1), width = 2 * kPiD / width_;
-  const double shape = at.luminance(place.x, place.y) / at.luminance(0.5, 0.5);
+  const double shape = at.at(place.x, place.y) / at.at(0.5, 0.5);
   const double area = polar_cap(place.row) ? std::cos(a) - std::cos(b) : (b - a) * sin_polar;
   return of_cell * shape / (area * width);
 }
@@ -142,11 +141,12 @@ bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
   const double first = column > 0 ? ends[column - 1] : 0;
 
   // In the cell: along it first, by the luminances of its left and right side, then across.
-  const Corners at = corners(row, column);
+  const Corners pixels = corners(row, column);
+  const Luminances at = luminances(pixels);
   Place place{row, column, 0, 0};
   const double along = std::clamp((units - first) / (ends[column] - first), 0.0, 1.0);
   const double across = std::clamp((u1 - row_first) / (row_end_[row] - row_first), 0.0, 1.0);
-  place.x = sample_linear(at.luminance(0, 0.5), at.luminance(1, 0.5), along);
+  place.x = sample_linear(at.at(0, 0.5), at.at(1, 0.5), along);
   const double a = polar(row), b = polar(row + 1);
   double angle;
   if (polar_cap(row)) {
@@ -156,25 +156,24 @@ bool EnvironmentLight::sample(double u1, double u2, Sample& sample) const {
     place.y = (angle - a) / (b - a);
     if (row == 0) place.y = 0.5 + 0.5 * place.y;
   } else {
-    place.y = sample_linear(at.luminance(place.x, 0), at.luminance(place.x, 1), across);
+    place.y = sample_linear(at.at(place.x, 0), at.at(place.x, 1), across);
     angle = lerp(a, b, place.y);
   }
   const double longitude = (0.5 - (column + 0.5 + place.x) / width_) * 2 * kPiD + environment_.rotation_rad;
   const double sine = std::sin(angle);
   sample.direction = Vec3(Vec3d{std::sin(longitude) * sine, std::cos(angle), std::cos(longitude) * sine});
-  sample.radiance = at.radiance(place.x, place.y);
-  sample.pdf_solid_angle = pdf(place, sine);
+  sample.radiance = pixels.radiance(place.x, place.y);
+  sample.pdf_solid_angle = pdf(place, at, sine);
   return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY;
 }
 
-double EnvironmentLight::pdf_solid_angle(Vec3 direction) const {
+double EnvironmentLight::pdf_solid_angle(const Place& place, Vec3 direction) const {
   const Vec3d d(direction);
-  return pdf(place_of(direction), std::sqrt(d.x * d.x + d.z * d.z));
+  return pdf(place, luminances(corners(place.row, place.column)), std::sqrt(d.x * d.x + d.z * d.z));
 }
 
-Vec2 EnvironmentLight::numbers_of(Vec3 direction) const {
-  const Place place = place_of(direction);
-  const Corners at = corners(place.row, place.column);
+Vec2 EnvironmentLight::numbers_of(const Place& place, Vec3 direction) const {
+  const Luminances at = luminances(corners(place.row, place.column));
   const double a = polar(place.row), b = polar(place.row + 1);
   double across;
   if (polar_cap(place.row)) {
@@ -183,9 +182,9 @@ Vec2 EnvironmentLight::numbers_of(Vec3 direction) const {
     const double share = std::sin(0.5 * angle) / std::sin(0.5 * (b - a));
     across = place.row == 0 ? share * share : 1 - share * share;
   } else {
-    across = linear_number(at.luminance(place.x, 0), at.luminance(place.x, 1), place.y);
+    across = linear_number(at.at(place.x, 0), at.at(place.x, 1), place.y);
   }
-  const double along = linear_number(at.luminance(0, 0.5), at.luminance(1, 0.5), place.x);
+  const double along = linear_number(at.at(0, 0.5), at.at(1, 0.5), place.x);
   const double row_first = place.row > 0 ? row_end_[place.row - 1] : 0;
   const std::uint32_t* ends = &cell_end_[std::size_t(place.row) * width_];
   const double first = place.column > 0 ? ends[place.column - 1] : 0;

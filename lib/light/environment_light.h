@@ -20,8 +20,15 @@ class EnvironmentLight {
   /// luminance were added everywhere: with 1, half of them fall evenly over the sphere.
   explicit EnvironmentLight(const Environment& environment, double even = 0);
 
+  /// A place in the map: cell (row, column) and where in it, in [0, 1]. Several questions about one direction need it once.
+  struct Place {
+    std::uint32_t row, column;
+    double x, y;
+  };
+  Place place_of(Vec3 direction) const;
   /// Arriving from `direction` (unit), W/m^2/sr.
-  Rgb radiance(Vec3 direction) const;
+  Rgb radiance(Vec3 direction) const { return radiance(place_of(direction)); }
+  Rgb radiance(const Place& place) const { return corners(place.row, place.column).radiance(place.x, place.y); }
   /// Integral of radiance over all directions [W/m^2], closed form.
   Rgbd integral() const { return integral_; }
 
@@ -34,28 +41,28 @@ class EnvironmentLight {
   /// False if nothing is emitted.
   bool sample(double u1, double u2, Sample& sample) const;
   /// Density per solid angle of sample() at `direction`, to the rounding of its own arithmetic.
-  double pdf_solid_angle(Vec3 direction) const;
+  double pdf_solid_angle(Vec3 direction) const { return pdf_solid_angle(place_of(direction), direction); }
+  double pdf_solid_angle(const Place& place, Vec3 direction) const;
   /// The numbers (u1, u2) for which sample() gives this direction, but for rounding.
-  Vec2 numbers_of(Vec3 direction) const;
+  Vec2 numbers_of(Vec3 direction) const { return numbers_of(place_of(direction), direction); }
+  Vec2 numbers_of(const Place& place, Vec3 direction) const;
 
  private:
-  /// A place in the map: cell (row, column) and where in it, in [0, 1].
-  struct Place {
-    std::uint32_t row, column;
-    double x, y;
-  };
   struct Corners {
     const Rgb &upper_left, &upper_right, &lower_left, &lower_right;
-    double even;   ///< added to the luminance
     Rgb radiance(double x, double y) const;
-    double luminance(double x, double y) const;
   };
-  Place place_of(Vec3 direction) const;
+  /// Bilinear luminance in a cell, W/m^2/sr.
+  struct Luminances {
+    double upper_left, upper_right, lower_left, lower_right;
+    double at(double x, double y) const;
+  };
+  Luminances luminances(const Corners& corners) const;
   Corners corners(std::uint32_t row, std::uint32_t column) const;
   double polar(std::uint32_t row) const;  ///< angle from +Y of a row's upper edge
   bool polar_cap(std::uint32_t row) const { return row == 0 || row == height_; }
   double probability(std::uint32_t row, std::uint32_t column) const;
-  double pdf(const Place& place, double sin_polar) const;
+  double pdf(const Place& place, const Luminances& at, double sin_polar) const;
   void integrate();
   void build_distribution();
 

@@ -33,8 +33,8 @@ double Lights::Impl::sum_distant(Vec3 normal) const {
 
 /// Probability of choosing a light from infinitely far: their share of an estimate of the irradiance, at least a
 /// fifth for either kind that can be seen at all. total: their weights.
-double Lights::Impl::distant_share(Vec3 point, Vec3 normal, double& total) const {
-  total = distant_irradiance(normal);
+double Lights::Impl::distant_share(Vec3 point, Vec3 normal, From from, double& total) const {
+  total = distant_irradiance(normal, from);
   return total > 0 ? share_of_distant(total, tree.importance(point, normal)) : 0;
 }
 
@@ -42,7 +42,7 @@ double Lights::Impl::distant_share(Vec3 point, Vec3 normal, double& total) const
 bool Lights::Impl::sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,
                                   LightSample& s) const {
   const double left = u * total;
-  if (left < environment_weight)
+  if (left < environment_weight || total <= environment_weight)
     return sample_environment(point, normal, u_float, left / environment_weight, share * environment_weight / total, s);
   return sample_sun(point, normal, (left - environment_weight) / (total - environment_weight), share * (1 - environment_weight / total), s);
 }
@@ -132,12 +132,18 @@ inline bool Lights::Impl::sample_slot(std::uint32_t slot, Vec3 point, Vec3 norma
   return sample.pdf_solid_angle > 0 && sample.pdf_solid_angle < INFINITY && is_finite(sample.radiance);
 }
 
-bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const {
+Lights::Impl::Shares Lights::Impl::shares_of(const LightGrid::Cell& cell, From from) {
+  const double sky = double(cell.sky), sun = double(cell.suns);
+  if (from == From::all) return {sky, sun};
+  return sun < 1 ? Shares{std::min(1.0, sky / (1 - sun)), 0} : Shares{sky > 0 ? 1.0 : 0.0, 0};
+}
+
+bool Lights::Impl::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from, LightSample& sample) const {
   sample = {};
   if (const LightGrid::Cell* cell = known(point, normal))
-    return sample_learned(*cell, point, normal, u_choice, u, joint, sample) && is_finite(sample.radiance);
+    return sample_learned(*cell, point, normal, u_choice, u, joint, from, sample) && is_finite(sample.radiance);
   const LightTree::Start start = tree.start(point, normal);
-  const double distant = distant_irradiance(normal), share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
+  const double distant = distant_irradiance(normal, from), share = distant > 0 ? share_of_distant(distant, start.sum) : 0;
   if (u_choice < share) {
     // The environment takes what the choice leaves of its number in place of u.x, also where they are two.
     return sample_distant(point, normal, {u_choice, u.y}, u_choice / share, share, distant, sample) && is_finite(sample.radiance);
@@ -155,30 +161,39 @@ bool Lights::Impl::sample_tree(const LightTree::Start& start, double probability
 }
 
 bool Lights::Impl::sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint,
-                                  LightSample& s) const {
-  if (u_choice < cell.sky) {
+                                  From from, LightSample& s) const {
+  const Shares shares = shares_of(cell, from);
+  const auto sky = float(shares.sky), sun = float(shares.suns);
+  if (u_choice < sky) {
     EnvironmentLight::Sample found;
     double density;
-    if (!grid->sample_sky(cell, u_choice / cell.sky, joint ? u.y : u.x, found, density)) return false;
-    return take_from_sky(found, point, density * double(cell.sky), s);
+    if (!grid->sample_sky(cell, u_choice / sky, joint ? u.y : u.x, found, density)) return false;
+    return take_from_sky(found, point, density * double(sky), s);
   }
-  u_choice -= cell.sky;
-  if (u_choice < cell.suns) return sample_sun(point, normal, u_choice / cell.suns, double(cell.suns), s);
-  const float lamps = 1 - cell.sky - cell.suns;
+  u_choice -= sky;
+  if (u_choice < sun) return sample_sun(point, normal, u_choice / sun, double(sun), s);
+  const float lamps = 1 - sky - sun;
   if (!(lamps > 0)) return false;
-  return sample_tree(tree.start(point, normal), double(lamps), point, normal, to_float(double((u_choice - cell.suns) / lamps)), u, joint, s);
+  return sample_tree(tree.start(point, normal), double(lamps), point, normal, to_float(double((u_choice - sun) / lamps)), u, joint, s);
 }
 
 bool Lights::sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const {
-  return impl_->sample(point, normal, u_choice, u, false, sample);
+  return impl_->sample(point, normal, u_choice, u, false, From::all, sample);
 }
 
-bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const {
-  return impl_->sample(point, normal, u.x, u, true, sample);
+bool Lights::sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, From from) const {
+  return impl_->sample(point, normal, u.x, u, true, from, sample);
+}
+
+bool Lights::has_suns() const { return !impl_->suns.empty(); }
+
+bool Lights::sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const {
+  sample = {};
+  return impl_->sample_sun(point, normal, double(u), 1, sample) && is_finite(sample.radiance);
 }
 
 float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle,
-                              Vec3 on_light, Vec3) const {
+                              Vec3 on_light, Vec3, From from) const {
   const Impl& m = *impl_;
   if (m.first_slot[surface] == kNone) return 0;
   const std::uint32_t slot = m.first_slot[surface] + triangle, light = m.tree_index[slot];
@@ -187,21 +202,27 @@ float Lights::pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, st
   if (!(on_triangle > 0)) return 0;
   double total = 0;
   const LightGrid::Cell* cell = m.known(point, normal);
-  const double share = cell ? double(cell->sky + cell->suns) : m.distant_share(point, normal, total);
+  double share;
+  if (cell) {
+    const Impl::Shares shares = Impl::shares_of(*cell, from);
+    share = double(float(shares.sky) + float(shares.suns));
+  } else {
+    share = m.distant_share(point, normal, from, total);
+  }
   const float pdf = float(on_triangle * (1 - share) * m.tree.probability(point, normal, light));
   return pdf < INFINITY ? pdf : 0;
 }
 
-float Lights::pdf_environment(Vec3 point, Vec3 normal, Vec3 direction) const {
+float Lights::pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction, From from) const {
   if (!(impl_->environment_weight > 0)) return 0;
   if (const LightGrid::Cell* cell = impl_->known(point, normal)) {
-    const float learned = float(double(cell->sky) * impl_->grid->sky_density(*cell, direction));
+    const float learned = float(Impl::shares_of(*cell, from).sky * impl_->grid->sky_density(*cell, direction));
     return learned < INFINITY ? learned : 0;
   }
   double total = 0;
-  const double share = impl_->distant_share(point, normal, total);
+  const double share = impl_->distant_share(point, normal, from, total);
   const float pdf =
-      float((impl_->sky_by_normal && normal != Vec3{} ? impl_->sky_by_normal->pdf_solid_angle(normal, direction) : environment_->pdf_solid_angle(direction)) * share * impl_->environment_weight / total);
+      float((impl_->sky_by_normal && normal != Vec3{} ? impl_->sky_by_normal->pdf_solid_angle(normal, place, direction) : environment_->pdf_solid_angle(place, direction)) * share * impl_->environment_weight / total);
   return pdf < INFINITY ? pdf : 0;
 }
 

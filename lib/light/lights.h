@@ -104,6 +104,11 @@ class Lights {
     Rgb irradiance;
   };
   std::vector<Sun> suns() const;
+  /// Which lights sample() chooses from: where a sample of the suns is taken by itself, all others.
+  enum class From : std::uint8_t { all, not_suns };
+  bool has_suns() const;
+  /// Chooses a directional light by its irradiance; u in [0, 1). False if none is above the surface.
+  bool sample_sun(Vec3 point, Vec3 normal, float u, LightSample& sample) const;
 
   bool empty() const;
   std::size_t count() const;
@@ -117,12 +122,12 @@ class Lights {
   bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, LightSample& sample) const;
   /// The same from one stratified pair: u.x chooses the light and, stretched, is its first coordinate on it, so
   /// that samples stratified over the square are stratified over every light.
-  bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample) const;
+  bool sample(Vec3 point, Vec3 normal, Vec2 u, LightSample& sample, From from = From::all) const;
   /// Density per solid angle with which sample() at (point, normal) would have chosen the position
   /// `on_light` of this emissive triangle, seen from its front or (two-sided) back; 0 if it is no light. The
   /// triangle's own plane decides, as in sample(); light_normal is not looked at.
   float pdf_solid_angle(Vec3 point, Vec3 normal, std::uint32_t surface, std::uint32_t triangle, Vec3 on_light,
-                        Vec3 light_normal) const;
+                        Vec3 light_normal, From from = From::all) const;
   /// Radiance that the material emits at a hit towards `wo` (unit, away from it), textures read over `width` m; zero
   /// from the back of a one-sided emitter.
   Rgb emitted(const SurfacePoint& hit, Vec3 wo, float width) const;
@@ -132,7 +137,13 @@ class Lights {
   Rgb environment(Vec3 direction) const { return environment_->radiance(direction); }
   /// Density per solid angle with which sample() at (point, normal) would have chosen this direction of the
   /// environment; only with one.
-  float pdf_environment(Vec3 point, Vec3 normal, Vec3 direction) const;
+  float pdf_environment(Vec3 point, Vec3 normal, Vec3 direction, From from = From::all) const {
+    return pdf_environment(point, normal, environment_->place_of(direction), direction, from);
+  }
+  /// Both of one look-up.
+  EnvironmentLight::Place environment_place(Vec3 direction) const { return environment_->place_of(direction); }
+  Rgb environment(const EnvironmentLight::Place& place) const { return environment_->radiance(place); }
+  float pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction, From from) const;
 
   /// A photon from the frozen table: u[0] chooses the slot and, stretched, is the first coordinate on it,
   /// u[1] the second; u[2], u[3] the direction (of a two-sided triangle the lower half of u[2] leaves the

@@ -18,7 +18,7 @@ namespace tempolux {
 
 struct Lights::Impl {
   /// As Lights::sample; joint: u_choice is u.x.
-  bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const;
+  bool sample(Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from, LightSample& sample) const;
   const SceneFrame* frame;
   Vec3 sphere_centre;
   double sphere_radius;
@@ -44,15 +44,22 @@ struct Lights::Impl {
 
   Rgbd slot_flux(std::size_t slot) const;   ///< W
   std::vector<LightBounds> tree_bounds() const;
-  bool sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, LightSample& sample) const;
+  bool sample_learned(const LightGrid::Cell& cell, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint, From from, LightSample& sample) const;
   bool sample_tree(const LightTree::Start& start, double probability, Vec3 point, Vec3 normal, float u_choice, Vec2 u, bool joint,
                    LightSample& sample) const;
   bool take_from_sky(const EnvironmentLight::Sample& found, Vec3 point, double pdf, LightSample& s) const;
   bool sample_sun(Vec3 point, Vec3 normal, double u, double probability, LightSample& s) const;
   const LightGrid::Cell* known(Vec3 point, Vec3 normal) const { return grid ? grid->find(point, normal) : nullptr; }
+  /// Probabilities of the sky and of the directional lights; the rest: lights that are somewhere.
+  struct Shares {
+    double sky, suns;
+  };
+  static Shares shares_of(const LightGrid::Cell& cell, From from);
   double sum_distant(Vec3 normal) const;
-  double distant_irradiance(Vec3 normal) const { return any_distant ? sum_distant(normal) : 0; }
-  double distant_share(Vec3 point, Vec3 normal, double& total) const;
+  double distant_irradiance(Vec3 normal, From from) const {
+    return !any_distant ? 0 : from == From::all ? sum_distant(normal) : environment_weight;
+  }
+  double distant_share(Vec3 point, Vec3 normal, From from, double& total) const;
   bool sample_slot(std::uint32_t slot, Vec3 point, Vec3 normal, double probability, double left, Vec2 u, bool joint,
                    LightSample& sample) const;
   bool sample_distant(Vec3 point, Vec3 normal, Vec2 u_float, double u, double share, double total,

@@ -82,12 +82,12 @@ bool SkyByNormal::sample(Vec3 normal, double u1, double u2, EnvironmentLight::Sa
   return sample.pdf_solid_angle > 0;
 }
 
-double SkyByNormal::pdf_solid_angle(Vec3 normal, Vec3 direction) const {
-  const Vec2 u = environment_.numbers_of(direction);
+double SkyByNormal::pdf_solid_angle(Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction) const {
+  const Vec2 u = environment_.numbers_of(place, direction);
   const std::uint32_t part = std::min(std::uint32_t(u.x * kDown), kDown - 1) * kAcross + std::min(std::uint32_t(u.y * kAcross), kAcross - 1);
   const Ends& ends = ends_[bin_of(normal)];
   const double share = double(ends[part]) - (part > 0 ? double(ends[part - 1]) : 0);
-  return share * kParts * environment_.pdf_solid_angle(direction);
+  return share * kParts * environment_.pdf_solid_angle(place, direction);
 }
 
 }  // namespace tempolux

@@ -21,7 +21,8 @@ class SkyByNormal {
   /// A direction for a surface of this unit normal; u1, u2 as EnvironmentLight::sample().
   bool sample(Vec3 normal, double u1, double u2, EnvironmentLight::Sample& sample) const;
   /// Density [1/sr] with which sample() gives this direction.
-  double pdf_solid_angle(Vec3 normal, Vec3 direction) const;
+  double pdf_solid_angle(Vec3 normal, Vec3 direction) const { return pdf_solid_angle(normal, environment_.place_of(direction), direction); }
+  double pdf_solid_angle(Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction) const;
   static constexpr std::uint32_t kAcross = 32, kDown = 16, kParts = kAcross * kDown, kSide = 16, kNormals = kSide * kSide;
 
  private:

@@ -87,9 +87,8 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
     diffuse_ = false;
 }
 
-Bsdf::Reflection Bsdf::reflection(float cos_theta) const {
+Bsdf::Reflection Bsdf::look_up(float cos_theta) const {
   Reflection r;
-  if (!specular_) return r;
   AlbedoPair e;
   if (delta_) {
     e.b = power5(std::clamp(1 - cos_theta, 0.0f, 1.0f));
@@ -156,6 +155,15 @@ Rgb Bsdf::eval_specular(Vec3 wi, Vec3 wo) const {
 }
 
 float Bsdf::diffuse_probability(Vec3 wo) const { return wo.z > 0 ? diffuse_probability(reflection(wo.z)) : 1; }
+
+bool Bsdf::draws_diffuse(Vec3 wo, float u_lobe) const {
+  if (!diffuse_ || !(wo.z > 0)) return false;
+  if (transmission_ > 0) {
+    if (u_lobe < transmission_) return false;
+    u_lobe = std::min(kOneMinusEpsilon, (u_lobe - transmission_) / (1 - transmission_));
+  }
+  return u_lobe < diffuse_probability(reflection(wo.z));
+}
 
 float Bsdf::pdf_diffuse(Vec3 wi, Vec3 wo) const {
   if (!diffuse_ || !(wi.z > 0) || !(wo.z > 0)) return 0;

@@ -29,7 +29,7 @@ std::string per_cent(double share) {
 
 /// Of a pixel's error after as many samples as PixelNoise asks for, 4 at least: they are stratified.
 double error_left(double variance, double level, double picture, double pixel_error) {
-  const double wanted = wanted_samples(std::sqrt(variance), level, picture, pixel_error);
+  const double wanted = wanted_samples(std::sqrt(variance), 4, level, picture, pixel_error);
   return variance * std::pow(std::max(4.0, wanted), -5.0 / 3);
 }
 

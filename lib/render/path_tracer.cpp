@@ -18,6 +18,7 @@ struct LastScatter {
   Vec3 position, normal;                       ///< normal on the side that was scattered to
   float pdf_solid_angle = 0;
   float light_share = 1;                       ///< of light samples that were aimed at that side
+  Lights::From from = Lights::From::all;       ///< lights that samples were drawn from there
 };
 
 /// Which of a surface's lobes light is sampled for, and the factors by which their densities are higher than the Bsdf's where
@@ -28,34 +29,61 @@ struct SampledLobes {
   float left = 1;   ///< share of what the Lambert lobe scatters that counts (KnownHere)
 };
 
-/// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)]
-void add_sampled_light(const RenderScene& scene, const ShadingPoint& x, SampledLobes lobes, const Rgb& throughput,
-                       const EyePath& path, const Inside& inside, const PixelRandom& random, std::uint32_t bounce,
-                       Layers& result, RayCounts& counts) {
-  const bool specular = lobes.specular && x.bsdf.has_specular() && !x.bsdf.specular_is_delta();
-  lobes.diffuse = lobes.diffuse && x.bsdf.has_diffuse();
-  if (!lobes.diffuse && !specular) return;
-  // Rough glass passes on light from behind: the side is drawn, the other's light is left to other samples.
-  const float share_beyond = x.bsdf.light_share_beyond();
-  bool beyond = false;
-  float share = 1;
-  if (share_beyond > 0) [[unlikely]] {
-    beyond = random.get1(bounce, Purpose::light_choice) < share_beyond;
+/// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)] `draw(normal, light)` draws the sample for the side that
+/// the normal is on; `share`: with which probability it was that side.
+struct LightAdder {
+  const RenderScene& scene;
+  const ShadingPoint& x;
+  SampledLobes lobes;
+  const Rgb& throughput;
+  const EyePath& path;
+  const Inside& inside;
+  const PixelRandom& random;
+  std::uint32_t bounce;
+
+  bool nothing() const { return !(lobes.diffuse && x.bsdf.has_diffuse()) && !specular(); }
+  bool specular() const { return lobes.specular && x.bsdf.has_specular() && !x.bsdf.specular_is_delta(); }
+  /// Rough glass passes on light from behind: the side is drawn, the other's light is left to other samples.
+  bool draw_side(float& share) const {
+    const float share_beyond = x.bsdf.light_share_beyond();
+    share = 1;
+    if (!(share_beyond > 0)) [[likely]] return false;
+    const bool beyond = random.get1(bounce, Purpose::light_choice) < share_beyond;
     share = beyond ? share_beyond : 1 - share_beyond;
+    return beyond;
   }
-  LightSample light;
-  if (!scene.lights.sample(x.surface.position, beyond ? -x.normal : x.normal, random.get2(bounce, Purpose::light_point), light)) return;
+  /// By one of the lights `from`.
+  void add_one(Lights::From from, Layers& result, std::uint64_t& shadow_rays) const {
+    float share;
+    const bool beyond = draw_side(share);
+    LightSample light;
+    if (scene.lights.sample(x.surface.position, beyond ? -x.normal : x.normal, random.get2(bounce, Purpose::light_point), light, from))
+      add(light, beyond, share, result, shadow_rays);
+  }
+  /// By a directional light.
+  void add_sun(Layers& result, std::uint64_t& shadow_rays) const {
+    float share;
+    const bool beyond = draw_side(share);
+    LightSample light;
+    if (scene.lights.sample_sun(x.surface.position, beyond ? -x.normal : x.normal, random.get1(bounce, Purpose::sun), light))
+      add(light, beyond, share, result, shadow_rays);
+  }
+  void add(const LightSample& light, bool beyond, float share, Layers& result, std::uint64_t& shadow_rays) const;
+};
+
+void LightAdder::add(const LightSample& light, bool beyond, float share, Layers& result, std::uint64_t& shadow_rays) const {
+  const bool has_diffuse = lobes.diffuse && x.bsdf.has_diffuse(), has_specular = specular();
   if (beyond ? !x.sees_beyond(light.wi) : !x.sees(light.wi)) return;
   const Vec3 wi = x.frame.to_local(light.wi);
-  Rgb diffuse = lobes.diffuse ? x.bsdf.eval_diffuse(wi, x.wo_local) * lobes.left : Rgb(0.0f);
-  Rgb glossy = specular ? x.bsdf.eval_specular(wi, x.wo_local) : Rgb(0.0f);
+  Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(wi, x.wo_local) * lobes.left : Rgb(0.0f);
+  Rgb glossy = has_specular ? x.bsdf.eval_specular(wi, x.wo_local) : Rgb(0.0f);
   if (!light.delta) {
     const float pdf = light.pdf_solid_angle * share;
-    if (lobes.diffuse) diffuse *= mis_power(pdf, lobes.times_diffuse * x.bsdf.pdf_diffuse(wi, x.wo_local));
-    if (specular) glossy *= mis_power(pdf, lobes.times_specular * x.bsdf.pdf_specular(wi, x.wo_local));
+    if (has_diffuse) diffuse *= mis_power(pdf, lobes.times_diffuse * x.bsdf.pdf_diffuse(wi, x.wo_local));
+    if (has_specular) glossy *= mis_power(pdf, lobes.times_specular * x.bsdf.pdf_specular(wi, x.wo_local));
   }
   if (is_black(diffuse) && is_black(glossy)) return;
-  ++counts.shadow;
+  ++shadow_rays;
   const Ray shadow = spawn_shadow_ray(x.surface, light.position, light.position_offset);
   if (scene.tracer.occluded(shadow)) return;
   Rgb arriving = throughput * light.radiance * (std::abs(wi.z) / share);
@@ -76,7 +104,7 @@ void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, co
                                                 last.light_share *
                                                 scene.lights.pdf_solid_angle(last.position, last.normal, hit.surface,
                                                                              hit.triangle, hit.position,
-                                                                             hit.normal_geometric))
+                                                                             hit.normal_geometric, last.from))
                                     : 1.0f;
   result[layer] += throughput * emitted * weight;
 }
@@ -84,11 +112,12 @@ void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, co
 /// The environment where the ray leaves the scene, weighed likewise.
 void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter& last, const Rgb& throughput,
                      Layer layer, Layers& result) {
+  const EnvironmentLight::Place place = scene.lights.environment_place(direction);
   const float weight =
       last.weighed ? mis_power(last.pdf_solid_angle, last.light_share * scene.lights.pdf_environment(
-                                                                            last.position, last.normal, direction))
+                                                                            last.position, last.normal, place, direction, last.from))
                    : 1.0f;
-  result[layer] += throughput * scene.lights.environment(direction) * weight;
+  result[layer] += throughput * scene.lights.environment(place) * weight;
 }
 
 /// What a path knows of the light beyond its last event D: a Lambert lobe or a collision.
@@ -154,6 +183,8 @@ KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, const 
 
 /// A path on its way.
 struct Walk {
+  PixelRandom random;
+  Layers* result;              ///< the part of its light that it finds from here on
   Ray ray;
   Hit hit;
   RayCone cone;
@@ -168,8 +199,8 @@ struct Walk {
 
 class EyeTracer {
  public:
-  EyeTracer(const RenderScene& scene, const PixelRandom& random, const KnownLight* known, RayCounts& counts, Layers& result)
-      : scene_(scene), random_(random), known_(known), counts_(counts), result_(result) {}
+  EyeTracer(const RenderScene& scene, const KnownLight* known, const PathEffort& effort, RayCounts& counts, PathParts& parts)
+      : scene_(scene), known_(known), effort_(effort), counts_(counts), parts_(parts) {}
   void follow(Walk walk) const;
 
  private:
@@ -179,26 +210,32 @@ class EyeTracer {
   bool scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, Walk& walk) const;
   bool survives(Walk& walk) const;
   void go_on(const Ray& ray, Walk& walk) const;
+  void add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const;
+  void go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, const Walk& walk) const;
+  void count(std::uint64_t rays, std::uint64_t& as, const Walk& walk) const {
+    as += rays;
+    if (walk.result == &parts_.onward) counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;   // nearest hit, surface, material: twice a shadow ray
+  }
 
   const RenderScene& scene_;
-  const PixelRandom& random_;
   const KnownLight* known_;
+  const PathEffort& effort_;
   RayCounts& counts_;
-  Layers& result_;
+  PathParts& parts_;
 };
 
 /// Roulette.
 bool EyeTracer::survives(Walk& walk) const {
   if (walk.bounce + 1 < kRouletteFrom) return true;
   const float survival = std::min(kLargestSurvival, max_component(walk.throughput));
-  if (!(random_.get1(walk.bounce, Purpose::roulette) < survival)) return false;
+  if (!(walk.random.get1(walk.bounce, Purpose::roulette) < survival)) return false;
   walk.throughput *= 1 / survival;
   return true;
 }
 
 void EyeTracer::go_on(const Ray& ray, Walk& walk) const {
   walk.ray = ray;
-  ++counts_.bounce;
+  count(1, counts_.bounce, walk);
   walk.hit = {};
   scene_.tracer.intersect(walk.ray, walk.hit);
   ++walk.bounce;
@@ -207,7 +244,7 @@ void EyeTracer::go_on(const Ray& ray, Walk& walk) const {
 /// The next ray, by event D or S as u_lobe says; times: by how much likelier than the Bsdf has it. False if the path ends.
 bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times,
                         Walk& walk) const {
-  const Bsdf::Sample next = x.bsdf.sample(x.wo_local, u_lobe, random_.get2(walk.bounce, Purpose::scatter));
+  const Bsdf::Sample next = x.bsdf.sample(x.wo_local, u_lobe, walk.random.get2(walk.bounce, Purpose::scatter));
   if (is_black(next.weight) || (here.direct && next.diffuse)) return false;
   const Vec3 wi = x.frame.to_world(next.wi);
   if (next.transmitted ? !x.sees_beyond(wi) : !x.sees(wi)) return false;
@@ -226,6 +263,7 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
   last.position = x.surface.position;
   last.normal = next.transmitted ? -x.normal : x.normal;
   last.light_share = next.transmitted ? x.bsdf.light_share_beyond() : 1 - x.bsdf.light_share_beyond();
+  last.from = scene_.suns_apart ? Lights::From::not_suns : Lights::From::all;
   last.pdf_solid_angle =
       times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.wo_local) : x.bsdf.pdf_specular(next.wi, x.wo_local));
   go_on(spawn_ray(x.surface, wi), walk);
@@ -239,11 +277,13 @@ bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
   walk.cone = {};
   walk.throughput *= point.albedo;
   if (is_black(walk.throughput)) return false;
-  const WayBits bits{random_.hashed(), walk.bounce, way_shadow_of_medium};
-  result_[walk.path.layer()] += walk.throughput * sampled_light(scene_.tracer, scene_.lights, point, random_.get2(walk.bounce, Purpose::light_point),
-                                                                true, bits, counts_.shadow);
+  const WayBits bits{walk.random.hashed(), walk.bounce, way_shadow_of_medium};
+  std::uint64_t shadow_rays = 0;
+  (*walk.result)[walk.path.layer()] += walk.throughput * sampled_light(scene_.tracer, scene_.lights, point,
+                                                                       walk.random.get2(walk.bounce, Purpose::light_point), true, bits, shadow_rays);
+  count(shadow_rays, counts_.shadow, walk);
   if (!survives(walk)) return false;
-  const Vec3 travel = sample_hg(point.g, point.travel, random_.get2(walk.bounce, Purpose::phase));
+  const Vec3 travel = sample_hg(point.g, point.travel, walk.random.get2(walk.bounce, Purpose::phase));
   walk.last = {true, point.position, {}, pdf_hg(point.g, point.travel, travel), 1};
   go_on({point.position, travel, 0, INFINITY}, walk);
   return true;
@@ -255,15 +295,44 @@ EyeTracer::Passed EyeTracer::pass_media(const Media& media, Walk& walk) const {
   if (known_ && walk.bounce == 0) {
     const auto left = float(std::exp(-media.optical_depth(walk.ray.origin, walk.ray.direction, way)));
     walk.throughput *= left;
-    result_.coverage = 1 - left;
+    parts_.own.coverage = 1 - left;
     return Passed::through;
   }
   MediumPoint collision;
-  if (!collides(media, walk.ray, way, random_.hashed(), walk.bounce, collision)) return Passed::through;
-  if (walk.bounce == 0) result_.coverage = 1;
+  if (!collides(media, walk.ray, way, walk.random.hashed(), walk.bounce, collision)) return Passed::through;
+  if (walk.bounce == 0) parts_.own.coverage = 1;
   if (walk.beyond.indirect_known) return Passed::ended;
   if (walk.inside.any()) walk.throughput *= walk.inside.transmittance_over(scene_.frame().materials, length(collision.position - walk.ray.origin));
   return scatter_in_medium(collision, walk) ? Passed::scattered : Passed::ended;
+}
+
+/// At a first matte surface as many samples as asked for, of the part `lit`. The sun stands still: where it is seen its samples agree, so that they
+/// need no more than camera rays do, of whose part they are.
+void EyeTracer::add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const {
+  const auto adder = [&](const PixelRandom& random) {
+    return LightAdder{scene_, x, lobes, walk.throughput, walk.path, walk.inside, random, walk.bounce};
+  };
+  if (adder(walk.random).nothing()) return;
+  std::uint64_t rays = 0;
+  if (scene_.suns_apart) adder(walk.random).add_sun(*walk.result, rays);
+  const Lights::From from = scene_.suns_apart ? Lights::From::not_suns : Lights::From::all;
+  if (!first_matte) adder(walk.random).add_one(from, *walk.result, rays);
+  else
+    for (std::uint32_t i = 0; i < effort_.lit; ++i) {
+      const PixelRandom random = walk.random.of_sample(effort_.lit_first + i);
+      adder(random).add_one(from, parts_.lit, rays);
+    }
+  count(rays, counts_.shadow, walk);
+}
+
+/// From a first matte surface by event D, as often as asked for: the part `onward`.
+void EyeTracer::go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, const Walk& walk) const {
+  for (std::uint32_t i = 0; i < effort_.onward; ++i) {
+    Walk next = walk;
+    next.random = walk.random.of_sample(effort_.onward_first + i);
+    next.result = &parts_.onward;
+    if (scatter(x, material, here, u_lobe, times, next)) follow(next);
+  }
 }
 
 void EyeTracer::follow(Walk walk) const {
@@ -276,6 +345,7 @@ void EyeTracer::follow(Walk walk) const {
     const LastScatter& last = walk.last;
     const std::uint32_t bounce = walk.bounce;
     const bool forked = walk.forked;
+    Layers& result = *walk.result;
     if (media) [[unlikely]] {
       const Passed passed = pass_media(*media, walk);
       if (passed == Passed::ended) return;
@@ -283,10 +353,10 @@ void EyeTracer::follow(Walk walk) const {
     }
     if (hit.surface == kNone) {
       if (scene_.lights.has_environment() && walk.beyond.light_counts())
-        add_environment(scene_, ray.direction, last, walk.throughput, path.layer(), result_);
+        add_environment(scene_, ray.direction, last, walk.throughput, path.layer(), result);
       return;
     }
-    result_.coverage = 1;
+    parts_.own.coverage = 1;
     SurfacePoint point = scene_.tracer.surface_point(hit);
     const Vec3 wo = -ray.direction;
     const bool front = dot(point.normal_geometric, wo) > 0;
@@ -294,23 +364,24 @@ void EyeTracer::follow(Walk walk) const {
       walk.throughput *= walk.inside.transmittance_to(frame.materials, point.material, front, hit.t);
     walk.cone.advance(hit.t);
     walk.beyond.distance += hit.t;
-    if (walk.beyond.light_counts()) add_emission(scene_, point, wo, last, walk.throughput, path.layer(), walk.cone.width, result_);
+    if (walk.beyond.light_counts()) add_emission(scene_, point, wo, last, walk.throughput, path.layer(), walk.cone.width, result);
     // Only light by events S is missing then, if any.
     const bool only_specular = walk.beyond.indirect_known;
     if (only_specular && walk.beyond.caustic_known) return;
 
     const SurfaceMaterial material(frame, point, walk.cone.width);
     if (material.values().unlit) [[unlikely]] {
-      if (path.sharp()) result_[path.layer()] += walk.throughput * material.values().base_color;
+      if (path.sharp()) result[path.layer()] += walk.throughput * material.values().base_color;
       return;
     }
     const ShadingPoint x(point, wo, material);
     KnownHere here{only_specular, only_specular, only_specular};
     if (known_ && !only_specular && x.bsdf.has_diffuse())
-      here = add_known_light(*known_, x, walk.beyond, walk.throughput, path, random_.get1(bounce, Purpose::gather),
-                             PathRandom(random_.hashed().bits(bounce, Purpose::gather), bounce), result_, counts_);
+      here = add_known_light(*known_, x, walk.beyond, walk.throughput, path, walk.random.get1(bounce, Purpose::gather),
+                             PathRandom(walk.random.hashed().bits(bounce, Purpose::gather), bounce), result, counts_);
     SampledLobes lobes{!here.direct, !(walk.beyond.matte && walk.beyond.caustic_known)};
     lobes.left = here.left;
+    const bool first_matte = path.sharp() && x.bsdf.has_diffuse();
     float diffuse = 0;
     const bool forks = known_ && known_->forks() && !forked && path.sharp() && x.bsdf.forks();
     if (forks) {
@@ -318,10 +389,10 @@ void EyeTracer::follow(Walk walk) const {
       lobes.times_diffuse = 1 / diffuse;
       lobes.times_specular = 1 / (1 - diffuse);
     }
-    add_sampled_light(scene_, x, lobes, walk.throughput, path, walk.inside, random_, bounce, result_, counts_);
+    add_light(x, lobes, first_matte, walk);
     if (here.direct && !x.bsdf.has_specular()) return;
 
-    float u_lobe = random_.get1(bounce, Purpose::lobe), times = 1;
+    float u_lobe = walk.random.get1(bounce, Purpose::lobe), times = 1;
     if (forks) {
       Walk beside = walk;
       beside.forked = walk.forked = true;
@@ -329,29 +400,29 @@ void EyeTracer::follow(Walk walk) const {
       u_lobe *= diffuse;
       times = lobes.times_diffuse;
     }
+    if (first_matte && x.bsdf.draws_diffuse(x.wo_local, u_lobe)) {
+      go_onward(x, material, here, u_lobe, times, walk);
+      return;
+    }
     if (!scatter(x, material, here, u_lobe, times, walk)) return;
   }
 }
 
 }  // namespace
 
-Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
-                      const KnownLight* known, RayCounts& counts, RayCone cone) {
-  Layers layers;
+PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
+                         const KnownLight* known, RayCounts& counts, RayCone cone, const PathEffort& effort) {
+  PathParts parts;
   ++counts.camera;
-  Walk walk;
-  walk.ray = camera_ray;
-  walk.hit = first;
-  walk.cone = cone;
-  EyeTracer(scene, random, known, counts, layers).follow(walk);
-  return layers;
+  EyeTracer(scene, known, effort, counts, parts).follow({random, &parts.own, camera_ray, first, cone, Rgb(1.0f), {}, {}, {}, {}});
+  return parts;
 }
 
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random, const KnownLight* known,
                       RayCounts& counts, RayCone cone) {
   Hit first;
   scene.tracer.intersect(camera_ray, first);
-  return trace_eye_path(scene, camera_ray, first, random, known, counts, cone);
+  return trace_eye_path(scene, camera_ray, first, random, known, counts, cone, effort_of(random.sample())).sum();
 }
 
 }  // namespace tempolux

@@ -67,6 +67,7 @@ class PixelRandom {
   PixelRandom(std::uint64_t seed, std::uint64_t pixel, std::uint32_t sample)
       : key_(mix64(mix64(seed ^ 0x8f14e45fceea167aull) + pixel * 0x9e3779b97f4a7c15ull)), sample_(sample) {}
 
+  std::uint32_t sample() const { return sample_; }
   /// Those of another sample of the pixel.
   PixelRandom of_sample(std::uint32_t sample) const { return {key_, sample}; }
   Vec2 get2(std::uint32_t bounce, Purpose purpose) const {
@@ -96,12 +97,36 @@ struct RayCounts {
   std::uint64_t lookups = 0;       ///< of indirect light where the eye looks: answered by records or photons
   std::uint64_t gathered = 0;      ///< and answered by none: a ray of the hemisphere was to find it
   std::uint64_t points_read = 0;   ///< ends of such rays, and of those that went on, that a point stood for
+  std::uint64_t onward = 0;        ///< of bounce and shadow those of PathParts::onward
   RayCounts& operator+=(const RayCounts& o) {
     camera += o.camera; bounce += o.bounce; shadow += o.shadow;
     lookups += o.lookups; gathered += o.gathered; points_read += o.points_read;
+    onward += o.onward;
     return *this;
   }
 };
+
+/// Radiance along one camera ray in the parts that may have sample numbers of their own (docs/pixels.md). Their sum is the radiance.
+/// The first matte surfaces are those that the eye sees, also by way of events S.
+struct PathParts {
+  Layers own;      ///< all that the other two do not have: what is seen, also by events S, and what is known there
+  Layers lit;      ///< by a place on a light, drawn at the first matte surfaces
+  Layers onward;   ///< by the ray that goes on from their Lambert lobe
+  Layers sum() const {
+    Layers all = own;
+    for (std::size_t l = 0; l < kLayerCount; ++l) all.value[l] += lit.value[l] + onward.value[l];
+    return all;
+  }
+};
+
+/// How many samples of each part a path takes at its first matte surfaces, and the numbers of the first of each: they are drawn from the pixel's
+/// sequences of these parts. The parts are the sums of so many samples.
+struct PathEffort {
+  std::uint32_t lit = 1, onward = 1;
+  std::uint32_t lit_first = 0, onward_first = 0;
+};
+/// One of each, of the numbers of the path itself.
+inline PathEffort effort_of(std::uint32_t sample) { return {1, 1, sample, sample}; }
 
 class KnownLight;
 
@@ -109,6 +134,8 @@ class KnownLight;
 struct RenderScene {
   const Tracer& tracer;
   const Lights& lights;
+  /// At each surface one ray goes to a sun and another to one of the other lights: which it is to be is half of the noise otherwise.
+  bool suns_apart = false;
   const SceneFrame& frame() const { return tracer.frame(); }
 };
 
@@ -130,8 +157,9 @@ struct RenderScene {
 /// `cone` is the pixel's, for the level of textures (CameraView::cone); the default reads their finest level.
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random, const KnownLight* known,
                       RayCounts& counts, RayCone cone = {});
-/// The same of a ray whose first hit is known; surface kNone: nothing.
-Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
-                      const KnownLight* known, RayCounts& counts, RayCone cone);
+/// The same of a ray whose first hit is known (surface kNone: nothing), by parts. The weights that join light sampling and scattering are those of
+/// one sample of each part, whatever `effort` says: so each part divided by its number is right by itself.
+PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
+                         const KnownLight* known, RayCounts& counts, RayCone cone, const PathEffort& effort);
 
 }  // namespace tempolux

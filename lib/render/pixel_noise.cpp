@@ -6,15 +6,19 @@ namespace tempolux {
 namespace {
 
 constexpr double kBetween = 0.1, kSharp = 0.5;   // of its variance: more samples there make less of the picture's error
-constexpr double kStratified = 0.75, kTypical = 12;
+constexpr double kStratified = 0.875, kTypical = 12;
+/// Rays: those of a whole typical sample; a camera ray with its surface; a shadow ray; the least that is said of a ray onward.
+constexpr double kWhole = 4, kOwn = 1.2, kLit = 1, kLeastOnward = 1;
+/// More samples of a part to a camera ray save less and less of it: a ninth of it is left at 8.
+constexpr int kMostLit = 8, kMostOnward = 4;
 
 }  // namespace
 
 double sample_variance(double n, double sum, double square) { return n > 1 ? std::max(0.0, square - sum * sum / n) / (n - 1) : 0; }
 
-double wanted_samples(double sigma, double level, double picture, double pixel_error) {
-  const double error = pixel_error * (std::min(level, picture) + 0.1 * picture);
-  return error > 0 ? kTypical * std::pow(sigma / (kTypical * error), kStratified) : 0;
+double wanted_samples(double sigma, double cost, double level, double picture, double pixel_error) {
+  const double error = pixel_error * std::sqrt(std::min(level, picture) * picture + 0.01 * picture * picture);
+  return error > 0 ? kTypical * std::pow(sigma / (kTypical * error) * std::sqrt(kWhole / cost), kStratified) : 0;
 }
 
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
@@ -39,14 +43,21 @@ void PixelNoise::look_around_mask() {
     }
 }
 
-void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& second) {
+void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays) {
   const double n = options_.samples, a = first_half_, b = n - a;
-  const double sharp = first.sharp + second.sharp;
+  const auto both = [&](LayersT<double> PixelSum::*part) { return first.value(first.*part) + second.value(second.*part); };
+  const double own = both(&PixelSum::own), onward = both(&PixelSum::onward);
+  double all = 0;
+  for (const PixelSum* sum : {&first, &second})
+    for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward}) all += radiance_of(sum->*part);
   Pixel& state = pixels_[pixel];
-  state.mean = (first.value() + second.value()) / n;
-  state.sharp = sharp / n;
-  state.sharp_variance = sample_variance(n, sharp, first.sharp_square + second.sharp_square);
-  if (!options_.for_filter) state.smooth_difference = (first.value() - first.sharp) / a - (b > 0 ? (second.value() - second.sharp) / b : 0);
+  state.mean = all / n;
+  state.lit_difference = first.value(first.lit) / a - (b > 0 ? second.value(second.lit) / b : 0);
+  state.own = own / n;
+  state.own_variance = sample_variance(n, own, first.own_square + second.own_square);
+  state.onward = onward / n;
+  state.onward_variance = sample_variance(n, onward, first.onward_square + second.onward_square);
+  state.onward_rays = float(double(onward_rays) / n);
 }
 
 /// body(pixel) for the neighbours of a pixel, at most `near` away.
@@ -59,31 +70,16 @@ void PixelNoise::for_each_neighbour(int x, int y, int near, const Body& body) co
     }
 }
 
-/// Variance of a sample, of all but what has edges, as far as stratification leaves it: by the difference of pixels' halves. Of
-/// single samples it is the variance between pixels. What has edges may agree in a few samples and be wrong:
-/// Pixel::sharp_variance counts in full.
-double PixelNoise::smooth_variance(int x, int y) const {
-  const double a = first_half_, b = options_.samples - first_half_;
-  double n = 0, sum = 0, square = 0;
-  for_each_neighbour(x, y, kNear, [&](const Pixel& pixel) {
-    ++n;
-    sum += pixel.smooth_difference;
-    square += pixel.smooth_difference * pixel.smooth_difference;
-  });
-  if (b == 0) return sample_variance(n, sum, square);
-  return n > 0 ? square / n * a * b / (a + b) : 0;
-}
-
 /// Of what has edges: that of the neighbours' samples, and a share of the variance between neighbours beyond what their
 /// samples leave. Where these are all of one piece and differ, an edge may run through this pixel alone: the rim of a
 /// lamp that just reaches into a row of dark pixels, of which first samples meet nothing, or many times what there is.
-double PixelNoise::sharp_variance(int x, int y) const {
+double PixelNoise::own_variance(int x, int y) const {
   double within = 0, n = 0, sum = 0, square = 0;
   for_each_neighbour(x, y, kNearSharp, [&](const Pixel& pixel) {
     ++n;
-    within += pixel.sharp_variance;
-    sum += pixel.sharp;
-    square += pixel.sharp * pixel.sharp;
+    within += pixel.own_variance;
+    sum += pixel.own;
+    square += pixel.own * pixel.own;
   });
   if (n == 0) return 0;
   within /= n;
@@ -91,17 +87,35 @@ double PixelNoise::sharp_variance(int x, int y) const {
   return within + (options_.samples == 1 ? 1 : kBetween) * std::max(0.0, between);
 }
 
-double PixelNoise::level_around(int x, int y) const {
-  double level = 0;
-  int n = 0;
+/// The parts are judged apart. Light sampling by what stratification leaves of it: the difference of pixels' halves, of single samples the variance
+/// between pixels. Rays onward by the variance of samples: few of them meet what is bright.
+PartCounts PixelNoise::missing_at(int x, int y) const {
+  const double a = first_half_, b = options_.samples - first_half_;
+  double n = 0, level = 0, lit = 0, lit_square = 0, onward = 0, onward_square = 0, within = 0, rays = 0;
   for_each_neighbour(x, y, kNear, [&](const Pixel& pixel) {
     ++n;
     level += pixel.mean;
+    lit += pixel.lit_difference;
+    lit_square += pixel.lit_difference * pixel.lit_difference;
+    onward += pixel.onward;
+    onward_square += pixel.onward * pixel.onward;
+    within += pixel.onward_variance;
+    rays += double(pixel.onward_rays);
   });
-  return n > 0 ? level / n : 0;
+  if (n == 0) return {};
+  const double lit_variance = b > 0 ? lit_square / n * a * b / (a + b) : sample_variance(n, lit, lit_square);
+  const double onward_variance = b > 0 ? within / n : sample_variance(n, onward, onward_square);
+  const auto further = [&](double variance, double cost) {
+    const double wanted = wanted_samples(std::sqrt(variance), cost, level / n, picture_, options_.pixel_error);
+    return std::max(0, int(std::min(wanted, double(options_.adaptive_limit))) - options_.samples);
+  };
+  PartCounts more{further(kSharp * own_variance(x, y), kOwn), further(lit_variance, kLit),
+                  further(onward_variance, std::max(kLeastOnward, rays / n))};
+  more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
+  return more;
 }
 
-std::vector<int> PixelNoise::missing_samples() {
+std::vector<PartCounts> PixelNoise::missing_samples() {
   double all = 0, n = 0;
   for (int y = lattice_ / 2; y < view_.height(); y += lattice_)
     for (int x = lattice_ / 2; x < view_.width(); x += lattice_) {
@@ -109,13 +123,9 @@ std::vector<int> PixelNoise::missing_samples() {
       ++n;
     }
   picture_ = all / std::max(1.0, n);
-  std::vector<int> missing(pixels_.size());
+  std::vector<PartCounts> missing(pixels_.size());
   RayCounts none;
-  for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) {
-    const double sigma = std::sqrt(smooth_variance(x, y) + kSharp * sharp_variance(x, y));
-    const double wanted = std::min(wanted_samples(sigma, level_around(x, y), picture_, options_.pixel_error), double(options_.adaptive_limit));
-    missing[pixel] = std::max(0, int(wanted) - options_.samples);
-  });
+  for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) { missing[pixel] = missing_at(x, y); });
   return missing;
 }
 

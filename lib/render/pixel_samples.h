@@ -10,35 +10,61 @@
 
 namespace tempolux {
 
+/// Numbers of samples by part (PathParts): own ones are the camera's rays.
+struct PartCounts {
+  int own = 0, lit = 0, onward = 0;
+};
+
 /// Sums over one pixel's samples.
 struct PixelSum {
-  LayersT<double> layers;
-  double sharp = 0, sharp_square = 0;   ///< what has edges, all layers but direct: mean channel
-  bool for_filter = false;              ///< FrameOptions::for_filter: layer specular alone is `sharp`
-  void add(const Layers& sample) {
-    for (std::size_t l = 0; l < kLayerCount; ++l) layers.value[l] += Rgbd(sample.value[l]);
-    layers.coverage += double(sample.coverage);
-    const Rgb s = for_filter ? sample[Layer::specular]
-                             : sample[Layer::emission] + sample[Layer::specular] + sample[Layer::caustic] + sample[Layer::indirect] +
-                                   sample[Layer::volume];
-    const double v = channel_mean(Rgbd(s));
-    sharp += v;
-    sharp_square += v * v;
+  LayersT<double> own, lit, onward;
+  double own_square = 0, onward_square = 0;   ///< of value() of single samples
+  bool for_filter = false;                    ///< FrameOptions::for_filter: value() is of layer specular alone
+  void add(const PathParts& sample) {
+    add(sample.own, own);
+    add(sample.lit, lit);
+    add(sample.onward, onward);
+    const double a = value(sample.own), b = value(sample.onward);
+    own_square += a * a;
+    onward_square += b * b;
   }
-  /// Mean channel of all layers.
-  double value() const {
+  /// Mean channel of all layers whose noise counts.
+  template <class T>
+  double value(const LayersT<T>& layers) const {
+    if (for_filter) return channel_mean(Rgbd(layers[Layer::specular]));
     double sum = 0;
-    for (const Rgbd& radiance : layers.value) sum += channel_mean(radiance);
+    for (const RgbT<T>& radiance : layers.value) sum += channel_mean(Rgbd(radiance));
     return sum;
+  }
+
+ private:
+  static void add(const Layers& sample, LayersT<double>& sum) {
+    for (std::size_t l = 0; l < kLayerCount; ++l) sum.value[l] += Rgbd(sample.value[l]);
+    sum.coverage += double(sample.coverage);
   }
 };
 
-/// Joins the sum over samples first .. first+count-1 to the mean over the first `first`.
-inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
+/// Mean channel of all layers.
+inline double radiance_of(const LayersT<double>& layers) {
+  double sum = 0;
+  for (const Rgbd& radiance : layers.value) sum += channel_mean(radiance);
+  return sum;
+}
+
+/// Joins `sum` over `count` samples to `mean`, that over the `first` before.
+inline void join(const LayersT<double>& sum, int first, int count, Layers& mean) {
+  if (count == 0) return;
   const double old_weight = double(first) / (first + count), new_weight = 1.0 / (first + count);
   for (std::size_t l = 0; l < kLayerCount; ++l)
-    mean.value[l] = Rgb(Rgbd(mean.value[l]) * old_weight + sum.layers.value[l] * new_weight);
-  mean.coverage = float(double(mean.coverage) * old_weight + sum.layers.coverage * new_weight);
+    mean.value[l] = Rgb(Rgbd(mean.value[l]) * old_weight + sum.value[l] * new_weight);
+  mean.coverage = float(double(mean.coverage) * old_weight + sum.coverage * new_weight);
+}
+
+/// The same of samples that have one of each part.
+inline void join(const PixelSum& sum, int first, int count, Layers& mean) {
+  LayersT<double> all = sum.own;
+  for (std::size_t l = 0; l < kLayerCount; ++l) all.value[l] += sum.lit.value[l] + sum.onward.value[l];
+  join(all, first, count, mean);
 }
 
 /// Runs body(pixel, x, y) for every pixel, row by row of a tile, tiles in parallel; each has a body = make_body(counts) of its own.
@@ -72,13 +98,36 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
                 [&](RayCounts& counts) { return [&](std::size_t pixel, int x, int y) { body(pixel, x, y, counts); }; });
 }
 
-/// Samples [first, first + count) of a pixel, one after the other: add(sample, radiance). halves: SampleHalves of the pixel, or nullptr.
+/// Deals samples of the parts out to a pixel's camera rays: as evenly as whole numbers allow, each ray with the same probability, as all are moved
+/// by one random number. So a part's mean over its samples is right whatever their number.
+class Dealt {
+ public:
+  Dealt(std::uint64_t seed, std::uint64_t pixel, int first, const PartCounts& counts)
+      : first_(first), counts_(counts), offset_(PathRandom(seed ^ 0x6465616c74ull, pixel).get2(0, Purpose::pixel)) {}
+  /// Of camera ray i of counts.own. Numbers of samples go on from `first`.
+  PathEffort operator()(int i) const {
+    const std::uint32_t lit = before(i, counts_.lit, offset_.x), onward = before(i, counts_.onward, offset_.y);
+    return {before(i + 1, counts_.lit, offset_.x) - lit, before(i + 1, counts_.onward, offset_.y) - onward,
+            std::uint32_t(first_) + lit, std::uint32_t(first_) + onward};
+  }
+
+ private:
+  std::uint32_t before(int i, int count, float offset) const {
+    return std::uint32_t(double(i) * count / counts_.own + double(offset));
+  }
+  int first_;
+  PartCounts counts_;
+  Vec2 offset_;
+};
+
+/// A pixel's samples, those of the camera from number `first` on, one after the other: add(i, sample). halves: SampleHalves of the pixel, or nullptr.
 template <class Add>
 void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const KnownLight* known,
-                     std::size_t pixel, int x, int y, int first, int count, SampleHalves* halves, RayCounts& counts, const Add& add) {
+                     std::size_t pixel, int x, int y, int first, const PartCounts& count, SampleHalves* halves, RayCounts& counts, const Add& add) {
   constexpr int kTogether = 8, kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
-  for (int done = 0; done < count; done += kTogether) {
-    const int n = std::min(kTogether, count - done);
+  const Dealt dealt(seed, pixel, first, count);
+  for (int done = 0; done < count.own; done += kTogether) {
+    const int n = std::min(kTogether, count.own - done);
     Ray rays[kTogether];
     Hit hits[kTogether];
     const PixelRandom random(seed, pixel, 0);
@@ -92,18 +141,19 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint
     else
       scene.tracer.intersect({rays, std::size_t(n)}, {hits, std::size_t(n)});
     for (int i = 0; i < n; ++i) {
-      const Layers layers = trace_eye_path(scene, rays[i], hits[i], of(i), known, counts, view.cone());
-      if (halves) halves->add(done + i, count, layers);
-      add(first + done + i, layers);
+      const PathEffort effort = dealt(done + i);
+      const PathParts parts = trace_eye_path(scene, rays[i], hits[i], of(i), known, counts, view.cone(), effort);
+      if (halves) halves->add(done + i, count.own, parts, effort);
+      add(done + i, parts);
     }
   }
 }
 
 inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const KnownLight* known,
-                             std::size_t pixel, int x, int y, int first, int count, SampleHalves* halves, RayCounts& counts) {
+                             std::size_t pixel, int x, int y, int first, const PartCounts& count, SampleHalves* halves, RayCounts& counts) {
   PixelSum sum;
   for_each_sample(scene, view, seed, known, pixel, x, y, first, count, halves, counts,
-                  [&](int, const Layers& sample) { sum.add(sample); });
+                  [&](int, const PathParts& sample) { sum.add(sample); });
   return sum;
 }
 

@@ -1,6 +1,7 @@
 #include "lib/render/pixel_variance.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lib/core/parallel.h"
 
@@ -26,33 +27,43 @@ void add_variance(const std::vector<SampleHalves>& halves, Rgb SampleHalves::Sum
 
 }  // namespace
 
-void SampleHalves::add(int rank, int count, const Layers& sample) {
-  const bool second = count == 1 ? half[1].count < half[0].count : 2 * rank >= count;
-  Sum& sum = half[second ? 1 : 0];
-  const Rgb diffuse = sample[Layer::direct] + sample[Layer::caustic] + sample[Layer::indirect];
-  sum.image += sample[Layer::emission] + sample[Layer::specular] + diffuse + sample[Layer::volume];
-  sum.diffuse += diffuse;
-  sum.count += 1;
+void SampleHalves::Sum::add(const Layers& sample, float samples) {
+  const Rgb scattered = sample[Layer::direct] + sample[Layer::caustic] + sample[Layer::indirect];
+  image += sample[Layer::emission] + sample[Layer::specular] + scattered + sample[Layer::volume];
+  diffuse += scattered;
+  count += samples;
+}
+
+void SampleHalves::add(int rank, int count, const PathParts& sample, const PathEffort& effort) {
+  const bool second = count == 1 ? half[1].own.count < half[0].own.count : 2 * rank >= count;
+  Half& to = half[second ? 1 : 0];
+  to.own.add(sample.own, 1);
+  to.lit.add(sample.lit, float(effort.lit));
+  to.onward.add(sample.onward, float(effort.onward));
 }
 
 SampleHalves& SampleHalves::operator+=(const SampleHalves& more) {
-  for (int h = 0; h < 2; ++h) {
-    half[h].image += more.half[h].image;
-    half[h].diffuse += more.half[h].diffuse;
-    half[h].count += more.half[h].count;
-  }
+  for (int h = 0; h < 2; ++h)
+    for (Sum Half::*part : {&Half::own, &Half::lit, &Half::onward}) {
+      Sum& sum = half[h].*part;
+      sum.image += (more.half[h].*part).image;
+      sum.diffuse += (more.half[h].*part).diffuse;
+      sum.count += (more.half[h].*part).count;
+    }
   return *this;
 }
 
-Rgb SampleHalves::variance(Rgb Sum::*part) const {
-  const double a = double(half[0].count), b = double(half[1].count);
-  if (!(a > 0 && b > 0)) return Rgb(0.0f);
-  Rgb result;
-  for (int c = 0; c < 3; ++c) {
-    const double difference = double((half[0].*part)[c]) / a - double((half[1].*part)[c]) / b;
-    // A square beyond float32 is cut to its largest: a file holds no infinity.
-    result[c] = float(std::min(difference * difference * a * b / ((a + b) * (a + b)), 3.4e38));
+Rgb SampleHalves::variance(Rgb Sum::*of) const {
+  double error[3] = {0, 0, 0};
+  for (Sum Half::*part : {&Half::own, &Half::lit, &Half::onward}) {
+    const Sum &first = half[0].*part, &second = half[1].*part;
+    const double a = double(first.count), b = double(second.count);
+    if (!(a > 0 && b > 0)) continue;
+    for (int c = 0; c < 3; ++c) error[c] += (double((first.*of)[c]) / a - double((second.*of)[c]) / b) * std::sqrt(a * b) / (a + b);
   }
+  Rgb result;
+  // A square beyond float32 is cut to its largest: a file holds no infinity.
+  for (int c = 0; c < 3; ++c) result[c] = float(std::min(error[c] * error[c], 3.4e38));
   return result;
 }
 
