@@ -87,14 +87,9 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   Lights lights(frame, input.emission(frame.frame));
-<<<<<<< HEAD
-  const RenderScene scene{tracer, lights};
-  const tools::IndirectLight light(tool, options.light, tracer, lights, tool.common().seed_for_frame(number), number);
-=======
   const bool yardstick = options.integrator == "path" && !options.learn_lights;
   const RenderScene scene{tracer, lights, !yardstick && lights.has_suns()};
-  const tools::IndirectLight light(tool, options.light, tracer, number);
->>>>>>> e182ef9 (WIP: parts of a sample)
+  const tools::IndirectLight light(tool, options.light, tracer, lights, tool.common().seed_for_frame(number), number);
 
   if (!yardstick) lights.weigh_sky_by_cosine();
   std::unique_ptr<LightGrid> grid;

@@ -22,7 +22,7 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
                  int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
   const int first = image.samples;
   for_each_pixel(view, options, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    join(sample_pixel(scene, view, seed, options.known, pixel, x, y, first, {count, count, count}, image.halves_of(pixel), counts), first, count,
+    join(sample_pixel(scene, view, seed, options.known, pixel, x, y, {first, first, first}, {count, count, count}, image.halves_of(pixel), counts), first, count,
          image.pixels[pixel]);
   });
   image.samples += count;

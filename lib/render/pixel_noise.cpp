@@ -5,12 +5,12 @@
 namespace tempolux {
 namespace {
 
-constexpr double kBetween = 0.1, kSharp = 0.5;   // of its variance: more samples there make less of the picture's error
+constexpr double kBetween = 0.1, kSharp = 0.125;   // of its variance: more samples there make less of the picture's error
 constexpr double kStratified = 0.875, kTypical = 12;
-/// Rays: those of a whole typical sample; a camera ray with its surface; a shadow ray; the least that is said of a ray onward.
+/// Costs in shadow rays: of a whole typical sample; of a camera ray with its surface; of a light sample; the least that is said of a ray onward.
 constexpr double kWhole = 4, kOwn = 1.2, kLit = 1, kLeastOnward = 1;
-/// More samples of a part to a camera ray save less and less of it: a ninth of it is left at 8.
-constexpr int kMostLit = 8, kMostOnward = 4;
+/// To a camera ray at most. Samples of one place miss what differs between the places of a pixel: edges of shadows, folds.
+constexpr int kMostLit = 2, kMostOnward = 2;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ double wanted_samples(double sigma, double cost, double level, double picture, d
 }
 
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
-    : view_(view), options_(options), first_half_((options.samples + 1) / 2),
+    : view_(view), options_(options), first_{options.samples, options.samples, (options.samples + 1) / 2}, first_half_((options.samples + 1) / 2),
       lattice_(std::max(1, int(std::sqrt(double(view.width()) * view.height() / kOnLattice)))),
       pixels_(std::size_t(view.width()) * std::size_t(view.height())) {
   lattice_ = std::min({lattice_, view.width(), view.height()});
@@ -46,18 +46,20 @@ void PixelNoise::look_around_mask() {
 void PixelNoise::note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays) {
   const double n = options_.samples, a = first_half_, b = n - a;
   const auto both = [&](LayersT<double> PixelSum::*part) { return first.value(first.*part) + second.value(second.*part); };
-  const double own = both(&PixelSum::own), onward = both(&PixelSum::onward);
+  const double mirrored = PixelSum::mirrored(first.own) + PixelSum::mirrored(second.own);
+  const double seen = both(&PixelSum::own) - mirrored, onward = both(&PixelSum::onward);
   double all = 0;
   for (const PixelSum* sum : {&first, &second})
     for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward}) all += radiance_of(sum->*part);
   Pixel& state = pixels_[pixel];
-  state.mean = all / n;
+  state.mean = all / n + onward * (1.0 / first_.onward - 1 / n);
   state.lit_difference = first.value(first.lit) / a - (b > 0 ? second.value(second.lit) / b : 0);
-  state.own = own / n;
-  state.own_variance = sample_variance(n, own, first.own_square + second.own_square);
-  state.onward = onward / n;
-  state.onward_variance = sample_variance(n, onward, first.onward_square + second.onward_square);
-  state.onward_rays = float(double(onward_rays) / n);
+  state.seen = seen / n;
+  state.seen_variance = sample_variance(n, seen, first.seen_square + second.seen_square);
+  state.mirrored_variance = sample_variance(n, mirrored, first.mirrored_square + second.mirrored_square);
+  state.onward = onward / first_.onward;
+  state.onward_variance = sample_variance(first_.onward, onward, first.onward_square + second.onward_square);
+  state.onward_rays = float(double(onward_rays) / first_.onward);
 }
 
 /// body(pixel) for the neighbours of a pixel, at most `near` away.
@@ -74,17 +76,18 @@ void PixelNoise::for_each_neighbour(int x, int y, int near, const Body& body) co
 /// samples leave. Where these are all of one piece and differ, an edge may run through this pixel alone: the rim of a
 /// lamp that just reaches into a row of dark pixels, of which first samples meet nothing, or many times what there is.
 double PixelNoise::own_variance(int x, int y) const {
-  double within = 0, n = 0, sum = 0, square = 0;
+  double within = 0, n = 0, sum = 0, square = 0, mirrored = 0;
   for_each_neighbour(x, y, kNearSharp, [&](const Pixel& pixel) {
     ++n;
-    within += pixel.own_variance;
-    sum += pixel.own;
-    square += pixel.own * pixel.own;
+    within += pixel.seen_variance;
+    mirrored += pixel.mirrored_variance;
+    sum += pixel.seen;
+    square += pixel.seen * pixel.seen;
   });
   if (n == 0) return 0;
   within /= n;
   const double between = sample_variance(n, sum, square) - within / options_.samples;
-  return within + (options_.samples == 1 ? 1 : kBetween) * std::max(0.0, between);
+  return kSharp * (within + (options_.samples == 1 ? 1 : kBetween) * std::max(0.0, between)) + mirrored / n;
 }
 
 /// The parts are judged apart. Light sampling by what stratification leaves of it: the difference of pixels' halves, of single samples the variance
@@ -104,13 +107,13 @@ PartCounts PixelNoise::missing_at(int x, int y) const {
   });
   if (n == 0) return {};
   const double lit_variance = b > 0 ? lit_square / n * a * b / (a + b) : sample_variance(n, lit, lit_square);
-  const double onward_variance = b > 0 ? within / n : sample_variance(n, onward, onward_square);
-  const auto further = [&](double variance, double cost) {
+  const double onward_variance = first_.onward > 1 ? within / n : sample_variance(n, onward, onward_square);
+  const auto further = [&](double variance, double cost, int first) {
     const double wanted = wanted_samples(std::sqrt(variance), cost, level / n, picture_, options_.pixel_error);
-    return std::max(0, int(std::min(wanted, double(options_.adaptive_limit))) - options_.samples);
+    return std::max(0, int(std::min(wanted, double(options_.adaptive_limit))) - first);
   };
-  PartCounts more{further(kSharp * own_variance(x, y), kOwn), further(lit_variance, kLit),
-                  further(onward_variance, std::max(kLeastOnward, rays / n))};
+  PartCounts more{further(own_variance(x, y), kOwn, first_.own), further(lit_variance, kLit, first_.lit),
+                  further(onward_variance, std::max(kLeastOnward, rays / n), first_.onward)};
   more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
   return more;
 }

@@ -23,6 +23,8 @@ class PixelNoise {
   /// Pixels whose first samples are needed: all, or of a masked frame those that say what a masked pixel needs: so it gets as many
   /// samples as in the whole frame. As FrameOptions::mask; empty: all.
   const std::vector<std::uint8_t>& looked_at() const { return looked_at_; }
+  /// The first samples. Rays onward are the dearest part and often the least needed: half as many do to tell their noise.
+  const PartCounts& first() const { return first_; }
   int first_half() const { return first_half_; }   ///< of the first samples: the others are the second half
   /// The two halves of a pixel's first samples, and the rays that their part `onward` took. Thread-safe for different pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
@@ -33,7 +35,8 @@ class PixelNoise {
   struct Pixel {
     double mean = 0;                       ///< of the first samples, mean of the channels; its square may be beyond float
     double lit_difference = 0;             ///< mean over half of them less that over the others
-    double own = 0, own_variance = 0;      ///< of one of them
+    double seen = 0, seen_variance = 0;    ///< of one of them, of part `own` but layer specular
+    double mirrored_variance = 0;          ///< of that
     double onward = 0, onward_variance = 0;
     float onward_rays = 0;                 ///< of one of them
   };
@@ -50,6 +53,7 @@ class PixelNoise {
 
   const CameraView& view_;
   const FrameOptions& options_;
+  PartCounts first_;
   int first_half_;
   double picture_ = 0;   ///< mean of the first samples of the pixels of a lattice
   int lattice_;          ///< pixels from one of them to the next

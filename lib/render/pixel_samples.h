@@ -18,16 +18,31 @@ struct PartCounts {
 /// Sums over one pixel's samples.
 struct PixelSum {
   LayersT<double> own, lit, onward;
-  double own_square = 0, onward_square = 0;   ///< of value() of single samples
-  bool for_filter = false;                    ///< FrameOptions::for_filter: value() is of layer specular alone
+  double seen_square = 0, mirrored_square = 0, onward_square = 0;   ///< of seen(), mirrored() of `own` and value() of `onward`, of single samples
+  bool for_filter = false;                    ///< FrameOptions::for_filter: noise is of layer specular alone
   void add(const PathParts& sample) {
     add(sample.own, own);
     add(sample.lit, lit);
     add(sample.onward, onward);
-    const double a = value(sample.own), b = value(sample.onward);
-    own_square += a * a;
-    onward_square += b * b;
+    const auto square = [](double v) { return v * v; };
+    seen_square += square(seen(sample.own));
+    mirrored_square += square(mirrored(sample.own));
+    onward_square += square(value(sample.onward));
   }
+  PixelSum operator+(const PixelSum& more) const {
+    PixelSum sum = *this;
+    for (LayersT<double> PixelSum::*part : {&PixelSum::own, &PixelSum::lit, &PixelSum::onward}) {
+      for (std::size_t l = 0; l < kLayerCount; ++l) (sum.*part).value[l] += (more.*part).value[l];
+      (sum.*part).coverage += (more.*part).coverage;
+    }
+    return sum;
+  }
+  /// Mean channel of layer specular.
+  template <class T>
+  static double mirrored(const LayersT<T>& layers) { return channel_mean(Rgbd(layers[Layer::specular])); }
+  /// Of all others whose noise counts.
+  template <class T>
+  double seen(const LayersT<T>& layers) const { return value(layers) - mirrored(layers); }
   /// Mean channel of all layers whose noise counts.
   template <class T>
   double value(const LayersT<T>& layers) const {
@@ -102,28 +117,27 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
 /// by one random number. So a part's mean over its samples is right whatever their number.
 class Dealt {
  public:
-  Dealt(std::uint64_t seed, std::uint64_t pixel, int first, const PartCounts& counts)
+  Dealt(std::uint64_t seed, std::uint64_t pixel, const PartCounts& first, const PartCounts& counts)
       : first_(first), counts_(counts), offset_(PathRandom(seed ^ 0x6465616c74ull, pixel).get2(0, Purpose::pixel)) {}
   /// Of camera ray i of counts.own. Numbers of samples go on from `first`.
   PathEffort operator()(int i) const {
     const std::uint32_t lit = before(i, counts_.lit, offset_.x), onward = before(i, counts_.onward, offset_.y);
     return {before(i + 1, counts_.lit, offset_.x) - lit, before(i + 1, counts_.onward, offset_.y) - onward,
-            std::uint32_t(first_) + lit, std::uint32_t(first_) + onward};
+            std::uint32_t(first_.lit) + lit, std::uint32_t(first_.onward) + onward};
   }
 
  private:
   std::uint32_t before(int i, int count, float offset) const {
     return std::uint32_t(double(i) * count / counts_.own + double(offset));
   }
-  int first_;
-  PartCounts counts_;
+  PartCounts first_, counts_;
   Vec2 offset_;
 };
 
-/// A pixel's samples, those of the camera from number `first` on, one after the other: add(i, sample). halves: SampleHalves of the pixel, or nullptr.
+/// A pixel's samples, numbered on from `first`, one after the other: add(i, sample). halves: SampleHalves of the pixel, or nullptr.
 template <class Add>
 void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const KnownLight* known,
-                     std::size_t pixel, int x, int y, int first, const PartCounts& count, SampleHalves* halves, RayCounts& counts, const Add& add) {
+                     std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves, RayCounts& counts, const Add& add) {
   constexpr int kTogether = 8, kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
   const Dealt dealt(seed, pixel, first, count);
   for (int done = 0; done < count.own; done += kTogether) {
@@ -131,7 +145,7 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint
     Ray rays[kTogether];
     Hit hits[kTogether];
     const PixelRandom random(seed, pixel, 0);
-    const auto of = [&](int i) { return random.of_sample(std::uint32_t(first + done + i)); };
+    const auto of = [&](int i) { return random.of_sample(std::uint32_t(first.own + done + i)); };
     for (int i = 0; i < n; ++i) {
       const Vec2 jitter = of(i).get2(0, Purpose::pixel);
       rays[i] = view.ray(float(x) + jitter.x, float(y) + jitter.y);
@@ -150,7 +164,7 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint
 }
 
 inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const KnownLight* known,
-                             std::size_t pixel, int x, int y, int first, const PartCounts& count, SampleHalves* halves, RayCounts& counts) {
+                             std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves, RayCounts& counts) {
   PixelSum sum;
   for_each_sample(scene, view, seed, known, pixel, x, y, first, count, halves, counts,
                   [&](int, const PathParts& sample) { sum.add(sample); });
