@@ -27,8 +27,8 @@ class EnvironmentLight {
   };
   Place place_of(Vec3 direction) const;
   /// Arriving from `direction` (unit), W/m^2/sr.
-  Rgb radiance(Vec3 direction) const { return radiance(place_of(direction)); }
-  Rgb radiance(const Place& place) const { return corners(place.row, place.column).radiance(place.x, place.y); }
+  Rgb radiance(Vec3 direction) const { return radiance_at(place_of(direction)); }
+  Rgb radiance_at(const Place& place) const { return corners(place.row, place.column).radiance(place.x, place.y); }
   /// Integral of radiance over all directions [W/m^2], closed form.
   Rgbd integral() const { return integral_; }
 

@@ -142,7 +142,7 @@ class Lights {
   }
   /// Both of one look-up.
   EnvironmentLight::Place environment_place(Vec3 direction) const { return environment_->place_of(direction); }
-  Rgb environment(const EnvironmentLight::Place& place) const { return environment_->radiance(place); }
+  Rgb environment_at(const EnvironmentLight::Place& place) const { return environment_->radiance_at(place); }
   float pdf_environment(Vec3 point, Vec3 normal, const EnvironmentLight::Place& place, Vec3 direction, From from) const;
 
   /// A photon from the frozen table: u[0] chooses the slot and, stretched, is the first coordinate on it,

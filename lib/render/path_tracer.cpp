@@ -117,7 +117,7 @@ void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter
       last.weighed ? mis_power(last.pdf_solid_angle, last.light_share * scene.lights.pdf_environment(
                                                                             last.position, last.normal, place, direction, last.from))
                    : 1.0f;
-  result[layer] += throughput * scene.lights.environment(place) * weight;
+  result[layer] += throughput * scene.lights.environment_at(place) * weight;
 }
 
 /// What a path knows of the light beyond its last event D: a Lambert lobe or a collision.

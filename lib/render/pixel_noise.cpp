@@ -5,7 +5,7 @@
 namespace tempolux {
 namespace {
 
-constexpr double kBetween = 0.1, kSharp = 0.125;   // of its variance: more samples there make less of the picture's error
+constexpr double kBetween = 0.1, kSharp = 0.125;   // of its variance: of two stratified numbers, so more samples take off more than their share
 constexpr double kStratified = 0.875, kTypical = 12;
 /// Costs in shadow rays: of a whole typical sample; of a camera ray with its surface; of a light sample; the least that is said of a ray onward.
 constexpr double kWhole = 4, kOwn = 1.2, kLit = 1, kLeastOnward = 1;
@@ -22,7 +22,7 @@ double wanted_samples(double sigma, double cost, double level, double picture, d
 }
 
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
-    : view_(view), options_(options), first_{options.samples, options.samples, (options.samples + 1) / 2}, first_half_((options.samples + 1) / 2),
+    : view_(view), options_(options), first_{options.samples, options.samples, options.for_filter ? options.samples : (options.samples + 1) / 2}, first_half_((options.samples + 1) / 2),
       lattice_(std::max(1, int(std::sqrt(double(view.width()) * view.height() / kOnLattice)))),
       pixels_(std::size_t(view.width()) * std::size_t(view.height())) {
   lattice_ = std::min({lattice_, view.width(), view.height()});

@@ -11,7 +11,7 @@ namespace tempolux {
 
 /// Variance of what n, sum and sum of squares are of; 0 of one.
 double sample_variance(double n, double sum, double square);
-/// Samples of a part of a pixel's light that are to leave the pixel the error pixel_error x (min(level, picture) + picture / 10), if sigma is the
+/// Samples of a part of a pixel's light that are to leave the pixel the error e = pixel_error sqrt(l picture + (picture / 10)^2), l = min(level, picture), if sigma is the
 /// noise of one, `cost` what it costs in rays, level the radiance around the pixel and picture the picture's mean (docs/pixels.md); 0 if no error is asked for.
 double wanted_samples(double sigma, double cost, double level, double picture, double pixel_error);
 
@@ -23,7 +23,8 @@ class PixelNoise {
   /// Pixels whose first samples are needed: all, or of a masked frame those that say what a masked pixel needs: so it gets as many
   /// samples as in the whole frame. As FrameOptions::mask; empty: all.
   const std::vector<std::uint8_t>& looked_at() const { return looked_at_; }
-  /// The first samples. Rays onward are the dearest part and often the least needed: half as many do to tell their noise.
+  /// The first samples. Rays onward are the dearest part and often the least needed: half as many do to tell
+  /// their noise, but where a filter is to do with the first samples alone.
   const PartCounts& first() const { return first_; }
   int first_half() const { return first_half_; }   ///< of the first samples: the others are the second half
   /// The two halves of a pixel's first samples, and the rays that their part `onward` took. Thread-safe for different pixels.

@@ -27,7 +27,7 @@ TEST(PixelVariance, IsThatOfTheMeanOfIndependentSamples) {
     constexpr int kPixels = 20'000;
     for (int p = 0; p < kPixels; ++p) {
       SampleHalves halves;
-      for (int s = 0; s < n; ++s) halves.add(s, n, grey_light(normal(random)));
+      for (int s = 0; s < n; ++s) halves.add(s, n, {grey_light(normal(random)), {}, {}}, {});
       EXPECT_EQ(halves.samples(), float(n));
       sum += double(halves.variance(&SampleHalves::Sum::diffuse).g);
     }
@@ -37,17 +37,37 @@ TEST(PixelVariance, IsThatOfTheMeanOfIndependentSamples) {
 
 TEST(PixelVariance, OneSampleKnowsNone) {
   SampleHalves halves;
-  halves.add(0, 1, grey_light(3));
+  halves.add(0, 1, {grey_light(3), {}, {}}, {});
   EXPECT_EQ(halves.variance(&SampleHalves::Sum::image), Rgb(0.0f));
   EXPECT_EQ(halves.samples(), 1.0f);
 }
 
 TEST(PixelVariance, EmissionCountsInTheImageAndNotInDiffuseLight) {
   SampleHalves halves;
-  halves.add(0, 1, grey_light(1, 0));
-  halves.add(0, 1, grey_light(1, 4));   // a further pass of one
+  halves.add(0, 1, {grey_light(1, 0), {}, {}}, {});
+  halves.add(0, 1, {grey_light(1, 4), {}, {}}, {});   // a further pass of one
   EXPECT_EQ(halves.variance(&SampleHalves::Sum::diffuse), Rgb(0.0f));
   EXPECT_EQ(halves.variance(&SampleHalves::Sum::image), Rgb(4.0f));   // (1 - 5)^2 / 4
+}
+
+/// Each part is divided by its own number of samples: of 6 camera rays, 12 samples of light of variance 1 and 3 rays onward of variance 4 the
+/// mean has 1/12 + 4/3. 20 000 pixels as above.
+TEST(PixelVariance, PartsAreDividedByTheirOwnNumbers) {
+  std::mt19937 random(2);
+  std::normal_distribution<float> normal(0, 1);
+  double sum = 0;
+  constexpr int kPixels = 20'000;
+  for (int p = 0; p < kPixels; ++p) {
+    SampleHalves halves;
+    for (int s = 0; s < 6; ++s) {
+      const std::uint32_t onward = s % 2;
+      halves.add(s, 6, {grey_light(1), grey_light(6 + normal(random) + normal(random)), grey_light(onward ? 9 + 2 * normal(random) : 0)}, {2, onward, 0, 0});
+    }
+    EXPECT_EQ(halves.samples(), 6);
+    sum += double(halves.variance(&SampleHalves::Sum::diffuse).g);
+  }
+  // Of 3 rays onward one half has one and the other two: the estimate is (n_a n_b)^(1/2) / n of the difference, 4/3 in the mean.
+  EXPECT_NEAR(sum / kPixels, 1.0 / 12 + 4.0 / 3, 0.04 * (1.0 / 12 + 4.0 / 3));
 }
 
 /// Of a frame, eight samples a pixel, its variance summed over pixels against that between 24 seeds. Halves of stratified samples
