@@ -87,8 +87,9 @@ Bsdf::Bsdf(const MaterialValues& material, bool front) {
     diffuse_ = false;
 }
 
-Bsdf::Reflection Bsdf::look_up(float cos_theta) const {
+Bsdf::Reflection Bsdf::reflection(float cos_theta) const {
   Reflection r;
+  if (!specular_) return r;
   AlbedoPair e;
   if (delta_) {
     e.b = power5(std::clamp(1 - cos_theta, 0.0f, 1.0f));

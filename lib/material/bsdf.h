@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <utility>
 
 #include "lib/core/sampling.h"
 #include "lib/core/vec.h"
@@ -111,16 +110,7 @@ class Bsdf {
     Rgb single{0.0f}, multiple{0.0f};
     float lost = 0;  ///< 1 - E: what GGX alone would lose at F = 1
   };
-  /// The last two directions asked for are remembered: evaluating and drawing ask several times for wo and for one wi.
-  Reflection reflection(float cos_theta) const {
-    if (!specular_) return {};
-    if (cos_theta != recent_[0].cos_theta) {
-      std::swap(recent_[0], recent_[1]);
-      if (cos_theta != recent_[0].cos_theta) recent_[0] = {cos_theta, look_up(cos_theta)};
-    }
-    return recent_[0].reflection;
-  }
-  Reflection look_up(float cos_theta) const;
+  Reflection reflection(float cos_theta) const;
   float diffuse_probability(const Reflection& r) const;
   static float multiple_share(const Reflection& r);
   Rgb specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const;
@@ -148,11 +138,6 @@ class Bsdf {
   float light_share_beyond_ = 0;
   std::optional<RoughGlass> rough_;   ///< empty: the glass is smooth, or there is none
   bool lambert_ = false, diffuse_ = false, specular_ = false, delta_ = false;
-  struct Remembered {
-    float cos_theta = -2;   ///< of none
-    Reflection reflection;
-  };
-  mutable Remembered recent_[2];   ///< a Bsdf is one thread's: made where a path meets a surface
 };
 
 inline constexpr float kMirrorRoughness = 0.02f;  ///< below: a delta mirror

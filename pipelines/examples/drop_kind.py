@@ -29,10 +29,12 @@ while (mark := file.read(4)) == b"PHOT":                                        
     head = mark + struct.pack("<II", group, len(kept))
     chain += struct.pack("<I", zlib.crc32(head + body))
     out(head + chain[-4:] + body)
-if mark in (b"LEDG", b"LEDU"):                                                    # 6, as it was
+if mark in (b"LEDG", b"LEDU", b"LEDP"):                                           # 6, as it was
+    pilots = int(text.split(b"\npilots: ")[1].split(b"\n")[0]) if mark == b"LEDP" else 0
+    entry = 76 if mark == b"LEDG" else 88 + 32 * pilots
     head = file.read(8)
     chain += head[4:]
-    out(mark + head + file.read((76 if mark == b"LEDG" else 88) * struct.unpack("<I", head[:4])[0]))
+    out(mark + head + file.read(entry * struct.unpack("<I", head[:4])[0]))
     mark = file.read(4)
 end = mark + struct.pack("<Q3d", len(fluxes) - 1, *map(math.fsum, zip(*fluxes))) + file.read(108)[32:104]
 out(end + struct.pack("<I", zlib.crc32(end, zlib.crc32(chain))))                  # 7
