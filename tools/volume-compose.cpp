@@ -1,6 +1,7 @@
 // volume-compose -- put the smoke of a scene into a frame: light that photons brought, slices from back to front.
 //
 //     volume-compose room.glb --frame 12 --photons 12.photons --base 12.exr -o 12.smoke.exr
+//     volume-compose room.glb --frame 12 --photons 12.photons --points 12.irradpoints --base 12.exr -o 12.smoke.exr
 //     volume-compose room.glb --frame 12 --photons 12.photons --radiance-only light.vdb
 //     volume-compose room.glb --frames 0-23 --photons p.####.photons --base f.####.exr -o s.####.exr
 //
@@ -12,8 +13,10 @@
 
 #include "formats/photons/photons.h"
 #include "lib/compose/compose.h"
+#include "lib/gather/final_gather.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
+#include "tools/common/gather_input.h"
 #include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
@@ -23,7 +26,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, photons, base, output, radiance, direct = "rays", filter = "gaussian";
+  std::string scene, photons, points, base, output, radiance, direct = "rays", filter = "gaussian";
   MediaLight::Options light;
   ComposeOptions compose;
   bool half_float = false;
@@ -143,7 +146,9 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
     const Lights lights(frame, input.emission(frame.frame));
     const Rgbd flux = lights.total_flux();
     tool.stats().phase("photons");
-    MediaLight light(*frame.media, frame.media->majorants(), eye_of(view, camera, frame), channel_sum(flux), options.light);
+    MediaLight::Options light_options = options.light;
+    if (!options.points.empty() && options.compose.sample_lights) light_options.rays = options.compose.samples * options.compose.light_samples;
+    MediaLight light(*frame.media, frame.media->majorants(), eye_of(view, camera, frame), channel_sum(flux), light_options);
     history += read_photons(tool, tools::frame_name(options.photons, number), frame, options, light);
     tool.stats().phase("filter", true);
     light.finish();
@@ -152,6 +157,11 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
     compose_options.seed = tool.common().seed_for_frame(number);
     compose_options.surfaces_by_depth = !base.of_this_scene;
     compose_options.progress = [&](double fraction) { tool.progress(fraction); };
+    tools::GatherPoints points;
+    if (light.has_rays()) points = tools::read_points(tool, tools::frame_name(options.points, number), frame);
+    const PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
+    const IncomingRadiance incoming(tracer, lights, lookup, GatherOptions{}.near_factor);
+    compose_options.incoming = &incoming;
     const Channel* const depth = base.image.find("Z");
     const std::vector<SmokePixel> smoke =
         compose_media({tracer, lights}, view, light, depth ? depth->values : std::vector<float>{}, compose_options, counts);
@@ -167,7 +177,7 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
   save_exr(output.temporary_path(), base.image, {options.half_float, ExrWriteOptions::Compression::zip});
   output.commit();
   tool.stats().end_phase();
-  tool.stats().count("rays", double(counts.camera + counts.shadow));
+  tool.stats().count("rays", double(counts.camera + counts.shadow + counts.bounce));
 }
 
 /// The light in the smoke alone, as OpenVDB.
@@ -199,6 +209,9 @@ void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   app.add_option("--photons", options.photons, ".photons file with photons in media, or a pattern")->type_name("FILE")->required();
+  app.add_option("--points", options.points,
+                 ".irradpoints file, or a pattern: what lies in a peak of the phase function is found by rays from the eye, which end at these points; "
+                 "without them by photons, with more noise. Read only for |g| from about .7")->type_name("FILE");
   app.add_option("--base", options.base, "EXR frame to put the smoke into, or a pattern")->type_name("FILE");
   app.add_option("--direct", options.direct,
                  "light straight from lamps: rays: sampled, with shadows; photons: by density, as all other light")

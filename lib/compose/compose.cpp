@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <stdexcept>
 
 #include "formats/octahedral.h"
 #include "lib/core/parallel.h"
@@ -62,9 +63,27 @@ void cut(const Media& media, const Ray& ray, float end, float step, std::vector<
   cut_piece();
 }
 
-/// Direct light of the lamps scattered along the slices towards the eye: places by what is scattered from them.
-Rgb sampled_direct(const RenderScene& scene, const Media& media, const Ray& ray, const std::vector<Slice>& slices, float left,
-                   int samples, const PixelRandom& random, RayCounts& counts) {
+/// A place on a ray where the medium scatters, and where the phase function sends the ray on.
+struct SentOn {
+  Ray ray;
+  std::uint64_t key;
+  Rgb weight;                                ///< of the radiance along it
+};
+
+/// A ray from a place in the medium, if rays bring some of its light.
+void send_on(const MediaLight& light, const MediumPoint& point, std::uint32_t bounce, const PixelRandom& random, std::vector<SentOn>& rays) {
+  const PhaseShare& share = light.share(point.g);
+  if (!share.has_rays()) return;
+  const Vec3 travel = sample_hg(point.g, point.travel, random.get2(bounce, Purpose::phase));
+  const float q = 4 * kPi * pdf_hg(point.g, point.travel, travel);
+  rays.push_back({{point.position, travel, 0, INFINITY}, random.hashed().bits(bounce, Purpose::gather), point.albedo * share.of_rays(q)});
+}
+
+/// Light scattered towards the eye from places along the slices, which are drawn by what is scattered from them: direct light of the lamps.
+/// `sent_on` receives rays whose radiance is to be added.
+Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray, const std::vector<Slice>& slices,
+                  float left, int samples, const PixelRandom& random, std::vector<SentOn>& sent_on, RayCounts& counts) {
+  const std::size_t before = sent_on.size();
   Rgb sum{0.0f};
   const float whole = 1 - left;              // share of what the eye would see from behind that is scattered or absorbed on the way
   std::size_t at = 0;
@@ -83,14 +102,17 @@ Rgb sampled_direct(const RenderScene& scene, const Media& media, const Ray& ray,
     const auto bounce = std::uint32_t(k);
     const MediumOptions& medium = media.collided(position, random.hashed().get1(bounce, Purpose::medium)).options();
     const MediumPoint point{position, ray.direction, medium.albedo, medium.g};
-    sum += medium.albedo * sampled_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
+    sum += medium.albedo * tempolux::sampled_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
                                          {random.hashed(), bounce, way_shadow_of_medium}, counts.shadow);
+    send_on(light, point, bounce, random, sent_on);
   }
+  for (std::size_t i = before; i < sent_on.size(); ++i) sent_on[i].weight *= whole / float(samples);
   return sum * (whole / float(samples));
 }
 
 SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray, float end, float step,
-                 const ComposeOptions& options, const PixelRandom& random, std::vector<Slice>& slices, RayCounts& counts) {
+                 const ComposeOptions& options, const PixelRandom& random, std::vector<Slice>& slices, std::vector<SentOn>& sent_on,
+                 RayCounts& counts) {
   SmokePixel pixel;
   cut(media, ray, end, step, slices);
   if (slices.empty()) return pixel;
@@ -100,8 +122,29 @@ SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight&
   }
   pixel.left = slices.back().left * std::exp(-slices.back().tau);
   if (options.sample_lights && pixel.left < 1)
-    pixel.light += sampled_direct(scene, media, ray, slices, pixel.left, options.light_samples, random, counts);
+    pixel.light += sampled_light(scene, media, light, ray, slices, pixel.left, options.light_samples, random, sent_on, counts);
   return pixel;
+}
+
+/// What the rays of a pixel bring.
+Rgb brought(const IncomingRadiance& incoming, const std::vector<SentOn>& sent_on, RayCounts& counts) {
+  thread_local std::vector<Ray> rays;
+  thread_local std::vector<std::uint64_t> keys;
+  thread_local std::vector<Rgb> radiance;
+  thread_local std::vector<float> distance;
+  rays.clear();
+  keys.clear();
+  for (const SentOn& sent : sent_on) rays.push_back(sent.ray), keys.push_back(sent.key);
+  radiance.resize(rays.size());
+  distance.resize(rays.size());
+  GatherCounts gathered;
+  incoming(rays, keys, radiance, distance, gathered, {}, IncomingRadiance::Start::medium);
+  counts.bounce += gathered.rays;
+  counts.shadow += gathered.shadow_rays;
+  counts.points_read += gathered.points_read;
+  Rgb sum{0.0f};
+  for (std::size_t i = 0; i < sent_on.size(); ++i) sum += sent_on[i].weight * radiance[i];
+  return sum;
 }
 
 }  // namespace
@@ -113,7 +156,10 @@ MediaLight::MediaLight(const Media& media, const MajorantGrid& majorants, Vec3 e
     const float g = medium.options().g;
     const auto found = std::find(gs_.begin(), gs_.end(), g);
     g_of_.push_back(std::size_t(found - gs_.begin()));
-    if (found == gs_.end()) gs_.push_back(g);
+    if (found == gs_.end()) {
+      gs_.push_back(g);
+      shares_.emplace_back(g, options.rays);
+    }
   }
   sums_.assign(gs_.size(), FluenceSums(majorants, options_.cell, emitted_flux));
 }
@@ -130,10 +176,19 @@ void MediaLight::add(const formats::PhotonBlock& block, Vec3 offset, int times) 
         const auto wi = formats::decode_normal(block.directions[i]);
         const Vec3 travel{-float(wi[0]), -float(wi[1]), -float(wi[2])};
         factor = 4 * kPi * pdf_hg(gs_[g], travel, normalize(eye_ - position));
+        factor *= shares_[g].of_photons(factor);
       }
       sums_[g].add(position, worth * factor, times);
     }
   }
+}
+
+const PhaseShare& MediaLight::share(float g) const {
+  return shares_[std::size_t(std::find(gs_.begin(), gs_.end(), g) - gs_.begin())];
+}
+
+bool MediaLight::has_rays() const {
+  return std::any_of(shares_.begin(), shares_.end(), [](const PhaseShare& share) { return share.has_rays(); });
 }
 
 void MediaLight::finish() {
@@ -170,15 +225,18 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
   std::vector<SmokePixel> pixels(std::size_t(view.width()) * std::size_t(view.height()));
   const Media* const media = scene.frame().media.get();
   if (!media) return pixels;
+  if (light.has_rays() && !(options.incoming && options.sample_lights)) throw std::invalid_argument("rays bring a part of the light, and there are none");
   const auto step = float(finest_voxel(*media) / 2);
   std::mutex joining;
   std::size_t done = 0;
   parallel_chunks(pixels.size(), kChunk, [&](std::size_t first, std::size_t last) {
     std::vector<Slice> slices;
+    std::vector<SentOn> sent_on;
     RayCounts own;
     for (std::size_t p = first; p < last; ++p) {
       const auto x = float(p % std::size_t(view.width())), y = float(p / std::size_t(view.width()));
       SmokePixel sum{Rgb(0.0f), 0};
+      sent_on.clear();
       for (int s = 0; s < options.samples; ++s) {
         const PixelRandom random(options.seed, p, std::uint32_t(s));
         const Vec2 within = options.surfaces_by_depth ? Vec2{0.5f, 0.5f} : random.get2(0, Purpose::pixel);
@@ -193,10 +251,11 @@ std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView
           if (scene.tracer.intersect(ray, hit)) end = hit.t;
           ++own.camera;
         }
-        const SmokePixel one = march(scene, *media, light, ray, end, step, options, random, slices, own);
+        const SmokePixel one = march(scene, *media, light, ray, end, step, options, random, slices, sent_on, own);
         sum.light += one.light;
         sum.left += one.left;
       }
+      if (!sent_on.empty()) sum.light += brought(*options.incoming, sent_on, own);
       pixels[p] = {sum.light * (1 / float(options.samples)), sum.left / float(options.samples)};
     }
     const std::scoped_lock lock(joining);

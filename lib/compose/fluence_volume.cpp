@@ -10,7 +10,6 @@ namespace {
 
 using Cell = std::array<float, 4>;
 
-constexpr double kPhotonsInKernel = 256;     ///< noise of a cell 1/16
 constexpr float kWidest = 16;                ///< cells
 constexpr std::size_t kLine = 64;            ///< lines of cells in a piece of work
 
@@ -165,7 +164,7 @@ FluenceVolume::FluenceVolume(const FluenceSums& sums, const FluenceFilter& filte
   if (!(width_ > 0)) {
     // A Gaussian of deviation s counts as many cells as (4 pi s^2)^(3/2).
     const double density = double(sums.photons()) / double(std::max<std::size_t>(1, open));
-    width_ = std::clamp(float(std::cbrt(kPhotonsInKernel / std::max(density, 1e-9)) / std::sqrt(4 * 3.14159265358979)), 0.25f, kWidest);
+    width_ = std::clamp(float(std::cbrt(double(kPhotonsInFilter) / std::max(density, 1e-9)) / std::sqrt(4 * 3.14159265358979)), 0.25f, kWidest);
   }
   if (filter.kind == FluenceFilter::Kind::bilateral) filter_bilateral(cells_, counts_, filter, std::min(width_, 4.0f));
   else if (filter.kind != FluenceFilter::Kind::none) filter_separable(cells_, counts_, filter, width_);

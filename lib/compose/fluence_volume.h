@@ -51,6 +51,8 @@ class FluenceSums {
   std::vector<std::uint8_t> open_;
 };
 
+inline constexpr float kPhotonsInFilter = 256;   ///< that count in a filter whose width is not given: noise of a cell 1/16
+
 struct FluenceFilter {
   enum class Kind : std::uint8_t { none, box, gaussian, bilateral };
   Kind kind = Kind::gaussian;

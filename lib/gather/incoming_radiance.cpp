@@ -38,6 +38,7 @@ struct IncomingRadiance::Further {
   Rgb weight{0.0f};
   std::size_t of = 0;        ///< the gather ray
   bool sees_lamps = false;   ///< beyond events S: light of kind caustic where it started, which no point has told
+  float phase = 0;           ///< a medium sent the ray on with this density [1/sr]; 0: a surface did
   bool low = false;          ///< what it meets at its end brings the low part: the high one is sampled where it started
 };
 
@@ -77,10 +78,11 @@ inline void IncomingRadiance::meet(Vec3 wo, float distance, Met& met) const {
 }
 
 /// take(i, met, point) for each ray that meets a surface, in order; point: what to read there, if anything. Of those that a
-/// medium scatters before: take_medium(i, collision, distance), by the numbers of key(i). alike: as Tracer::intersect.
-template <class Take, class Key, class TakeMedium>
+/// medium scatters before: take_medium(i, collision, distance), by the numbers of key(i). Of those that leave the scene: miss(i).
+/// alike: as Tracer::intersect.
+template <class Take, class Key, class TakeMedium, class Miss>
 void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key,
-                              const TakeMedium& take_medium) const {
+                              const TakeMedium& take_medium, const Miss& miss) const {
   const Media* const media = tracer_.frame().media.get();
   std::array<Hit, kAtOnce> hits;
   std::array<Met, kAtOnce> met;
@@ -99,7 +101,10 @@ void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCount
           continue;
         }
       }
-      if (hits[i].surface == kNone) continue;
+      if (hits[i].surface == kNone) {
+        miss(first + i);
+        continue;
+      }
       tracer_.surface_points(std::span(hits).subspan(i, 1), &met[i].hit);
       meet(-ray.direction, length(met[i].hit.position - ray.origin), met[i]);
       if (met[i].bsdf->has_diffuse()) questions[i] = points_.ask(met[i].hit.position, met[i].geometric);
@@ -114,7 +119,7 @@ void IncomingRadiance::follow(std::span<const Ray> rays, bool alike, GatherCount
 }
 
 void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std::uint64_t> keys, std::span<Rgb> radiance,
-                                  std::span<float> distance, GatherCounts& counts, std::span<RadianceSource> sources) const {
+                                  std::span<float> distance, GatherCounts& counts, std::span<RadianceSource> sources, Start start) const {
   thread_local std::vector<Further> now, next;
   thread_local std::vector<Ray> further_rays;
   std::fill(radiance.begin(), radiance.end(), Rgb(0.0f));
@@ -124,11 +129,11 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
   const Gathered to{counts, next, sources};
   follow(rays, true, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
     distance[i] = met.distance;
-    radiance[i] = reflected(met, point, {{}, keys[i], Rgb(1.0f), i, false, bright_ != nullptr}, 0, to);
+    radiance[i] = reflected(met, point, {{}, keys[i], Rgb(1.0f), i, start == Start::medium, 0, bright_ != nullptr}, 0, to);
   }, [&](std::size_t i) { return keys[i]; }, [&](std::size_t i, const MediumPoint& collision, float way) {
     distance[i] = way;
     radiance[i] = scattered_in_media(collision, {{}, keys[i], Rgb(1.0f), i}, to);
-  });
+  }, [](std::size_t) {});
   for (int depth = 1; !next.empty(); ++depth) {
     std::swap(now, next);
     next.clear();
@@ -137,10 +142,11 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
     follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
       const Further from = now[i];
       radiance[from.of] += from.weight * reflected(met, point, from, depth, to);
+      if (from.phase > 0) radiance[from.of] += from.weight * lamp_met(met, from.ray.origin, from.phase);
     }, [&](std::size_t i) { return now[i].key; }, [&](std::size_t i, const MediumPoint& collision, float) {
       const Further from = now[i];
       radiance[from.of] += from.weight * scattered_in_media(collision, from, to);
-    });
+    }, [&](std::size_t i) { radiance[now[i].of] += now[i].weight * environment_met(now[i].ray, now[i].phase); });
   }
 }
 
@@ -203,6 +209,7 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   beyond.key = mix64(from.key + 2);
   beyond.weight *= weight;
   beyond.low = false;
+  beyond.phase = 0;
   if (source) source->partial = true;
   return result + weight * reflected_beyond(met.hit, travel, met.distance, beyond, depth + 1, to,
                                             solid && front == next.transmitted ? &material : nullptr);
@@ -236,21 +243,35 @@ Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, f
   return left * (emitted + reflected(met, point, from, depth, to));
 }
 
+/// Light of a lamp at the end of a ray that a medium sent on from `start` with density `phase`, weighed against sampling it there.
+Rgb IncomingRadiance::lamp_met(const Met& met, Vec3 start, float phase) const {
+  const Rgb emitted = lights_.emitted(met.hit, met.wo, 0);
+  if (is_black(emitted)) return emitted;
+  return emitted * mis_power(phase, lights_.pdf_solid_angle(start, {}, met.hit.surface, met.hit.triangle, met.hit.position, met.hit.normal_geometric));
+}
+
+/// The same of the environment; black for rays that a surface sent: it was sampled there.
+Rgb IncomingRadiance::environment_met(const Ray& ray, float phase) const {
+  if (!(phase > 0) || !lights_.has_environment()) return Rgb(0.0f);
+  const EnvironmentLight::Place place = lights_.environment_place(ray.direction);
+  return lights_.environment_at(place) * mis_power(phase, lights_.pdf_environment(ray.origin, {}, place, ray.direction, Lights::From::all));
+}
+
 /// Light of a lamp that a medium sends back along a ray from its collision; to.further receives the ray that goes on, which counts
-/// lamps it sees by way of events S: no point tells of them here.
+/// lamps too: those it meets, weighed, and those it sees by way of events S, as no point tells of them here.
 Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const {
   if (RadianceSource* const source = to.source_of(from)) source->partial = source->mover = true;
   const PathRandom random(from.key, kMediaNumbers + 1);
   Rgb light{0.0f};
   if (!lights_.empty())
-    light = at.albedo * tempolux::sampled_light(tracer_, lights_, at, random.get2(1, Purpose::light_point), false,
+    light = at.albedo * tempolux::sampled_light(tracer_, lights_, at, random.get2(1, Purpose::light_point), true,
                                                 {random, 1, way_shadow_of_medium}, to.counts.shadow_rays);
   Rgb weight = from.weight * at.albedo;
   const float survival = std::min(kLargestSurvival, max_component(weight));
   if (!(random.get1(1, Purpose::roulette) < survival)) return light;
   weight *= 1 / survival;
   const Vec3 travel = sample_hg(at.g, at.travel, random.get2(1, Purpose::phase));
-  to.further.push_back({{at.position, travel, 0, INFINITY}, mix64(from.key + 1), weight, from.of, true, false});
+  to.further.push_back({{at.position, travel, 0, INFINITY}, mix64(from.key + 1), weight, from.of, true, pdf_hg(at.g, at.travel, travel), false});
   return light;
 }
 
@@ -279,7 +300,7 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
     if (!(random.get1(1, Purpose::roulette) < survival)) return irradiance;
     weight *= 1 / survival;
   }
-  to.further.push_back({spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point, bright_ != nullptr});
+  to.further.push_back({spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point, 0, bright_ != nullptr});
   return irradiance;
 }
 

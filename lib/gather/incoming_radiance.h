@@ -49,9 +49,11 @@ class IncomingRadiance {
 
   /// Radiance [W/m^2/sr] arriving along rays that counts as indirect at their starts, and the distance to what each meets
   /// first, m (infinity: nothing). keys: random numbers, one for each ray. Fastest if rays that follow one another
-  /// leave one place into like directions. All spans are of one length, but for `sources`, which may be empty.
+  /// leave one place into like directions. All spans are of one length, but for `sources`, which may be empty. Of rays that start in
+  /// a medium lamps seen by way of events S count too: no point tells of them there.
+  enum class Start : std::uint8_t { surface, medium };
   void operator()(std::span<const Ray> rays, std::span<const std::uint64_t> keys, std::span<Rgb> radiance,
-                  std::span<float> distance, GatherCounts& counts, std::span<RadianceSource> sources = {}) const;
+                  std::span<float> distance, GatherCounts& counts, std::span<RadianceSource> sources = {}, Start start = Start::surface) const;
   /// The lobes of the surface at a place, seen along its normal.
   Bsdf bsdf_at(const SurfacePoint& place, Vec3 normal) const;
 
@@ -60,8 +62,11 @@ class IncomingRadiance {
   struct Further;
   struct Gathered;
   void meet(Vec3 wo, float distance, Met& met) const;
-  template <class Take, class Key, class TakeMedium>
-  void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key, const TakeMedium& take_medium) const;
+  template <class Take, class Key, class TakeMedium, class Miss>
+  void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key, const TakeMedium& take_medium,
+              const Miss& miss) const;
+  Rgb lamp_met(const Met& met, Vec3 start, float phase) const;
+  Rgb environment_met(const Ray& ray, float phase) const;
   Rgb scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const;
   Rgb reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth, const Gathered& to) const;
   Rgb reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth, const Gathered& to,
