@@ -123,7 +123,7 @@ std::shared_ptr<const PhotonTracer> tracer_at(tools::SceneInput& input, const st
 
 void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& options,
                  const std::vector<formats::ViewSphere>& view, int frame_number,
-                 StandingTree& standing) {
+                 StandingTree& standing, tools::KeptMap& kept) {
   tools::Output output(tools::frame_name(options.output, frame_number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(frame_number);
@@ -145,7 +145,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
           ? update_map(tool, options.updating,
                        {frame, photons, photon_options, header, tools::frame_name(options.output, frame.frame),
                         [&](int other) { return tracer_at(input, view, photon_options, other); }},
-                       sink_of(output))
+                       sink_of(output), kept)
           : write_photon_map(photons, photon_options, header, sink_of(output), [&](double fraction) { tool.progress(fraction); });
   tool.stats().phase("commit");
   output.commit();
@@ -352,10 +352,13 @@ int main(int argc, char** argv) {
       view = formats::read_view(options.importance);
       tool.depends_on(options.importance);
     }
-    for (int frame : frames)
+    tools::KeptMap kept;
+    for (int frame : frames) {
+      kept.wanted = frame != frames.back();
       if (options.map == "static") trace_standing(tool, input, options, view, frame);
       else if (options.map == "dynamic") trace_difference(tool, input, options, view, frame, standing);
-      else trace_frame(tool, input, options, view, frame, standing);
+      else trace_frame(tool, input, options, view, frame, standing, kept);
+    }
     return tools::exit_ok;
   });
 }

@@ -19,15 +19,6 @@ std::string file_name(const std::string& path) { return path.substr(path.rfind('
 
 std::uint64_t draw(int frame, std::uint32_t group) { return mix64(mix64(std::uint64_t(std::uint32_t(frame)) + 0x75706474ull) + group); }
 
-/// Groups whose blocks an overlay holds itself.
-std::set<std::uint32_t> own_groups(const std::string& path) {
-  formats::photons::FileReader reader(path);
-  std::set<std::uint32_t> groups;
-  formats::PhotonBlock block;
-  while (reader.read_block(block)) groups.insert(block.group);
-  return groups;
-}
-
 /// A stream of a file's blocks, one group after the other.
 class Groups {
  public:
@@ -72,62 +63,7 @@ bool same(const std::vector<formats::Photon>& stored, const std::vector<PhotonBa
   return at == stored.size();
 }
 
-constexpr std::size_t kGroupsTogether = 16;  ///< whose pilots are one piece of work
-
-/// How much the pilots of a group have changed, as the strategy counts it.
-double difference(UpdateStrategy strategy, std::span<const formats::PhotonPilot> then, std::span<const formats::PhotonPilot> now) {
-  double sum = 0;
-  for (std::size_t i = 0; i < std::min(then.size(), now.size()); ++i) {
-    const bool collides_elsewhere = then[i].collisions != now[i].collisions;
-    switch (strategy) {
-      case UpdateStrategy::fde: sum += then[i].extinctions != now[i].extinctions; break;
-      case UpdateStrategy::dip: sum += collides_elsewhere; break;
-      case UpdateStrategy::path: sum += collides_elsewhere || then[i].vertices != now[i].vertices; break;
-      default: sum += std::abs(then[i].sketch - now[i].sketch);
-    }
-  }
-  return strategy == UpdateStrategy::hybrid ? sum : sum / double(std::max<std::size_t>(1, then.size()));
-}
-
-/// Sends the pilots of all groups through the scene of the tracer.
-void send_pilots(UpdateStrategy strategy, const PhotonTracer& tracer, PreviousMap& previous) {
-  const std::uint32_t pilots = previous.header.pilots;
-  previous.change.assign(previous.ledger.size(), 0.0);
-  parallel_chunks(previous.ledger.size(), kGroupsTogether, [&](std::size_t first, std::size_t last) {
-    for (std::size_t g = first; g < last; ++g)
-      previous.change[g] = difference(strategy, previous.ledger[g].pilots, tracer.trace_members(std::uint32_t(g), 0, pilots).pilots);
-  });
-  previous.pilot_paths = std::uint64_t(pilots) * previous.ledger.size();
-}
-
 }  // namespace
-
-PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, UpdateStrategy strategy, Vec3d origin) {
-  const bool census = strategy == UpdateStrategy::census;
-  formats::PhotonReader reader(path);
-  PreviousMap previous;
-  previous.header = reader.header();
-  if (sends_pilots(strategy) && previous.header.pilots == 0)
-    throw InputError(path + ": has no pilots, which fde, dip, hybrid and path compare; trace the segment's first map with --pilots 3%, or choose another --strategy");
-  if (census) previous.change.assign(previous.header.group_count, 0.0);
-  const Media* const media = tracer.media();
-  const auto& o = previous.header.origin;
-  const Vec3 offset(Vec3d{o[0], o[1], o[2]} - origin);
-  formats::PhotonBlock block;
-  while (reader.read_block(block)) {
-    if (!census) continue;
-    for (const formats::Photon& photon : block.photons) {
-      if (photon.kind != formats::PathKind::tentative) continue;
-      const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset;
-      const float now = media ? media->extinction(position) : 0, then = extinction_when_recorded(photon, tracer.majorants().at(position));
-      previous.change[block.group] += double((photon.flux[0] + photon.flux[1] + photon.flux[2]) / 3) * double(std::abs(now - then));
-    }
-  }
-  previous.ledger = reader.ledger();
-  previous.digest = reader.digest();
-  if (sends_pilots(strategy)) send_pilots(strategy, tracer, previous);
-  return previous;
-}
 
 std::string why_not_updatable(const formats::PhotonHeader& a, const formats::PhotonHeader& b) {
   if (a.map != b.map || !a.part.empty()) return "it is a part of a map";
@@ -170,11 +106,11 @@ std::vector<std::uint32_t> choose_groups(const PreviousMap& previous, int frame,
 PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOptions& options, formats::PhotonHeader header,
                                   const MapUpdate& update, const std::function<void(const void*, std::size_t)>& sink) {
   const std::string& path = update.path;
-  const PreviousMap& previous = update.previous;
+  PreviousMap& previous = update.previous;
   const std::span<const std::uint32_t> groups = update.groups;
   describe_map(tracer, options, header);
   const bool upon_overlay = !previous.header.base_name.empty();
-  std::set<std::uint32_t> differing = upon_overlay ? own_groups(path) : std::set<std::uint32_t>{};
+  std::set<std::uint32_t> differing = !upon_overlay ? std::set<std::uint32_t>{} : previous.is_kept() ? previous.own : own_groups(path);
   differing.insert(groups.begin(), groups.end());
   const bool overlay = update.may_overlay && !update.corrective && differing.size() * 2 <= header.group_count;
   if (overlay) {
@@ -191,9 +127,15 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
   // What is kept: of an overlay its own groups, else all.
   std::unique_ptr<formats::photons::FileReader> file;
   std::unique_ptr<formats::PhotonReader> whole;
-  if (overlay && upon_overlay) file = std::make_unique<formats::photons::FileReader>(path);
+  if (previous.is_kept()) {}
+  else if (overlay && upon_overlay) file = std::make_unique<formats::photons::FileReader>(path);
   else if (!overlay) whole = std::make_unique<formats::PhotonReader>(path, formats::PhotonReadOptions{.digest = false});
-  Groups kept([&](formats::PhotonBlock& block) { return file ? file->read_block(block) : whole ? whole->read_block(block) : false; });
+  Groups from_file([&](formats::PhotonBlock& block) { return file ? file->read_block(block) : whole ? whole->read_block(block) : false; });
+  const auto photons_of = [&](std::uint32_t group, const auto& take) {
+    if (!previous.is_kept()) return from_file.of(group, take);
+    if (!overlay || upon_overlay)
+      for (const formats::PhotonBlock& block : previous.photons[group]) take(block);
+  };
 
   std::vector<formats::GroupFlux> ledger;
   std::uint32_t next = 0;
@@ -201,7 +143,7 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
     for (; next < end; ++next) {
       if (overlay && !differing.contains(next)) continue;
       bool any = false;
-      kept.of(next, [&](const formats::PhotonBlock& block) {
+      photons_of(next, [&](const formats::PhotonBlock& block) {
         writer.write(block);
         any = true;
       });
@@ -221,7 +163,7 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
         keep_until(groups[i]);
         if (update.corrective) {
           std::vector<formats::Photon> stored;
-          kept.of(groups[i], [&](const formats::PhotonBlock& block) { stored.insert(stored.end(), block.photons.begin(), block.photons.end()); });
+          photons_of(groups[i], [&](const formats::PhotonBlock& block) { stored.insert(stored.end(), block.photons.begin(), block.photons.end()); });
           const auto& taken_back = static_cast<const Traced*>(pointer)->taken_back;
           for (const PhotonBatch& batch : taken_back) count(batch, result);
           if (!same(stored, taken_back))
@@ -230,13 +172,14 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
         }
         formats::GroupFlux entry;
         bool any = false;
-        for (const PhotonBatch& batch : static_cast<const Traced*>(pointer)->batches) {
-          if (!batch.block.photons.empty()) {
-            writer.write(batch.block);
-            any = true;
-          }
+        if (previous.is_kept()) previous.photons[groups[i]].clear();
+        for (PhotonBatch& batch : static_cast<Traced*>(pointer)->batches) {
           add_to_ledger(batch, header.identity.first_frame, entry);
           count(batch, result);
+          if (batch.block.photons.empty()) continue;
+          writer.write(batch.block);
+          any = true;
+          if (previous.is_kept()) previous.photons[groups[i]].push_back(std::move(batch.block));
         }
         if (overlay && !any) writer.write({groups[i], {}, {}, {}});
         close_ledger(entry);
@@ -244,8 +187,14 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
         next = groups[i] + 1;
       });
   keep_until(header.group_count);
-  kept.finish();
+  from_file.finish();
   result.totals = writer.finish({}, ledger);
+  if (!overlay) previous.photons.clear();    // its digest, which an overlay upon it names, is known to who reads it
+  if (previous.is_kept()) {
+    for (const formats::GroupFlux& entry : ledger) previous.ledger[entry.group] = entry;
+    previous.header = header;
+    previous.own = std::move(differing);
+  }
   return result;
 }
 

@@ -27,15 +27,15 @@ Box3d MajorantGrid::cell(std::int32_t x, std::int32_t y, std::int32_t z) const {
   return cell;
 }
 
-float MajorantGrid::at(Vec3 point) const {
+std::size_t MajorantGrid::index_of(Vec3 point) const {
   std::size_t index = 0;
   for (std::size_t a = 0; a < 3; ++a) {
     const int i = int(a);
-    if (empty() || !(point[i] >= box_.lower[i] && point[i] <= box_.upper[i])) return 0;
+    if (empty() || !(point[i] >= box_.lower[i] && point[i] <= box_.upper[i])) return values_.size();
     const float place = (point[i] - box_.lower[i]) / cell_size_[i];
     index = index * std::size_t(counts_[a]) + std::size_t(std::min(std::int32_t(place), counts_[a] - 1));
   }
-  return values_[index];
+  return index;
 }
 
 void MajorantGrid::raise_to(float least) {

@@ -26,7 +26,12 @@ class MajorantGrid {
   const std::vector<float>& values() const { return values_; }   ///< z fastest
   std::vector<float>& values() { return values_; }
   /// Majorant at a point; 0 outside.
-  float at(Vec3 point) const;
+  float at(Vec3 point) const {
+    const std::size_t index = index_of(point);
+    return index < values_.size() ? values_[index] : 0;
+  }
+  /// Which of values() is that of a point; their number outside.
+  std::size_t index_of(Vec3 point) const;
   Box3d cell(std::int32_t x, std::int32_t y, std::int32_t z) const;
   /// Lower bound of tentative collisions: cells above 0 are raised to `least` [1/m].
   void raise_to(float least);

@@ -1,5 +1,7 @@
 #include "tools/common/update_photons.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -49,6 +51,14 @@ std::uint64_t most_groups(const UpdateArguments& arguments, const PhotonTracer& 
   const double paths = share_of(arguments.share, "--share") * double(photons.photon_count()) - double(spent);
   const double groups = paths / double(photons.members()) / (arguments.corrective ? 2 : 1);
   return std::uint64_t(std::max(0.0, spent > 0 || arguments.corrective ? std::floor(groups) : std::ceil(groups)));
+}
+
+/// A quarter of the memory at most, as other parts need some.
+bool may_keep(const Tool& tool, std::uint64_t photons) {
+  constexpr std::uint64_t bytes_of_photon = sizeof(formats::Photon) + sizeof(std::array<std::uint16_t, 2>);
+  auto memory = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
+  if (const std::uint64_t limit = tool.common().max_memory_bytes; limit > 0) memory = std::min(memory, limit);
+  return photons <= memory / 4 / bytes_of_photon;
 }
 
 void check_updatable(const std::string& name, const MapToUpdate& map, const formats::PhotonHeader& previous, bool any_count) {
@@ -137,17 +147,25 @@ std::uint32_t pilots_of(const UpdateArguments& arguments, const PhotonOptions& p
 }
 
 PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const MapToUpdate& map,
-                           const std::function<void(const void*, std::size_t)>& sink) {
+                           const std::function<void(const void*, std::size_t)>& sink, KeptMap& kept) {
   const int frame = map.frame.frame;
   const std::string name = previous_name(arguments, frame);
   tool.depends_on(name, InputRole::replaceable);
   if (const std::uint64_t extra = parse_count(arguments.refine); extra > 0) return refine_map(tool, name, extra, map, sink);
   // Where nothing has changed no group is traced: nobody need look.
-  const formats::PhotonHeader before = formats::PhotonReader(name, {.digest = false}).header();
+  const bool is_here = kept.name == name && kept.map.is_kept();
+  const formats::PhotonHeader before = is_here ? kept.map.header : formats::PhotonReader(name, {.digest = false}).header();
   check_updatable(name, map, before, false);
   const bool still = is_still(before.identity, map.header.identity);
   const UpdateStrategy strategy = still && arguments.how.strategy != UpdateStrategy::all ? UpdateStrategy::oldest : arguments.how.strategy;
-  const PreviousMap previous = read_previous(name, map.photons, strategy, map.frame.origin);
+  PreviousMap& previous = kept.map;
+  if (is_here) {
+    find_change(name, previous, map.photons, strategy, map.frame.origin);
+  } else {
+    const bool keep = kept.wanted && !arguments.corrective && may_keep(tool, formats::PhotonReader(name, {.digest = false}).photon_count_bound());
+    previous = read_previous(name, map.photons, strategy, map.frame.origin, keep);
+  }
+  kept.name.clear();
   UpdateOptions how = arguments.how;
   how.most_groups = most_groups(arguments, map.photons, previous.pilot_paths);
   const std::vector<std::uint32_t> groups = choose_groups(previous, frame, still, how);
@@ -164,7 +182,9 @@ PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const M
       if (auto& tracer = tracers[previous.ledger[g].frame]; !tracer) tracer = map.tracer_at(previous.ledger[g].frame);
     update.corrective = [&](int at) -> const PhotonTracer& { return *tracers.at(at); };
   }
-  return write_updated_map(map.photons, map.options, header, update, sink);
+  const PhotonMapResult result = write_updated_map(map.photons, map.options, header, update, sink);
+  if (previous.is_kept()) kept.name = map.output;
+  return result;
 }
 
 }  // namespace tempolux::tools

@@ -37,8 +37,16 @@ struct MapToUpdate {
   std::string output;                        ///< name of the file to come
   std::function<std::shared_ptr<const PhotonTracer>(int frame)> tracer_at;   ///< the same through the smoke of another frame
 };
+/// Of a range: the map before stays in memory for the next frame, if it takes at most a quarter of it (--max-memory, or the machine's).
+struct KeptMap {
+  bool wanted = false;                       ///< there is a next frame
+  std::string name;                          ///< of the map's file; "": none is kept
+  PreviousMap map;
+};
+
 /// Writes the map of the frame through `sink`, as --update, --refine and --corrective ask. Counts groups and pilots for --stats.
+/// `kept`: the map before, if it is there; becomes the new one, if that can be kept.
 PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const MapToUpdate& map,
-                           const std::function<void(const void*, std::size_t)>& sink);
+                           const std::function<void(const void*, std::size_t)>& sink, KeptMap& kept);
 
 }  // namespace tempolux::tools

@@ -62,7 +62,7 @@ class PhotonUpdate : public testing::Test {
     return written(name, [&](const auto& sink) { write_photon_map(*room.photons, options_, header(frame), sink, {}); });
   }
   std::string updated(const std::string& name, const std::string& from, const Room& room, int frame, const UpdateOptions& how, bool same = false) {
-    const PreviousMap previous = read_previous(path(from), *room.photons, how.strategy, {});
+    PreviousMap previous = read_previous(path(from), *room.photons, how.strategy, {});
     groups_ = choose_groups(previous, frame, same, how);
     return written(name, [&](const auto& sink) {
       write_updated_map(*room.photons, options_, header(frame), {path(from), previous, groups_, true, {}}, sink);
@@ -121,11 +121,39 @@ TEST_F(PhotonUpdate, OverlayUponOverlayKeepsItsBase) {
   ASSERT_TRUE(is_overlay("2.photons"));
   EXPECT_EQ(formats::PhotonReader(path("2.photons")).header().base_name, "0.photons");
   // The same written whole, which is not possible in another folder's name.
-  const PreviousMap previous = read_previous(path("1.photons"), *thick.photons, UpdateStrategy::oldest, {});
+  PreviousMap previous = read_previous(path("1.photons"), *thick.photons, UpdateStrategy::oldest, {});
   const std::string whole = written("whole.photons", [&](const auto& sink) {
     write_updated_map(*thick.photons, options_, header(2), {path("1.photons"), previous, groups_, false, {}}, sink);
   });
   EXPECT_EQ(whole, two);
+}
+
+/// A map kept in memory from frame to frame makes the files that one read anew in each frame makes, priorities included: overlays upon overlays,
+/// until more than half of the groups differ and a whole map is written, which has to be read again.
+TEST_F(PhotonUpdate, KeptMapMakesTheSameFiles) {
+  const Room thin(0.5f, options_), thick(2, options_);
+  fresh("0.photons", thin, 0);
+  std::filesystem::create_directory(folder_ / "kept");
+  std::filesystem::copy_file(path("0.photons"), path("kept/0.photons"));
+  PreviousMap kept = read_previous(path("kept/0.photons"), *thick.photons, UpdateStrategy::census, {}, true);
+  for (int frame = 1; frame <= 4; ++frame) {
+    const UpdateOptions how{frame % 2 ? UpdateStrategy::census : UpdateStrategy::oldest, 12, 0};
+    const Room& room = frame % 2 ? thick : thin;
+    const std::string name = std::to_string(frame) + ".photons", before = path("kept/" + std::to_string(frame - 1) + ".photons");
+    ASSERT_EQ(kept.is_kept(), frame < 4) << frame;   // 36 of 63 groups differ at frame 3
+    if (!kept.is_kept()) kept = read_previous(before, *room.photons, how.strategy, {}, true);
+    else find_change(before, kept, *room.photons, how.strategy, {});
+    const std::string wanted = updated(name, std::to_string(frame - 1) + ".photons", room, frame, how);
+    const PreviousMap read = read_previous(before, *room.photons, how.strategy, {});
+    ASSERT_EQ(kept.change, read.change) << frame;
+    ASSERT_EQ(kept.ledger, read.ledger) << frame;
+    ASSERT_EQ(choose_groups(kept, frame, false, how), groups_);
+    EXPECT_EQ(written("kept/" + name, [&](const auto& sink) {
+      write_updated_map(*room.photons, options_, header(frame), {before, kept, groups_, true, {}}, sink);
+    }), wanted) << frame;
+    EXPECT_EQ(is_overlay("kept/" + name), is_overlay(name)) << frame;
+    EXPECT_EQ(std::filesystem::file_size(path("kept/" + name)), std::filesystem::file_size(path(name))) << frame;
+  }
 }
 
 TEST_F(PhotonUpdate, CensusSeesChangeAndOnlyThat) {
@@ -205,7 +233,7 @@ TEST_F(PhotonUpdate, SketchesGiveTheChangeInTheMean) {
 TEST_F(PhotonUpdate, CorrectivePhotonsTakeBackTheGroup) {
   const Room thin(0.5f, options_), thick(2, options_);
   fresh("0.photons", thin, 0);
-  const PreviousMap previous = read_previous(path("0.photons"), *thick.photons, UpdateStrategy::oldest, {});
+  PreviousMap previous = read_previous(path("0.photons"), *thick.photons, UpdateStrategy::oldest, {});
   const std::vector<std::uint32_t> some{3, 17, 40};
   const auto with = [&](const std::string& name, const std::function<const PhotonTracer&(int)>& corrective) {
     return written(name, [&](const auto& sink) {
