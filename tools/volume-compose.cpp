@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/photons/photons.h"
@@ -50,8 +51,8 @@ bool is_smoky(const Image& image) {
   return false;
 }
 
-Base read_base(tools::Tool& tool, const std::string& path, const SceneFrame& frame, const CameraView& view) {
-  Base base{load_exr(path), true, true};
+Base check_base(tools::Tool& tool, const std::string& path, Image read, const SceneFrame& frame, const CameraView& view) {
+  Base base{std::move(read), true, true};
   tool.depends_on(path, tools::InputRole::replaceable);
   const Image& image = base.image;
   for (const char* name : kColours)
@@ -133,9 +134,9 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
   const SceneFrame frame = input.at(number);
   const std::string base_name = tools::frame_name(options.base, number);
   const PlacedCamera camera = frame.camera(input.scene().camera_node(tool.common().camera));
-  const Image header = load_exr(base_name);
-  const CameraView view(camera, frame.origin, header.width, header.height);
-  Base base = read_base(tool, base_name, frame, view);
+  Image image = load_exr(base_name);
+  const CameraView view(camera, frame.origin, image.width, image.height);
+  Base base = check_base(tool, base_name, std::move(image), frame, view);
   const auto written = base.image.text.find("tempolux:history");
   std::string history = written == base.image.text.end() ? "" : written->second;
 

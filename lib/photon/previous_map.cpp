@@ -108,8 +108,7 @@ PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, U
   previous.ledger = reader.ledger();
   previous.digest = reader.digest();
   if (keep && !previous.header.base_name.empty()) previous.own = own_groups(path);
-  if (keep) find_change(path, previous, tracer, strategy, origin);
-  else if (sends_pilots(strategy)) send_pilots(strategy, tracer, previous);
+  if (!keep && sends_pilots(strategy)) send_pilots(strategy, tracer, previous);
   return previous;
 }
 

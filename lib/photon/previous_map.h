@@ -44,7 +44,7 @@ struct PreviousMap {
 };
 
 /// Reads the map to its end and finds PreviousMap::change against the scene of the tracer's frame; `origin` is the scene's. `keep`: its photons
-/// stay in memory. InputError if the strategy needs pilots and the map has none.
+/// stay in memory, and finding the change is left to find_change(). InputError if the strategy needs pilots and the map has none.
 PreviousMap read_previous(const std::string& path, const PhotonTracer& tracer, UpdateStrategy strategy, Vec3d origin, bool keep = false);
 
 /// PreviousMap::change of a map that is kept, against the scene of another frame's tracer.

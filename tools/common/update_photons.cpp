@@ -159,19 +159,24 @@ PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const M
   const bool still = is_still(before.identity, map.header.identity);
   const UpdateStrategy strategy = still && arguments.how.strategy != UpdateStrategy::all ? UpdateStrategy::oldest : arguments.how.strategy;
   PreviousMap& previous = kept.map;
-  if (is_here) {
-    find_change(name, previous, map.photons, strategy, map.frame.origin);
-  } else {
+  if (!is_here) {
+    tool.stats().phase("read map");
     const bool keep = kept.wanted && !arguments.corrective && may_keep(tool, formats::PhotonReader(name, {.digest = false}).photon_count_bound());
     previous = read_previous(name, map.photons, strategy, map.frame.origin, keep);
   }
+  if (previous.is_kept()) {
+    tool.stats().phase(sends_pilots(strategy) ? "pilots" : "census", true);
+    find_change(name, previous, map.photons, strategy, map.frame.origin);
+  }
   kept.name.clear();
+  tool.stats().phase("choose");
   UpdateOptions how = arguments.how;
   how.most_groups = most_groups(arguments, map.photons, previous.pilot_paths);
   const std::vector<std::uint32_t> groups = choose_groups(previous, frame, still, how);
   tool.stats().count("groups_updated", double(groups.size()));
   if (previous.pilot_paths > 0) tool.stats().count("pilot_paths", double(previous.pilot_paths));
 
+  tool.stats().phase("trace", true);
   formats::PhotonHeader header = map.header;
   header.history = before.history + map.header.history;
   const auto folder = [](const std::string& path) { return path.substr(0, path.rfind('/') + 1); };
