@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/error.h"
@@ -81,8 +82,8 @@ void count_work(tools::Tool& tool, const WarpedFrame& warped) {
   stats.count("traced", double(traced));
 }
 
-/// Writes what was made; `bare` has the size and the attributes.
-void write(tools::Tool& tool, const Options& options, Outputs& outputs, const WarpedFrame& warped, const PixelFlow* flow,
+/// Writes what was made, whose colours it takes; `bare` has the size and the attributes.
+void write(tools::Tool& tool, const Options& options, Outputs& outputs, WarpedFrame&& warped, const PixelFlow* flow,
            Image image, const Image& bare) {
   tool.stats().phase("write");
   add_colour(warped, image);
@@ -143,7 +144,7 @@ void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& in
       tool.warn(keys[0].file + ": has no layer specular: everything that mirrors, shines or lets through is masked; render keys "
                                "with --channels RGBA,specular,Z,N,id");
   }
-  const WarpedFrame warped = warp(target, placed.get(), options.warp);
+  WarpedFrame warped = warp(target, placed.get(), options.warp);
 
   Image image{frames.view(number).width(), frames.view(number).height(), {}, {}, {}, {}};
   image.text["tempolux:history"] = keys[0].history + tool.history_line(number);
@@ -155,7 +156,7 @@ void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& in
   const Image bare = image;
   tool.stats().phase("data channels", true);
   add_data(options, input, frames, tracer, seen, number, image);
-  write(tool, options, outputs, warped, &flow, std::move(image), bare);
+  write(tool, options, outputs, std::move(warped), &flow, std::move(image), bare);
 }
 
 /// Without a scene: what the target shows is read from its file.
@@ -168,7 +169,7 @@ void warp_view(tools::Tool& tool, const Options& options, const std::vector<tool
   const formats::Identity identity = identity_in(other);
   const tools::KeysOfFrame placed(keys, camera, identity);
   tool.stats().phase("warp", true);
-  const WarpedFrame warped = warp({&camera, &seen, {}, nullptr, {}}, placed.get(), options.warp);
+  WarpedFrame warped = warp({&camera, &seen, {}, nullptr, {}}, placed.get(), options.warp);
   Image image{other.width, other.height, {}, {}, other.numbers, other.matrices};
   image.numbers.erase("tempolux:samples");
   image.text["tempolux:history"] = keys[0].history + tool.history_line();
@@ -176,7 +177,7 @@ void warp_view(tools::Tool& tool, const Options& options, const std::vector<tool
   const Image bare = image;
   for (const Channel& channel : other.channels)
     if (is_data_channel(channel.name)) image.channels.push_back(channel);
-  write(tool, options, outputs, warped, nullptr, std::move(image), bare);
+  write(tool, options, outputs, std::move(warped), nullptr, std::move(image), bare);
 }
 
 void check(const tools::Tool& tool, Options& options, bool several) {

@@ -57,19 +57,20 @@ class FilterRun {
   void run(std::size_t first, std::size_t at, std::size_t last, const std::string& file, std::optional<int> number) {
     tools::Output output(file, tool_.common().no_clobber);
     loaded_.erase(loaded_.begin(), loaded_.lower_bound(first));
-    std::vector<WindowFrame> window;
-    for (std::size_t i = first; i <= last; ++i) {
-      const LoadedFrame& loaded = load(i, i == at || sequence_);
-      window.push_back({loaded.light.get(), &loaded.flow});
-    }
+    const std::string& name = names_[at].frame;
+    LoadedFrame& middle = load(at, true);
     tool_.stats().phase("filter", true);
-    Image image;
-    try {
-      image = filter_frame(std::move(loaded_.at(at).image), window, at - first, options_.filter);
-      if (!options_.channels.empty()) keep_channels(options_.channels, image);
-    } catch (const InputError& error) {
-      throw InputError(names_[at].frame + ": " + error.what());
-    }
+    FrameFilter filter(middle.image, {middle.light.get(), &middle.flow}, at - first, last - at, options_.filter);
+    const auto add = [&](std::size_t i) {
+      const LoadedFrame& other = load(i, sequence_);
+      tool_.stats().phase("filter", true);
+      naming(name, [&] { filter.add({other.light.get(), &other.flow}); });
+      if (!sequence_) loaded_.erase(i);   // two frames in memory, however many there are
+    };
+    for (std::size_t i = at; i > first; --i) add(i - 1);
+    for (std::size_t i = at + 1; i <= last; ++i) add(i);
+    Image image = filter.finish(std::move(middle.image));
+    naming(name, [&] { if (!options_.channels.empty()) keep_channels(options_.channels, image); });
     image.text["tempolux:history"] += tool_.history_line(number);
     tool_.stats().phase("write");
     save_exr(output.temporary_path(), image,
@@ -81,8 +82,18 @@ class FilterRun {
   }
 
  private:
+  /// What is wrong is said with the file's name before it.
+  template <class Body>
+  static void naming(const std::string& file, const Body& body) {
+    try {
+      body();
+    } catch (const InputError& error) {
+      throw InputError(file + ": " + error.what());
+    }
+  }
+
   /// to_filter: the frame is filtered itself, now or later; else no more of it is read and kept than others take from it.
-  const LoadedFrame& load(std::size_t index, bool to_filter) {
+  LoadedFrame& load(std::size_t index, bool to_filter) {
     const auto [found, is_new] = loaded_.try_emplace(index);
     LoadedFrame& loaded = found->second;
     if (!is_new) return loaded;
@@ -92,16 +103,14 @@ class FilterRun {
     Image flow;
     if (!names.flow.empty()) flow = read(names.flow, false, true);
     tool_.stats().phase("prepare", true);
-    try {
-      loaded.light = std::make_unique<LightFrame>(loaded.image);
-    } catch (const InputError& error) {
-      throw InputError(names.frame + ": " + error.what());
-    }
-    if (!names.flow.empty()) loaded.flow = FlowFrame(flow, loaded.image.width, loaded.image.height, names.flow);
-    else if (loaded.image.find("forward.u") || loaded.image.find("backward.u"))
-      loaded.flow = FlowFrame(loaded.image, loaded.image.width, loaded.image.height, names.frame);
+    Image& image = loaded.image;
+    if (!names.flow.empty()) loaded.flow = FlowFrame(std::move(flow), image.width, image.height, names.flow);
+    else if (image.find("forward.u") || image.find("backward.u"))
+      loaded.flow = to_filter ? FlowFrame(image, image.width, image.height, names.frame)
+                              : FlowFrame(std::move(image), image.width, image.height, names.frame);
+    naming(names.frame, [&] { loaded.light = std::make_unique<LightFrame>(to_filter ? LightFrame(image) : LightFrame(std::move(image))); });
     explain(names, loaded);
-    if (!to_filter) loaded.image = {};
+    if (!to_filter) image = {};
     return loaded;
   }
 

@@ -1,7 +1,7 @@
 // lib/filter/collect.h -- the light of one frame and of those around it, brought together along the pixel flow.
 #pragma once
 
-#include <span>
+#include <cstddef>
 #include <vector>
 
 #include "lib/filter/flow_path.h"
@@ -33,8 +33,37 @@ inline Float8 value_weight(Float8 square, Float8 variance) {
 template <class T>
 T rounding_variance(T square) { return 1e-12f * square; }
 
-/// Brings together window[middle] and the frames around it. A neighbour counts as far as its means agree with the middle's (value_weight), or
-/// where noise is not known by `frame_weights`, one for each frame of the window (empty: 1), at pixels where `in_time` is not 0 (nullptr: all).
-Collected collect(std::span<const WindowFrame> window, std::size_t middle, std::span<const float> frame_weights, const Plane* in_time);
+/// Brings frames together one by one, so that no more than two need to be in memory. A neighbour counts as far as its means agree with the
+/// middle's (value_weight), or where noise is not known by its frame's weight alone.
+///
+/// Each pixel of the middle is followed from frame to frame. It is lost for good where the nearest pixel lies outside the picture, shows another
+/// object or a normal turned by more than PixelSurfaces::kSameNormal, or has come from elsewhere: the flow there and back ends more than
+/// kReturn pixels, and kReturnShare of its length, from where it began.
+class Collector {
+ public:
+  /// middle: its light outlives this, its flow start(). weight: of the frame. in_time: pixels where it is 0 take nothing from other frames;
+  /// nullptr: all do.
+  Collector(const WindowFrame& middle, float weight, const Plane* in_time);
+
+  /// From here on add() takes the frames after the middle (direction 1) or before it (-1), the nearest first.
+  void start(const FlowFrame& middle, int direction);
+  void add(const WindowFrame& frame, float weight);
+  /// Once, at the end.
+  Collected take();
+
+ private:
+  struct Strip;   // pixels of a row
+  void follow(const Strip& strip, const WindowFrame& frame, Lane& weights, std::array<std::uint32_t, kStrip>& there);
+  void add(const Strip& strip, const LightFrame& frame, const Lane& weights, const std::array<std::uint32_t, kStrip>& there);
+
+  const LightFrame& frame_;
+  const Plane* in_time_;
+  int direction_ = 0;
+  Plane px_, py_;              ///< where each pixel is in the next frame, pixel centres are whole numbers; not a number: lost
+  Plane right_, down_;         ///< the last step there
+  Collected out_;              ///< sums of it
+  Plane edge_weight_;          ///< of pixels that are of no use, where none is: `light` holds theirs
+  Plane mean_weight_;
+};
 
 }  // namespace tempolux

@@ -1,7 +1,10 @@
 // lib/filter/lane.h -- the pixels of a row that are worked on together, one number each.
 #pragma once
 
+#include <immintrin.h>
+
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -29,6 +32,16 @@ inline Int8 load8(const std::uint32_t* from) {
 inline void store8(Float8 values, float* to) { std::memcpy(to, &values, sizeof values); }
 /// The values where the comparison is true, else 0.
 inline Float8 where(Int8 is, Float8 values) { return reinterpret_cast<Float8>(is & reinterpret_cast<Int8>(values)); }
+/// a b + c, rounded once.
+inline Float8 multiply_add(Float8 a, Float8 b, Float8 c) {
+#ifdef __FMA__
+  return _mm256_fmadd_ps(a, b, c);
+#else
+  for (std::size_t i = 0; i < kEight; ++i) c[i] = std::fma(a[i], b[i], c[i]);
+  return c;
+#endif
+}
+inline Float8 all8(float value) { return Float8{} + value; }
 inline Float8 abs8(Float8 values) { return reinterpret_cast<Float8>(reinterpret_cast<Int8>(values) & 0x7fffffff); }
 
 }  // namespace tempolux

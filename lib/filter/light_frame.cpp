@@ -21,33 +21,29 @@ bool has_rgb(const Image& image, const std::string& layer) {
   return red && !red->values.empty();
 }
 
-void take(const Image& image, const std::string& layer, ColourPlane& planes) {
-  const auto samples = image.rgb(layer);
-  for (std::size_t c = 0; c < 3; ++c) {
-    planes[c] = Plane(image.width, image.height);
-    planes[c].take(*samples[c], image.width);
-  }
-}
-
 /// Brings the frame's light to one number that its noise is told by.
 class Preparation {
  public:
-  Preparation(const Image& image, LightFrame& frame) : image_(image), frame_(frame), width_(std::size_t(frame.width)) {}
+  /// spare: the image, if its samples may be freed; else nullptr.
+  Preparation(const Image& image, Image* spare, LightFrame& frame) : image_(image), spare_(spare), frame_(frame), width_(std::size_t(frame.width)) {}
 
   void take_surfaces() {
     const auto take_if_there = [&](const char* name, Plane& plane) {
-      plane = Plane(image_.width, image_.height);
-      if (const Channel* channel = image_.find(name); channel && !channel->values.empty()) plane.take(channel->values, image_.width);
+      const Channel* channel = image_.find(name);
+      const bool there = channel && !channel->values.empty();
+      plane = there ? unset() : cleared();
+      if (there) plane.take(channel->values, image_.width);
+      free(channel);
     };
     take_if_there("N.X", frame_.nx);
     take_if_there("N.Y", frame_.ny);
     take_if_there("N.Z", frame_.nz);
-    frame_.object = PlaneT<std::uint32_t>(image_.width, image_.height);
+    frame_.object = PlaneT<std::uint32_t>(frame_.width, frame_.height);
     if (const Channel* ids = image_.find("id.object"); ids && !ids->ids.empty()) frame_.object.take(ids->ids, image_.width);
     take_depth();
     const Coverage coverage(image_);
-    frame_.use = Plane(image_.width, image_.height);
-    frame_.inside = Plane(image_.width, image_.height);
+    frame_.use = unset();
+    frame_.inside = unset();
     for_each_strip([&](int y, std::size_t x0, std::size_t count) {
       Lane inside;
       one_surface_around(y, x0, count, inside);
@@ -61,14 +57,16 @@ class Preparation {
 
   /// w and its slopes, as PixelSurfaces has them.
   void take_depth() {
-    for (Plane* plane : {&frame_.w, &frame_.w_right, &frame_.w_down}) *plane = Plane(image_.width, image_.height);
     const Channel* z = image_.find("Z");
-    if (!z || z->values.empty()) return;
+    const bool there = z && !z->values.empty();
+    for (Plane* plane : {&frame_.w, &frame_.w_right, &frame_.w_down}) *plane = there ? unset() : cleared();
+    if (!there) return;
     for_each_row(frame_.height, [&](int y) {
       float* w = frame_.w.row(y);
       const float* depth = z->values.data() + std::size_t(y) * width_;
       for (std::size_t x = 0; x < width_; ++x) w[x] = PixelSurfaces::inverse_depth(depth[x]);
     });
+    free(z);
     for_each_row(frame_.height, [&](int y) {
       const float *w = frame_.w.row(y), *above = frame_.w.row(y - 1), *below = frame_.w.row(y + 1);
       const std::uint32_t *object = frame_.object.row(y), *object_above = frame_.object.row(y - 1), *object_below = frame_.object.row(y + 1);
@@ -87,11 +85,11 @@ class Preparation {
       if (has_rgb(image_, layer)) frame_.layers.push_back(layer);
     if (frame_.layers.empty()) frame_.layers.push_back("");
     const bool albedo = has_rgb(image_, "albedo");
-    if (albedo) take(image_, "albedo", frame_.albedo);
+    if (albedo) take("albedo", frame_.albedo);
     frame_.light.resize(frame_.layers.size());
-    sum_ = {Plane(image_.width, image_.height), Plane(image_.width, image_.height), Plane(image_.width, image_.height)};
+    for (Plane& plane : sum_) plane = cleared();
     for (std::size_t l = 0; l < frame_.layers.size(); ++l)
-      if (!is_black(frame_.layers[l])) take(image_, frame_.layers[l], frame_.light[l]);
+      if (!is_black(frame_.layers[l])) take(frame_.layers[l], frame_.light[l]);
     for_each_row(frame_.height, [&](int y) {
       float* use = frame_.use.row(y);
       for (std::size_t c = 0; c < 3; ++c) {
@@ -112,7 +110,7 @@ class Preparation {
   }
 
   void take_noise() {
-    frame_.variance = Plane(image_.width, image_.height);
+    frame_.variance = cleared();
     const bool diffuse = !frame_.layers[0].empty() && has_rgb(image_, "diffuse.variance");
     const bool told = diffuse || has_rgb(image_, "variance");
     const Channel* samples = image_.find("samples");
@@ -133,9 +131,9 @@ class Preparation {
 
   /// Means over the window, of the sum of the layers and of the variance; a pixel's variance becomes the window's.
   void take_means() {
-    for (Plane& plane : frame_.mean) plane = Plane(image_.width, image_.height);
-    frame_.mean_variance = Plane(image_.width, image_.height);
-    Plane smooth(image_.width, image_.height);
+    for (Plane& plane : frame_.mean) plane = unset();
+    frame_.mean_variance = unset();
+    Plane smooth = unset();
     const std::array<const Plane*, 4> from{&sum_[0], &sum_[1], &sum_[2], &frame_.variance};
     const std::array<Plane*, 4> to{&frame_.mean[0], &frame_.mean[1], &frame_.mean[2], &smooth};
     for_each_strip([&](int y, std::size_t x0, std::size_t count) {
@@ -164,6 +162,20 @@ class Preparation {
   }
 
  private:
+  Plane unset() const { return Plane::unset(frame_.width, frame_.height); }
+  Plane cleared() const { return Plane(frame_.width, frame_.height); }
+  void free(const Channel* channel) {
+    if (Channel* mine = channel && spare_ ? spare_->find(channel->name) : nullptr) *mine = {mine->name, {}, {}};
+  }
+  void take(const std::string& layer, ColourPlane& planes) {
+    const auto samples = image_.rgb(layer);
+    for (std::size_t c = 0; c < 3; ++c) {
+      planes[c] = unset();
+      planes[c].take(*samples[c], image_.width);
+    }
+    for (const char* c : {"R", "G", "B"}) free(image_.find(layer.empty() ? c : layer + "." + c));
+  }
+
   bool is_black(const std::string& layer) const {
     for (const std::vector<float>* samples : image_.rgb(layer))
       if (std::any_of(samples->begin(), samples->end(), [](float v) { return v != 0; })) return false;
@@ -226,6 +238,7 @@ class Preparation {
   }
 
   const Image& image_;
+  Image* spare_;
   LightFrame& frame_;
   std::size_t width_;
   ColourPlane sum_;   ///< of the layers
@@ -240,13 +253,20 @@ bool is_read_by_others(const std::string& channel) {
 }
 bool is_read_to_filter(const std::string& channel) { return is_read_by_others(channel) || is_in_group(channel, "layers") || channel == "A"; }
 
-LightFrame::LightFrame(const Image& image) : width(image.width), height(image.height) {
-  Preparation preparation(image, *this);
+namespace {
+
+void prepare(const Image& image, Image* spare, LightFrame& frame) {
+  Preparation preparation(image, spare, frame);
   preparation.take_surfaces();
   preparation.take_light();
   preparation.take_noise();
   preparation.take_means();
 }
+
+}  // namespace
+
+LightFrame::LightFrame(const Image& image) : width(image.width), height(image.height) { prepare(image, nullptr, *this); }
+LightFrame::LightFrame(Image&& image) : width(image.width), height(image.height) { prepare(image, &image, *this); }
 
 bool LightFrame::on_surface(int x, int y, int dx, int dy) const {
   return SurfaceRow(*this, y, dx, dy).surface(std::size_t(x)) != 0;

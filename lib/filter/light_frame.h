@@ -47,6 +47,8 @@ struct LightFrame {
   /// Where `use` is 0 mean and variances are those of the surface at the pixel's centre, from its other pixels. Pixels that are
   /// not finite are left out like edges.
   explicit LightFrame(const Image& image);
+  /// The same, of an image that is not needed any more: what was taken of its samples is freed, its channels are there without.
+  explicit LightFrame(Image&& image);
 
   /// Is the pixel (dx, dy) from (x, y) on its surface, as PixelSurfaces::same says, whether it is of use or not?
   bool on_surface(int x, int y, int dx, int dy) const;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "formats/large_pages.h"
@@ -16,19 +17,37 @@ template <class T>
 class PlaneT {
  public:
   PlaneT() = default;
-  PlaneT(int width, int height)
-      : stride_(std::size_t(width) + 2 * kMargin), height_(height) {
-    const std::size_t count = stride_ * (std::size_t(height) + 2 * kMargin);
-    data_.reserve(count);
-    formats::prefer_large_pages(data_.data(), count * sizeof(T));
-    data_.resize(count);
+  /// All T{}.
+  PlaneT(int width, int height) : PlaneT(unset(width, height)) {
+    for (int y = 0; y < height; ++y) std::fill_n(row(y), width, T{});
+  }
+  /// Pixels are not set yet, the margin is: for a plane all of whose pixels are written before any is read.
+  static PlaneT unset(int width, int height) {
+    PlaneT plane;
+    plane.stride_ = std::size_t(width) + 2 * kMargin;
+    plane.height_ = height;
+    const std::size_t all = plane.stride_ * (std::size_t(height) + 2 * kMargin), count = all + kMargin;   // eight may be read from any place
+    plane.data_ = std::make_unique_for_overwrite<T[]>(count);
+    formats::prefer_large_pages(plane.data_.get(), count * sizeof(T));
+    std::fill_n(plane.data_.get() + all, kMargin, T{});
+    for (int y = -kMargin; y < height + kMargin; ++y) {
+      T* row = plane.row(y) - kMargin;
+      if (y < 0 || y >= height) std::fill_n(row, plane.stride_, T{});
+      else {
+        std::fill_n(row, kMargin, T{});
+        std::fill_n(row + kMargin + width, kMargin, T{});
+      }
+    }
+    return plane;
   }
   /// Pixel (0, y); y from -kMargin to height + kMargin - 1, columns likewise.
-  T* row(int y) { return data_.data() + std::size_t(y + kMargin) * stride_ + kMargin; }
-  const T* row(int y) const { return data_.data() + std::size_t(y + kMargin) * stride_ + kMargin; }
+  T* row(int y) { return data_.get() + std::size_t(y + kMargin) * stride_ + kMargin; }
+  const T* row(int y) const { return data_.get() + std::size_t(y + kMargin) * stride_ + kMargin; }
   T& at(int x, int y) { return row(y)[x]; }
   const T& at(int x, int y) const { return row(y)[x]; }
-  bool empty() const { return data_.empty(); }
+  /// row(y)[x] is row(0)[y * stride() + x].
+  std::size_t stride() const { return stride_; }
+  bool empty() const { return !data_; }
   /// Copies a picture's samples in, row by row.
   void take(const std::vector<T>& samples, int width) {
     for (int y = 0; y < height_; ++y) std::copy_n(samples.data() + std::size_t(y) * std::size_t(width), width, row(y));
@@ -37,7 +56,7 @@ class PlaneT {
  private:
   std::size_t stride_ = 0;
   int height_ = 0;
-  std::vector<T> data_;
+  std::unique_ptr<T[]> data_;
 };
 
 using Plane = PlaneT<float>;

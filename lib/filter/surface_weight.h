@@ -59,7 +59,8 @@ class SurfaceEight {
   }
 
   Float8 weight(int dx) const {
-    const Float8 facing = nx_ * load8(other_nx_ + dx) + ny_ * load8(other_ny_ + dx) + nz_ * load8(other_nz_ + dx);
+    const Float8 facing =
+        multiply_add(nx_, load8(other_nx_ + dx), multiply_add(ny_, load8(other_ny_ + dx), nz_ * load8(other_nz_ + dx)));
     const Float8 right = w_right_ * float(dx), off = abs8(load8(other_w_ + dx) - expected_ - right);
     const Int8 same = (object_ == load8(other_object_ + dx)) & (facing >= facing_) & (off <= allowed_ + abs8(right));
     return where(same, load8(other_use_ + dx));

@@ -250,7 +250,10 @@ ExrClaims read_exr_claims(const ByteFile& file, std::uint64_t max_pixels) {
       check_samples(in, part, file.size());
       first = part;
     }
-    if (!part.multipart) break;
+    if (!part.multipart) {
+      first.header_bytes = in.position();
+      break;
+    }
     if (index + 1 == kMaxParts) in.fail("more than 256 parts");
   }
   return first;

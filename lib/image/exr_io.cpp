@@ -28,6 +28,7 @@
 #include "lib/core/parallel.h"
 #include "lib/image/byte_file.h"
 #include "lib/image/exr_claims.h"
+#include "lib/image/exr_plain.h"
 
 namespace tempolux {
 namespace {
@@ -151,6 +152,7 @@ class MemoryOut : public Imf::OStream {
 
 /// Lines [first, first + count) of the image as chunks, each: int32 line, int32 size, bytes.
 std::string encode_slab(const Image& image, const ExrWriteOptions& options, int first, int count) {
+  if (options.compression == ExrWriteOptions::Compression::none && !options.half) return plain_lines(image, first, count);
   Imf::Header header = make_bare_header(image, options);
   const Imath::Box2i window({0, first}, {image.width - 1, first + count - 1});
   header.dataWindow() = window;
@@ -267,8 +269,11 @@ void read_attributes(const Imf::Header& header, Image& image) {
   }
 }
 
-/// Reads lines [first, last) of the data window into the image, which has the data window's size.
-void read_lines(const ByteFile& file, const PixelWindow& data, Image& image, int first, int last) {
+/// Reads lines [first, last) of the data window into the image, which has the data window's size; with the first the attributes.
+void read_lines(const ByteFile& file, const ExrClaims& claims, Image& image, int first, int last) {
+  const bool done = read_plain_lines(file, claims, image, first, last);
+  if (done && first != 0) return;
+  const PixelWindow& data = claims.data;
   FileIn in(file);
   Imf::MultiPartInputFile parts(in, 0, false);
   if (!parts.partComplete(0))
@@ -276,6 +281,7 @@ void read_lines(const ByteFile& file, const PixelWindow& data, Image& image, int
                      ": offset table: lines are missing, the writer did not finish; write it again");
   Imf::InputPart part(parts, 0);
   if (first == 0) read_attributes(part.header(), image);
+  if (done) return;
   const Imath::Box2i window({data.x0, data.y0}, {data.x1, data.y1});
   Imf::FrameBuffer lines;
   for (Channel& channel : image.channels) {
@@ -308,7 +314,7 @@ Image read_data_window(const ByteFile& file, const ExrClaims& claims, const ExrR
   const int height = image.height;
   const int slab = claims.tile_width > 0 ? height : std::max(kReadLines, claims.lines_per_chunk());
   parallel_chunks(std::size_t(height), std::size_t(slab), [&](std::size_t first, std::size_t last) {
-    read_lines(file, claims.data, image, int(first), int(last));
+    read_lines(file, claims, image, int(first), int(last));
   });
   return image;
 }

@@ -77,13 +77,6 @@ Vec3d FrameCamera::solve(RasterPoint at, double depth) const {
   return {(d * e - b * f) / det, (a * f - c * e) / det, depth};
 }
 
-double FrameCamera::area_of_pixel(Vec3d point, Vec3d normal) const {
-  const double facing = orthographic() ? std::abs(normal.z) : std::abs(dot(normal, point));
-  const double area = pixel_width_ * pixel_width_;
-  if (orthographic()) return area / std::max(facing, 1e-3);
-  return area * point.z * point.z * point.z / std::max(facing, 1e-3 * length(point));
-}
-
 FrameCamera camera_of(const Image& image, const std::string& name) {
   const auto matrix = [&](const char* attribute) -> const std::array<double, 16>& {
     const auto found = image.matrices.find(attribute);

@@ -1,7 +1,9 @@
 // lib/warp/frame_camera.h -- the camera of a frame, from its standard attributes: points to pixels and back.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -37,6 +39,11 @@ class FrameCamera {
     if (!(w > 0)) return std::nullopt;
     return RasterPoint{(dot(x_, point) + x_shift_) / w, (dot(y_, point) + y_shift_) / w};
   }
+  /// The same; not a number if the point is not in front.
+  RasterPoint project_or_nan(Vec3d point) const {
+    const double w = dot(w_, point) + w_shift_, known = w > 0 ? w : NAN;
+    return {(dot(x_, point) + x_shift_) / known, (dot(y_, point) + y_shift_) / known};
+  }
   /// Where what lies infinitely far away in this direction (camera space) is seen.
   std::optional<RasterPoint> project_direction(Vec3d direction) const {
     const double w = dot(w_, direction);
@@ -56,7 +63,15 @@ class FrameCamera {
   bool orthographic() const { return w_.z == 0; }
   /// Area of surface that a pixel shows, m^2 up to a factor of this picture alone: point and normal in camera space. With
   /// d the distance, c the cosine to the normal and g the angle to the axis it is d^2 cos^3 g / c = z^3 / |n . p|.
-  double area_of_pixel(Vec3d point, Vec3d normal) const;
+  double area_of_pixel(Vec3d point, Vec3d normal) const {
+    const double area = pixel_width_ * pixel_width_;
+    if (orthographic()) return area / std::max(std::abs(normal.z), 1e-3);
+    return area * point.z * point.z * point.z / std::max(std::abs(dot(normal, point)), 1e-3 * length(point));
+  }
+  /// |n . r| of a surface, both in camera space, r the unit vector of the ray.
+  double facing(Vec3d point, Vec3d normal) const {
+    return orthographic() ? std::abs(normal.z) : std::abs(dot(normal, point)) / length(point);
+  }
   /// Width of a pixel at depth 1 (perspective) or at any (orthographic), m.
   double pixel_width() const { return pixel_width_; }
 

@@ -25,7 +25,7 @@ std::string our_colour_name(const std::string& channel) {
 
 KeyFrame::KeyFrame(const Image& image, const std::string& name, const FrameCamera& camera)
     : name_(name), camera_(camera), seen_(seen_in(image, name)) {
-  whole_ = whole_pixels(seen_, camera_);
+  look_at_pixels();
   std::map<std::string, const Channel*> channels;
   for (const Channel& channel : image.channels)
     if (const std::string ours = our_colour_name(channel.name); !ours.empty() && channel.ids.empty())
@@ -35,14 +35,39 @@ KeyFrame::KeyFrame(const Image& image, const std::string& name, const FrameCamer
       throw InputError(name + ": has no channel " + needed + "; a key is a picture: render it with RGBA");
   for (const auto& [ours, channel] : channels) names_.push_back(ours);
   stride_ = (names_.size() + 7) / 8 * 8;
-  colour_.resize(image.pixel_count() * stride_);
-  parallel_chunks(image.pixel_count(), 16384, [&](std::size_t first, std::size_t last) {
-    std::size_t c = 0;
-    for (const auto& [ours, channel] : channels) {
-      for (std::size_t p = first; p < last; ++p) colour_[p * stride_ + c] = channel->values[p];
-      ++c;
+  colour_ = std::make_unique_for_overwrite<float[]>(image.pixel_count() * stride_);
+  constexpr std::size_t kTogether = 256;   // pixels whose colours stay in the first-level cache
+  parallel_chunks(image.pixel_count(), 16 * kTogether, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t first = begin; first < end; first += kTogether) {
+      const std::size_t last = std::min(first + kTogether, end);
+      std::size_t c = 0;
+      for (const auto& [ours, channel] : channels) {
+        const float* values = channel->values.data();
+        float* colour = colour_.get() + c++;
+        for (std::size_t p = first; p < last; ++p) colour[p * stride_] = values[p];
+      }
+      for (; c < stride_; ++c)
+        for (std::size_t p = first; p < last; ++p) colour_[p * stride_ + c] = 0;
     }
   });
+}
+
+void KeyFrame::look_at_pixels() {
+  whole_ = whole_pixels(seen_, camera_);
+  shown_.resize(seen_.pixel_count());
+  const auto width = std::size_t(seen_.width), height = std::size_t(seen_.height);
+  parallel_chunks(height, 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t y = first, p = first * width; y < last; ++y)
+      for (std::size_t x = 0; x < width; ++x, ++p) shown_[p] = {seen_.depth[p], seen_.object_at(p), seen_.normal_at(p)};
+  });
+  std::vector<std::uint8_t> four(whole_.size());
+  parallel_chunks(height - 1, 16, [&](std::size_t first, std::size_t last) {
+    for (std::size_t y = first; y < last; ++y) {
+      const std::uint8_t *upper = whole_.data() + y * width, *lower = upper + width;
+      for (std::size_t x = 0; x + 1 < width; ++x) four[y * width + x] = upper[x] & upper[x + 1] & lower[x] & lower[x + 1];
+    }
+  });
+  for (std::size_t p = 0; p < whole_.size(); ++p) whole_[p] = std::uint8_t(whole_[p] | four[p] << 1);
 }
 
 }  // namespace tempolux

@@ -23,46 +23,92 @@ KeyView::KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCame
       moved_[object] = camera.camera_from_world() * (motions_.of(object).other_from_here * target.world_from_camera());
 }
 
-LookUp KeyView::find(const Wanted& wanted, Taps& taps, float& magnification) const {
-  const FacePoint& point = wanted.point;
-  const bool moves = point.object < moved_.size();
-  if (moves) {
-    const ObjectMotion::Kind kind = motions_.of(point.object).kind;
-    if (kind == ObjectMotion::Kind::deforming) return LookUp::deforming;
-    if (kind == ObjectMotion::Kind::absent) return LookUp::hidden;
+void WantedPoints::place(const FrameCamera& camera) {
+  infinite = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool far = !(face[i].depth < INFINITY);
+    infinite |= far;
+    const Vec3d point = camera.unproject(at[i], far ? 1 : double(face[i].depth));
+    x[i] = point.x;
+    y[i] = point.y;
+    z[i] = point.z;
   }
-  const Affine& to_key = moves ? moved_[point.object] : still_;
-  const bool infinite = !(point.depth < INFINITY);
-  const Vec3d there = infinite ? to_key.direction(wanted.at) : to_key.point(wanted.at);
-  const auto raster = infinite ? camera_.project_direction(there) : camera_.project(there);
-  const SeenSurfaces& seen = key_.seen();
-  if (!raster || !(raster->x >= 0 && raster->y >= 0 && raster->x < seen.width && raster->y < seen.height))
-    return LookUp::outside;
+  const Affine& turn = camera.camera_from_world();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3d world(face[i].normal);
+    const bool known = dot(world, world) > 0;
+    const Vec3d turned = turn.direction(world), normal{known ? turned.x : 0, known ? turned.y : 0, known ? turned.z : 1};
+    area[i] = camera.area_of_pixel({x[i], y[i], z[i]}, normal);
+  }
+}
 
-  FacePoint face{infinite ? INFINITY : float(there.z), point.object, point.normal};   // in the key's world
-  float facing = 1;
-  magnification = 1;
-  if (!infinite) {
-    Vec3d normal{0, 0, 1};   // in the key's camera space; if none is known, towards the camera
-    if (length2(point.normal) > 0) {
-      if (moves && motions_.of(point.object).kind == ObjectMotion::Kind::moved)
-        face.normal = Vec3(normalize(motions_.of(point.object).other_from_here.normal(Vec3d(point.normal))));
-      normal = camera_.camera_from_world().direction(Vec3d(face.normal));
-      facing = float(camera_.orthographic() ? std::abs(normal.z) : std::abs(dot(normal, there)) / length(there));
-    }
-    magnification = float(camera_.area_of_pixel(there, normal) / wanted.area);
+void KeyView::place(const WantedPoints& wanted, Places& places) const {
+  std::array<double, WantedPoints::kMost> z;
+  const Affine &to_key = still_, &turn = camera_.camera_from_world();
+  for (std::size_t i = 0; i < wanted.count; ++i) {
+    const Vec3d there = to_key.point({wanted.x[i], wanted.y[i], wanted.z[i]}), world(wanted.face[i].normal);
+    const bool known = dot(world, world) > 0;
+    const Vec3d turned = turn.direction(world), normal{known ? turned.x : 0, known ? turned.y : 0, known ? turned.z : 1};
+    const RasterPoint raster = camera_.project_or_nan(there);
+    places.x[i] = raster.x;
+    places.y[i] = raster.y;
+    z[i] = there.z;
+    places.facing[i] = known ? camera_.facing(there, normal) : 1;
+    places.magnification[i] = camera_.area_of_pixel(there, normal) / wanted.area[i];
   }
-  const float tolerance = depth_tolerance(camera_.orthographic() ? 0 : float(camera_.pixel_width()), facing);
-  return gather(raster->x - 0.5, raster->y - 0.5, face, tolerance, taps);
+  for (std::size_t i = 0; i < wanted.count; ++i) places.face[i] = {float(z[i]), wanted.face[i].object, wanted.face[i].normal};
+}
+
+void KeyView::place_one(const WantedPoints& wanted, std::size_t i, Places& places) const {
+  const FacePoint& point = wanted.face[i];
+  const bool moves = point.object < moved_.size(), infinite = !(point.depth < INFINITY);
+  const Affine& to_key = moves ? moved_[point.object] : still_;
+  const Vec3d at{wanted.x[i], wanted.y[i], wanted.z[i]}, there = infinite ? to_key.direction(at) : to_key.point(at);
+  const auto raster = infinite ? camera_.project_direction(there) : camera_.project(there);
+  places.x[i] = raster ? raster->x : NAN;
+  places.y[i] = raster ? raster->y : NAN;
+  places.face[i] = {infinite ? INFINITY : float(there.z), point.object, point.normal};
+  places.facing[i] = places.magnification[i] = 1;
+  if (infinite) return;
+  Vec3d normal{0, 0, 1};   // in the key's camera space; if none is known, towards the camera
+  if (length2(point.normal) > 0) {
+    if (moves && motions_.of(point.object).kind == ObjectMotion::Kind::moved)
+      places.face[i].normal = Vec3(normalize(motions_.of(point.object).other_from_here.normal(Vec3d(point.normal))));
+    normal = camera_.camera_from_world().direction(Vec3d(places.face[i].normal));
+    places.facing[i] = camera_.facing(there, normal);
+  }
+  places.magnification[i] = camera_.area_of_pixel(there, normal) / wanted.area[i];
+}
+
+void KeyView::find(const WantedPoints& wanted, FoundPoints& found) const {
+  Places places;
+  const bool all_alike = !wanted.infinite && moved_.empty();
+  if (all_alike) place(wanted, places);
+  const SeenSurfaces& seen = key_.seen();
+  const float pixel = camera_.orthographic() ? 0 : float(camera_.pixel_width());
+  for (std::size_t i = 0; i < wanted.count; ++i) {
+    if (!all_alike) {
+      const std::uint32_t object = wanted.face[i].object;
+      if (object < moved_.size()) {
+        const ObjectMotion::Kind kind = motions_.of(object).kind;
+        if (kind == ObjectMotion::Kind::deforming || kind == ObjectMotion::Kind::absent) {
+          found.result[i] = kind == ObjectMotion::Kind::deforming ? LookUp::deforming : LookUp::hidden;
+          continue;
+        }
+      }
+      place_one(wanted, i, places);
+    }
+    found.magnification[i] = float(places.magnification[i]);
+    const double x = places.x[i], y = places.y[i];
+    if (!(x >= 0 && y >= 0 && x < seen.width && y < seen.height)) found.result[i] = LookUp::outside;
+    else found.result[i] = gather(x - 0.5, y - 0.5, places.face[i], depth_tolerance(pixel, float(places.facing[i])), found.taps[i]);
+  }
 }
 
 LookUp KeyView::gather(double cx, double cy, const FacePoint& face, float tolerance, Taps& taps) const {
-  const SeenSurfaces& seen = key_.seen();
-  const int width = seen.width, height = seen.height;
+  const int width = key_.seen().width, height = key_.seen().height;
   const auto index = [&](int x, int y) { return std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x); };
-  const auto shows = [&](std::uint32_t p) {
-    return same_face({seen.depth[p], seen.object_at(p), seen.normal_at(p)}, face, tolerance);
-  };
+  const auto shows = [&](std::uint32_t p) { return same_face(key_.shown(p), face, tolerance); };
   const int x0 = int(std::floor(cx)), y0 = int(std::floor(cy));
   const float fx = float(cx - x0), fy = float(cy - y0);
   const int nx = x0 + (fx >= 0.5f), ny = y0 + (fy >= 0.5f);
@@ -79,7 +125,7 @@ LookUp KeyView::gather(double cx, double cy, const FacePoint& face, float tolera
     // The other three are among the 8 around a whole pixel: they show its face.
     if (x0 >= 0 && y0 >= 0 && x0 + 1 < width && y0 + 1 < height) {
       const std::uint32_t p = index(x0, y0), q = p + std::uint32_t(width);
-      if (key_.whole(p) && key_.whole(p + 1) && key_.whole(q) && key_.whole(q + 1)) {
+      if (key_.four_whole(p)) {
         taps = {4, {p, p + 1, q, q + 1}, {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
         return LookUp::found;
       }

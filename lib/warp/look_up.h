@@ -26,6 +26,27 @@ struct Taps {
   std::array<float, 4> weight;
 };
 
+/// Points of the target that are looked for together; arrays by point.
+struct WantedPoints {
+  static constexpr std::size_t kMost = 64;
+  std::size_t count = 0;
+  std::array<RasterPoint, kMost> at;        ///< where in the target
+  std::array<FacePoint, kMost> face;        ///< what it shows there
+  std::array<double, kMost> x, y, z;        ///< the point in its camera's space; if it is infinitely far away, its direction
+  std::array<double, kMost> area;           ///< FrameCamera::area_of_pixel() there
+  bool infinite = false;                    ///< is any of them
+
+  /// Fills x, y, z, area and infinite from at and face, as `camera` sees them.
+  void place(const FrameCamera& camera);
+};
+
+/// What a key has of them.
+struct FoundPoints {
+  std::array<LookUp, WantedPoints::kMost> result;
+  std::array<Taps, WantedPoints::kMost> taps;
+  std::array<float, WantedPoints::kMost> magnification;   ///< area of target pixels per pixel of the key (algorithms.md 1.3)
+};
+
 /// One key as a target camera at another frame makes use of it.
 class KeyView {
  public:
@@ -33,18 +54,11 @@ class KeyView {
   /// to the key's. All references outlive this.
   KeyView(const KeyFrame& key, const FrameCamera& camera, const FrameCamera& target, const ObjectMotions& key_from_target);
 
-  /// A point of the target to be found: `at` in the target's camera space (if it is infinitely far away, its direction).
-  struct Wanted {
-    Vec3d at;
-    FacePoint point;
-    double area = 1;       ///< FrameCamera::area_of_pixel() there
-  };
-
-  /// Colour for a point of the target. Only
+  /// Colour for points of the target. Only
   /// whole pixels that show the same face count. Between pixel centres colour is linear; where some of the four around are of no
   /// use, the others share their weight; where all are, the nearest of the 16 around is taken. A position within kSamePixel of a centre is
-  /// that pixel. magnification: area of target pixels per pixel of the key (algorithms.md 1.3).
-  LookUp find(const Wanted& wanted, Taps& taps, float& magnification) const;
+  /// that pixel.
+  void find(const WantedPoints& wanted, FoundPoints& found) const;
 
   /// Does the target see this pixel exactly as the key did: same camera, and the object where it was?
   bool sees_the_same(std::uint32_t object) const {
@@ -55,6 +69,16 @@ class KeyView {
   const ObjectMotions& motions() const { return motions_; }
 
  private:
+  /// Where points are in the key, and what should be seen there.
+  struct Places {
+    std::array<double, WantedPoints::kMost> x, y;           ///< raster; not a number: not in front of the camera
+    std::array<double, WantedPoints::kMost> magnification, facing;
+    std::array<FacePoint, WantedPoints::kMost> face;        ///< in the key's world
+  };
+  /// Of points that stand still and are not infinitely far away; all together.
+  void place(const WantedPoints& wanted, Places& places) const;
+  /// Of any point.
+  void place_one(const WantedPoints& wanted, std::size_t i, Places& places) const;
   /// At a position of the key, counted in pixels from the centre of its first: of pixels that show the face.
   LookUp gather(double cx, double cy, const FacePoint& face, float tolerance, Taps& taps) const;
 

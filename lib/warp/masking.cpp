@@ -58,11 +58,18 @@ bool Masking::edge_agrees(const float* first, const float* second) const {
   return true;
 }
 
+Masking::Spread Masking::spread(const float* mean, const float* square) const {
+  Spread spread;
+  note_light(mean, spread.mean);
+  note_light(square, spread.square);
+  return spread;
+}
+
 std::size_t Masking::edge_positions(Spread at, std::size_t count, Spread around) const {
   constexpr double kCentres = 9, kBeyond = 3;
-  const double allowed = options_.edge_share * double(std::max(luminance_of(at.mean), dark_));
+  const double allowed = options_.edge_share * double(std::max(luminance(Rgb(at.mean[0], at.mean[1], at.mean[2])), dark_));
   double variance = 0;
-  for (const int c : rgb_) {
+  for (std::size_t c = 0; c < 3; ++c) {
     const double mean = double(at.mean[c]);
     const double off = std::max(0.0, double(around.square[c]) - 2 * mean * double(around.mean[c]) + mean * mean);   // of the centres
     variance = std::max({variance, double(at.square[c]) - mean * mean, off * kCentres / kBeyond / (2 * double(count))});

@@ -26,8 +26,9 @@ class Masking {
 
   /// Mean and mean square of what is seen at several positions.
   struct Spread {
-    const float *mean, *square;
+    std::array<float, 3> mean{}, square{};   ///< R, G, B
   };
+  Spread spread(const float* mean, const float* square) const;
   /// At how many positions a pixel composed of several surfaces must be known for its error to be WarpOptions::edge_share of its light: n positions in
   /// rows and columns of their own err by sigma n^(-5/6) (docs/pixels.md), sigma the standard deviation of what they show. `at`: of the `count`
   /// positions tried. What they all missed has a share of 1 / (2 count), about; how it differs is told by the centres of the 3 x 3 pixels
@@ -41,6 +42,10 @@ class Masking {
   void mark_changed_light(const std::array<std::vector<float>, 2>& light, std::vector<std::uint32_t>& why) const;
 
   float luminance_of(const float* colour) const;
+  /// R, G, B of a colour.
+  void note_light(const float* colour, std::array<float, 3>& rgb) const {
+    for (std::size_t c = 0; c < 3; ++c) rgb[c] = colour[rgb_[c]];
+  }
 
  private:
   bool specular_matters(std::size_t pixel, const float* colour, const float* first, const float* second) const;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "lib/core/parallel.h"
+#include "lib/warp/compositor.h"
 #include "lib/warp/masking.h"
 
 namespace tempolux {
@@ -30,154 +31,7 @@ std::span<const RasterPoint> part_positions(std::size_t n) {
   return std::span(all[set]).first(kParts << set);
 }
 
-constexpr std::size_t kMostChannels = 64;
-
-/// a += w (b - c), over a stride, which is a multiple of 8. Sums are written so: equal colours give their bits, whatever the weights.
-void add_difference(float* a, float w, const float* b, const float* c, std::size_t stride) {
-  for (std::size_t i = 0; i < stride; i += 8)
-    for (std::size_t j = 0; j < 8; ++j) a[i + j] += w * (b[i + j] - c[i + j]);
-}
-
-/// The weighted mean of a key's pixels.
-void mean_of(const KeyFrame& key, const Taps& taps, std::size_t stride, float* mean) {
-  const float* first = key.colour(taps.pixel[0]);
-  std::copy_n(first, stride, mean);
-  for (int t = 1; t < taps.count; ++t)
-    add_difference(mean, taps.weight[std::size_t(t)], key.colour(taps.pixel[std::size_t(t)]), first, stride);
-}
-
-/// What the keys give for one pixel.
-struct Pixel {
-  alignas(32) std::array<float, kMostChannels> colour;                    ///< composed
-  alignas(32) std::array<std::array<float, kMostChannels>, 2> of_key;     ///< by each key alone
-  alignas(32) std::array<float, kMostChannels> square;                    ///< of several positions: mean square of what they show
-  std::array<int, 2> parts{};                                 ///< how many positions it has given
-  std::array<LookUp, 2> failed{LookUp::found, LookUp::found};
-  bool missing = false;                                       ///< a position that no key gives
-  bool undersampled = false, resampled = false;
-};
-
-class Compositor {
- public:
-  Compositor(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options)
-      : target_(target), keys_(keys), options_(options), stride_(keys[0].view->key().stride()) {
-    for (std::size_t k = 0; k < keys.size(); ++k) {
-      // Nearness in time, linear between two keys: each counts by how far away the other one is.
-      const double other = keys.size() < 2 ? 1 : keys[1 - k].frames_away, sum = keys.size() < 2 ? 1 : both_away();
-      nearness_[k] = float(sum > 0 ? other / sum : 0.5);
-      stays_[k] = !keys[k].cut_off && keys[k].view->same_camera();
-    }
-  }
-
-  void pixel(std::size_t p, std::span<const FacePoint> parts, std::span<const RasterPoint> at, Pixel& pixel) const {
-    start(pixel);
-    if (take_what_stands(p, pixel)) return;
-    pixel.resampled = true;
-    for (std::size_t i = 0; i < parts.size(); ++i) add_part(parts[i], at[i], pixel);
-    if (parts.size() == 1) return;
-    for (std::size_t c = 0; c < stride_; ++c) {
-      pixel.colour[c] /= float(parts.size());
-      pixel.square[c] /= float(parts.size());
-    }
-    for (std::size_t k = 0; k < keys_.size(); ++k)
-      for (std::size_t c = 0; c < stride_ && pixel.parts[k] > 1; ++c) pixel.of_key[k][c] /= float(pixel.parts[k]);
-  }
-
- private:
-  double both_away() const { return keys_[0].frames_away + keys_[1].frames_away; }
-
-  void start(Pixel& pixel) const {
-    std::fill_n(pixel.colour.begin(), stride_, 0.0f);
-    std::fill_n(pixel.square.begin(), stride_, 0.0f);
-    for (std::size_t k = 0; k < keys_.size(); ++k) std::fill_n(pixel.of_key[k].begin(), stride_, 0.0f);
-    pixel.parts = {};
-    pixel.failed = {LookUp::found, LookUp::found};
-    pixel.missing = pixel.undersampled = pixel.resampled = false;
-  }
-
-  /// A pixel around which key and target show the same at the same place is the key's to the bit, edges and all.
-  bool stands(std::size_t p, const KeyView& view) const {
-    const SeenSurfaces &here = *target_.seen, &there = view.key().seen();
-    const int x = int(p % std::size_t(here.width)), y = int(p / std::size_t(here.width));
-    for (int ny = std::max(y - 1, 0); ny <= std::min(y + 1, here.height - 1); ++ny)
-      for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, here.width - 1); ++nx) {
-        const std::size_t q = std::size_t(ny) * std::size_t(here.width) + std::size_t(nx);
-        const std::uint32_t object = here.object_at(q);
-        if (!view.sees_the_same(object) || there.object_at(q) != object) return false;
-        const float z = here.depth[q], other = there.depth[q];
-        if (z != other && !(std::abs(z - other) <= 1e-4f * z)) return false;
-      }
-    return true;
-  }
-
-  bool take_what_stands(std::size_t p, Pixel& pixel) const {
-    int standing = 0;
-    for (std::size_t k = 0; k < keys_.size(); ++k) {
-      if (!stays_[k] || !stands(p, *keys_[k].view)) continue;
-      const float* colour = keys_[k].view->key().colour(p);
-      std::copy_n(colour, stride_, pixel.of_key[k].begin());
-      pixel.parts[k] = 1;
-      // a + w (b - a): equal keys give their bits.
-      for (std::size_t c = 0; c < stride_; ++c)
-        pixel.colour[c] = standing == 0 ? colour[c] : pixel.colour[c] + nearness_[k] * (colour[c] - pixel.colour[c]);
-      ++standing;
-    }
-    return standing > 0;
-  }
-
-  void add_part(const FacePoint& point, RasterPoint at, Pixel& pixel) const {
-    const FrameCamera& camera = *target_.camera;
-    KeyView::Wanted wanted{point.depth < INFINITY ? camera.unproject(at, double(point.depth)) : camera.direction(at), point};
-    if (point.depth < INFINITY) {
-      const bool known = length2(point.normal) > 0;
-      wanted.area = camera.area_of_pixel(
-          wanted.at, known ? camera.camera_from_world().direction(Vec3d(point.normal)) : Vec3d{0, 0, 1});
-    }
-    std::array<Taps, 2> taps;
-    std::array<float, 2> weight{}, magnified{};
-    bool sharp = false;
-    for (std::size_t k = 0; k < keys_.size(); ++k) {
-      const LookUp found = keys_[k].cut_off ? LookUp::outside : keys_[k].view->find(wanted, taps[k], magnified[k]);
-      if (found != LookUp::found) {
-        pixel.failed[k] = std::max(pixel.failed[k], found);
-        continue;
-      }
-      weight[k] = std::max(nearness_[k], 1e-6f) / std::clamp(magnified[k], 1.0f, 64.0f);
-      sharp |= double(magnified[k]) <= options_.most_magnified;
-    }
-    const float sum = weight[0] + weight[1];
-    if (!(sum > 0)) {
-      pixel.missing = true;
-      return;
-    }
-    pixel.undersampled |= !sharp;
-    alignas(32) std::array<std::array<float, kMostChannels>, 2> here;
-    for (std::size_t k = 0; k < keys_.size(); ++k) {
-      if (!(weight[k] > 0)) continue;
-      ++pixel.parts[k];
-      mean_of(keys_[k].view->key(), taps[k], stride_, here[k].data());
-      add(here[k].data(), pixel.of_key[k].data());
-    }
-    const std::size_t first = weight[0] > 0 ? 0 : 1;
-    if (weight[0] > 0 && weight[1] > 0) add_difference(here[0].data(), weight[1] / sum, here[1].data(), here[0].data(), stride_);
-    add(here[first].data(), pixel.colour.data());
-    for (std::size_t c = 0; c < stride_; ++c) pixel.square[c] += here[first][c] * here[first][c];
-  }
-
-  void add(const float* colour, float* sum) const {
-    for (std::size_t i = 0; i < stride_; i += 8)
-      for (std::size_t j = 0; j < 8; ++j) sum[i + j] += colour[i + j];
-  }
-
-  const WarpTarget& target_;
-  std::span<const WarpKey> keys_;
-  const WarpOptions& options_;
-  std::size_t stride_;
-  std::array<float, 2> nearness_{};
-  std::array<bool, 2> stays_{};
-};
-
-std::uint32_t why_missing(const Pixel& pixel) {
+std::uint32_t why_missing(const ComposedPixel& pixel) {
   switch (std::max(pixel.failed[0], pixel.failed[1])) {
     case LookUp::edge:
       return formats::why_edge;
@@ -227,6 +81,143 @@ class LayerSum {
   std::array<std::vector<int>, 3> parts_;
 };
 
+/// Colours of consecutive pixels, on their way to arrays by channel.
+struct Strip {
+  std::array<std::array<float, kMostChannels>, WantedPoints::kMost> colour;
+  std::array<std::array<std::array<float, kMostChannels>, WantedPoints::kMost>, 2> of_key;
+
+  void keep(std::size_t i, const ComposedPixel& pixel, std::size_t channels) {
+    std::copy_n(pixel.colour.begin(), channels, colour[i].begin());
+    for (std::size_t k = 0; k < 2; ++k) std::copy_n(pixel.of_key[k].begin(), channels, of_key[k][i].begin());
+  }
+};
+
+/// One frame in the making.
+class Warping {
+ public:
+  Warping(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options, WarpedFrame& frame)
+      : target_(target), keys_(keys), options_(options), frame_(frame), width_(std::size_t(target.seen->width)),
+        height_(std::size_t(target.seen->height)), whole_(whole_pixels(*target.seen, *target.camera)), compositor_(target, keys, options),
+        layers_(frame.names), masking_(target, keys, options, frame.names), edge_(target.seen->pixel_count()), centres_(target.seen->pixel_count()) {
+    summed_ = std::all_of(keys.begin(), keys.end(), [&](const WarpKey& k) { return layers_.complete_in(k.view->key()); });
+    for (std::size_t k = 0; k < keys.size() && masking_.light_may_differ(); ++k) light_[k].resize(target.seen->pixel_count());
+  }
+
+  void run() {
+    parallel_chunks(centres_.size(), 4096, [&](std::size_t first, std::size_t last) {
+      LookedUp points;
+      ComposedPixel pixel{};
+      Strip strip;
+      for (std::size_t p = first; p < last; p += WantedPoints::kMost) centres(p, std::min(p + WantedPoints::kMost, last), points, pixel, strip);
+    });
+    if (target_.look)
+      parallel_chunks(centres_.size(), 4096, [&](std::size_t first, std::size_t last) {
+        LookedUp points;
+        ComposedPixel pixel{};
+        for (std::size_t p = first; p < last; ++p)
+          if (edge_[p]) edge(p, points, pixel);
+      });
+    if (masking_.light_may_differ()) masking_.mark_changed_light(light_, frame_.why);
+  }
+
+ private:
+  /// What the pixels' centres show. Pixels without an edge are that.
+  void centres(std::size_t first, std::size_t last, LookedUp& points, ComposedPixel& pixel, Strip& strip) {
+    const SeenSurfaces& seen = *target_.seen;
+    points.wanted.count = last - first;
+    for (std::size_t p = first; p < last; ++p) {
+      points.wanted.at[p - first] = {double(p % width_) + 0.5, double(p / width_) + 0.5};
+      points.wanted.face[p - first] = {seen.depth[p], seen.object_at(p), seen.normal_at(p)};
+    }
+    compositor_.look_up(points);
+    for (std::size_t p = first; p < last; ++p) {
+      compositor_.centre(p, points, p - first, pixel);
+      masking_.note_light(pixel.colour.data(), centres_[p]);
+      edge_[p] = !whole_[p] && target_.look && pixel.resampled;
+      if (!edge_[p]) judge(p, pixel, 1, whole_[p] != 0);
+      strip.keep(p - first, pixel, frame_.names.size());
+    }
+    for (std::size_t c = 0; c < frame_.names.size(); ++c) {
+      for (std::size_t i = 0; i < last - first; ++i) frame_.colour[c][first + i] = strip.colour[i][c];
+      for (std::size_t k = 0; k < keys_.size() && options_.separate; ++k)
+        for (std::size_t i = 0; i < last - first; ++i) frame_.candidates[k][c][first + i] = strip.of_key[k][i][c];
+    }
+  }
+
+  /// A pixel composed of what is seen at several positions in it, as many as its surfaces differ much.
+  void edge(std::size_t p, LookedUp& points, ComposedPixel& pixel) {
+    const std::size_t x = p % width_, y = p / width_;
+    const Masking::Spread around = spread_around(x, y);
+    std::size_t wanted = kParts, count = 0;
+    do {
+      const std::span<const RasterPoint> positions = part_positions(std::min(wanted, kMostParts));
+      points.wanted.count = count = positions.size();
+      for (std::size_t i = 0; i < count; ++i) points.wanted.at[i] = {double(x) + positions[i].x, double(y) + positions[i].y};
+      target_.look(std::span(points.wanted.at).first(count), points.wanted.face.data());
+      compositor_.look_up(points);
+      compositor_.mean(p, points, pixel);
+      if (pixel.missing) break;
+      wanted = masking_.edge_positions(masking_.spread(pixel.colour.data(), pixel.square.data()), count, around);
+    } while (wanted > count && count < kMostParts);
+    judge(p, pixel, int(count), wanted <= count);
+    for (std::size_t c = 0; c < frame_.names.size(); ++c) {
+      frame_.colour[c][p] = pixel.colour[c];
+      for (std::size_t k = 0; k < keys_.size() && options_.separate; ++k) frame_.candidates[k][c][p] = pixel.of_key[k][c];
+    }
+  }
+
+  /// Mean and mean square of the centres of the 3 x 3 pixels around.
+  Masking::Spread spread_around(std::size_t x, std::size_t y) const {
+    Masking::Spread spread;
+    float n = 0;
+    for (std::size_t ny = y - (y > 0); ny <= std::min(y + 1, height_ - 1); ++ny)
+      for (std::size_t nx = x - (x > 0); nx <= std::min(x + 1, width_ - 1); ++nx, ++n)
+        for (std::size_t c = 0; c < 3; ++c) {
+          const float value = centres_[ny * width_ + nx][c];
+          spread.mean[c] += value;
+          spread.square[c] += value * value;
+        }
+    for (std::size_t c = 0; c < 3; ++c) {
+      spread.mean[c] /= n;
+      spread.square[c] /= n;
+    }
+    return spread;
+  }
+
+  /// Is it to be traced, and why? count: of positions; known: enough of them. Layers are summed, and a key that does not give the whole pixel
+  /// is taken to give what was composed.
+  void judge(std::size_t p, ComposedPixel& pixel, int count, bool known) {
+    if (summed_) layers_.set(pixel.colour.data());
+    std::array<const float*, 2> given{};
+    for (std::size_t k = 0; k < keys_.size(); ++k)
+      if (pixel.resampled ? pixel.parts[k] == count : pixel.parts[k] > 0) given[k] = pixel.of_key[k].data();
+    std::uint32_t why = 0;
+    if (pixel.missing) why |= why_missing(pixel);
+    if (pixel.undersampled) why |= formats::why_undersampled;
+    if (pixel.resampled && !pixel.missing && !whole_[p] && (!known || !masking_.edge_agrees(given[0], given[1]))) why |= formats::why_edge;
+    if (pixel.resampled) why |= masking_.of_moved_pixel(p, pixel.colour.data(), given[0], given[1]);
+    frame_.why[p] = why;
+    for (std::size_t k = 0; k < keys_.size(); ++k) {
+      if (!light_[k].empty()) light_[k][p] = given[k] ? masking_.luminance_of(given[k]) : -1;
+      if (options_.separate && !given[k]) pixel.of_key[k] = pixel.colour;
+    }
+  }
+
+  const WarpTarget& target_;
+  std::span<const WarpKey> keys_;
+  const WarpOptions& options_;
+  WarpedFrame& frame_;
+  std::size_t width_, height_;
+  std::vector<std::uint8_t> whole_;
+  Compositor compositor_;
+  LayerSum layers_;
+  Masking masking_;
+  bool summed_ = false;
+  std::vector<std::uint8_t> edge_;              ///< 1: composed of several positions
+  std::vector<std::array<float, 3>> centres_;   ///< R, G, B of what each pixel's centre shows
+  std::array<std::vector<float>, 2> light_;     ///< by key, see Masking::mark_changed_light
+};
+
 }  // namespace
 
 WarpedFrame warp(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options) {
@@ -236,70 +227,11 @@ WarpedFrame warp(const WarpTarget& target, std::span<const WarpKey> keys, const 
     throw std::invalid_argument("warp: the keys have different colour channels");
   if (names.size() > kMostChannels) throw std::invalid_argument("warp: more than 64 colour channels");
 
-  const std::size_t pixels = target.seen->pixel_count(), width = std::size_t(target.seen->width);
-  const std::size_t stride = keys[0].view->key().stride();
-  WarpedFrame frame{names, stride, std::vector<float>(pixels * stride), std::vector<std::uint32_t>(pixels), {}};
-  if (options.separate) frame.candidates.assign(keys.size(), std::vector<float>(pixels * stride));
-  const auto height = std::size_t(target.seen->height);
-  const std::vector<std::uint8_t> whole = whole_pixels(*target.seen, *target.camera);
-  const Compositor compositor(target, keys, options);
-  const LayerSum layers(names);
-  const bool summed = std::all_of(keys.begin(), keys.end(), [&](const WarpKey& k) { return layers.complete_in(k.view->key()); });
-  const Masking masking(target, keys, options, names);
-  std::array<std::vector<float>, 2> light;
-  for (std::size_t k = 0; k < keys.size() && masking.light_may_differ(); ++k) light[k].resize(pixels);
-
-  parallel_chunks(pixels, 4096, [&](std::size_t first, std::size_t last) {
-    Pixel pixel, around;
-    std::array<FacePoint, kMostParts> points;
-    std::array<RasterPoint, kMostParts> at;
-    const auto centre = [&](std::size_t i, std::size_t x, std::size_t y) {
-      const std::size_t q = y * width + x;
-      points[i] = {target.seen->depth[q], target.seen->object_at(q), target.seen->normal_at(q)};
-      at[i] = {double(x) + 0.5, double(y) + 0.5};
-    };
-    const auto compose = [&](std::size_t p, std::size_t n, Pixel& to) { compositor.pixel(p, std::span(points).first(n), std::span(at).first(n), to); };
-    for (std::size_t p = first; p < last; ++p) {
-      const std::size_t x = p % width, y = p / width;
-      const bool composed = !whole[p] && target.look;
-      std::size_t count = 1, wanted = kParts;
-      if (composed) {
-        std::size_t n = 0;
-        for (std::size_t ny = y - (y > 0); ny <= std::min(y + 1, height - 1); ++ny)
-          for (std::size_t nx = x - (x > 0); nx <= std::min(x + 1, width - 1); ++nx) centre(n++, nx, ny);
-        compose(p, n, around);
-      } else {
-        centre(0, x, y);
-        compose(p, 1, pixel);
-      }
-      while (composed && wanted > count && count < kMostParts) {
-        const std::span<const RasterPoint> positions = part_positions(std::min(wanted, kMostParts));
-        count = positions.size();
-        for (std::size_t i = 0; i < count; ++i) at[i] = {double(x) + positions[i].x, double(y) + positions[i].y};
-        target.look(std::span(at).first(count), points.data());
-        compose(p, count, pixel);
-        if (pixel.missing || !pixel.resampled) break;
-        wanted = masking.edge_positions({pixel.colour.data(), pixel.square.data()}, count, {around.colour.data(), around.square.data()});
-      }
-      const bool known = !composed || wanted <= count;
-      if (summed) layers.set(pixel.colour.data());
-      std::array<const float*, 2> given{};
-      for (std::size_t k = 0; k < keys.size(); ++k)
-        if (pixel.resampled ? pixel.parts[k] == int(count) : pixel.parts[k] > 0) given[k] = pixel.of_key[k].data();
-      std::uint32_t why = 0;
-      if (pixel.missing) why |= why_missing(pixel);
-      if (pixel.undersampled) why |= formats::why_undersampled;
-      if (pixel.resampled && !pixel.missing && !whole[p] && (!target.look || !known || !masking.edge_agrees(given[0], given[1]))) why |= formats::why_edge;
-      if (pixel.resampled) why |= masking.of_moved_pixel(p, pixel.colour.data(), given[0], given[1]);
-      frame.why[p] = why;
-      std::copy_n(pixel.colour.begin(), stride, &frame.colour[p * stride]);
-      for (std::size_t k = 0; k < keys.size(); ++k) {
-        if (options.separate) std::copy_n(given[k] ? given[k] : pixel.colour.data(), stride, &frame.candidates[k][p * stride]);
-        if (!light[k].empty()) light[k][p] = given[k] ? masking.luminance_of(given[k]) : -1;
-      }
-    }
-  });
-  if (masking.light_may_differ()) masking.mark_changed_light(light, frame.why);
+  const std::size_t pixels = target.seen->pixel_count();
+  WarpedFrame frame{names, {}, std::vector<std::uint32_t>(pixels), {}};
+  frame.colour.assign(names.size(), std::vector<float>(pixels));
+  if (options.separate) frame.candidates.assign(keys.size(), frame.colour);
+  Warping(target, keys, options, frame).run();
   return frame;
 }
 

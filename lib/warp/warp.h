@@ -51,12 +51,11 @@ struct WarpOptions {
 
 struct WarpedFrame {
   std::vector<std::string> names;                ///< of the colour channels, ascending
-  std::size_t stride = 0;                        ///< floats from pixel to pixel, at least as many as names
-  std::vector<float> colour;                     ///< pixel after pixel, in the order of `names`; 0 where nothing was found
+  std::vector<std::vector<float>> colour;        ///< by name, then by pixel; 0 where nothing was found
   std::vector<std::uint32_t> why;                ///< sums of formats::Why
   /// With WarpOptions::separate: what each key alone gives, laid out as `colour`. Where it does not give the whole pixel it is what
   /// was composed: comparing two candidates finds no difference there.
-  std::vector<std::vector<float>> candidates;
+  std::vector<std::vector<std::vector<float>>> candidates;
 };
 
 /// Composites one or two keys; both need the same colour channels (std::invalid_argument). Weights of keys that show a point:

@@ -1,23 +1,21 @@
 #include "lib/warp/warped_image.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tempolux {
 namespace {
 
-void add_channels(const WarpedFrame& warped, const std::vector<float>& colour, Image& image) {
-  for (std::size_t c = 0; c < warped.names.size(); ++c) {
-    std::vector<float>& values = image.add(warped.names[c]).values;
-    for (std::size_t p = 0; p < values.size(); ++p) values[p] = colour[p * warped.stride + c];
-  }
+void add_channels(const std::vector<std::string>& names, std::vector<std::vector<float>>&& colour, Image& image) {
+  for (std::size_t c = 0; c < names.size(); ++c) image.channels.push_back({names[c], std::move(colour[c]), {}});
 }
 
 }  // namespace
 
-void add_colour(const WarpedFrame& warped, Image& image) { add_channels(warped, warped.colour, image); }
+void add_colour(WarpedFrame& warped, Image& image) { add_channels(warped.names, std::move(warped.colour), image); }
 
-void add_candidate(const WarpedFrame& warped, std::size_t key, Image& image) {
-  add_channels(warped, warped.candidates[key], image);
+void add_candidate(WarpedFrame& warped, std::size_t key, Image& image) {
+  add_channels(warped.names, std::move(warped.candidates[key]), image);
 }
 
 bool has_layer(const KeyFrame& key, const std::string& layer) {

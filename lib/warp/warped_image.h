@@ -10,11 +10,11 @@
 
 namespace tempolux {
 
-/// Adds the composed colour channels to an image of the frame's size.
-void add_colour(const WarpedFrame& warped, Image& image);
+/// Moves the composed colour channels to an image of the frame's size.
+void add_colour(WarpedFrame& warped, Image& image);
 
-/// Adds what one key alone gives (WarpedFrame::candidates).
-void add_candidate(const WarpedFrame& warped, std::size_t key, Image& image);
+/// Moves what one key alone gives (WarpedFrame::candidates).
+void add_candidate(WarpedFrame& warped, std::size_t key, Image& image);
 
 /// Has the key LAYER.R?
 bool has_layer(const KeyFrame& key, const std::string& layer);

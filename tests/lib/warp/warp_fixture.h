@@ -95,8 +95,7 @@ struct Warped {
   }
   /// Of the composed picture; channels are A B G R.
   Rgb colour(std::size_t p) const {
-    const float* c = &frame.colour[p * frame.stride];
-    return {c[3], c[2], c[1]};
+    return {frame.colour[3][p], frame.colour[2][p], frame.colour[1][p]};
   }
 };
 

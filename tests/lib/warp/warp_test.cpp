@@ -268,10 +268,10 @@ TEST(Warp, LayersStillAddUp) {
   ASSERT_EQ(warped.frame.names, (std::vector<std::string>{"A", "B", "G", "R", "direct.B", "direct.G", "direct.R", "indirect.B",
                                                           "indirect.G", "indirect.R"}));
   for (std::size_t p = 0; p < warped.frame.why.size(); ++p) {
-    const float* c = &warped.frame.colour[p * warped.frame.stride];
-    for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(c[1 + i], c[4 + i] + c[7 + i]);
+    const std::vector<std::vector<float>>& c = warped.frame.colour;
+    for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(c[1 + i][p], c[4 + i][p] + c[7 + i][p]);
     if (warped.frame.why[p] == 0) {
-      ASSERT_EQ(c[0], 1.0f);
+      ASSERT_EQ(c[0][p], 1.0f);
     }
   }
 }
