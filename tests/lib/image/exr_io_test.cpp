@@ -213,6 +213,29 @@ TEST(Exr, DataWindowIsPlacedIntoTheDisplayWindow) {
   EXPECT_EQ(image.find("id")->ids, (std::vector<std::uint32_t>{0, 0, 0, 2, 3, 0}));
 }
 
+/// Lines without compression are copied, past channels of halves too. A file whose line says that it is another one, or whose
+/// halves are wanted, is OpenEXR's to read.
+TEST(Exr, LinesWithoutCompressionAreFoundByTheTable) {
+  const Folder folder;
+  const std::string head = exr::magic() + exr::header(exr::channel("H", 1) + exr::channel("Y", 2) + exr::channel("id", 0), exr::box(0, 0, 1, 1), exr::box(0, 0, 1, 1)) + '\0';
+  const auto line = [](int y) {   // two pixels: 0x3c00 is 1, 0x4000 is 2
+    return raw(y) + raw(std::int32_t(20)) + raw(std::uint16_t(0x3c00)) + raw(std::uint16_t(0x4000)) + raw(float(10 * y + 1)) + raw(float(10 * y + 2)) + raw(7u) + raw(std::uint32_t(8 + y));
+  };
+  const std::uint64_t first = head.size() + 16, second = first + line(0).size();
+  put_bytes(folder / "a.exr", head + raw(first) + raw(second) + line(0) + line(1));
+  for (const bool halves : {false, true}) {
+    const Image image = load_exr(folder / "a.exr", {.wanted = [&](const std::string& name) { return halves || name != "H"; }});
+    EXPECT_EQ(image.channels.size(), halves ? 3u : 2u);
+    EXPECT_EQ(image.find("Y")->values, (std::vector<float>{1, 2, 11, 12}));
+    EXPECT_EQ(image.find("id")->ids, (std::vector<std::uint32_t>{7, 8, 7, 9}));
+    if (halves) {
+      EXPECT_EQ(image.find("H")->values, (std::vector<float>{1, 2, 1, 2}));
+    }
+  }
+  put_bytes(folder / "b.exr", head + raw(second) + raw(first) + line(0) + line(1));   // each entry leads to the other line
+  EXPECT_THROW(load_exr(folder / "b.exr", {.wanted = [](const std::string& name) { return name == "Y"; }}), InputError);
+}
+
 TEST(Exr, TilesAreRead) {
   const Folder folder;
   // 3 x 2 pixels in tiles of 2 x 2, half: the second tile is one column wide. 0x3c00 is 1, 0x4000 is 2,
