@@ -48,7 +48,7 @@ make_frames() {
   a=$1 b=$2; shift 2
   [ $# -gt 0 ] || return 0
   $WARP "$(key "$a")" "$(key "$b")" --frames "$(joined "$@")" -o "$OUT/walk/####.exr" --mask "$OUT/walk/####.mask.exr" ${FLOW:+--flow "$FLOW"} \
-    --stats "$OUT/walk/$1.warp.json"
+    --compression none --stats "$OUT/walk/$1.warp.json"
   while [ $# -gt 0 ]; do
     eval "light=\$LIT_$1"
     together= first=$1
@@ -68,7 +68,7 @@ make_frames() {
 decide() {
   a=$1 b=$2 middle=$3 frames=$4 try=$OUT/walk/$a+$b
   mkdir -p "$try"
-  $WARP "$(key "$a")" "$(key "$b")" --frame "$middle" -o "$try/w.exr" --mask "$try/why.exr" --separate --stats "$try/warp.json"
+  $WARP "$(key "$a")" "$(key "$b")" --frame "$middle" -o "$try/w.exr" --mask "$try/why.exr" --separate --compression none --stats "$try/warp.json"
   pixels=$(count_of pixels "$try/warp.json") traced=$(count_of traced "$try/warp.json")
   distant=0 causes=
   for cause in specular occlusion slow deforming changed_light border edge undersampled; do
