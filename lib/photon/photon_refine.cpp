@@ -1,11 +1,13 @@
 #include "lib/photon/photon_refine.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numeric>
 
 #include "formats/error.h"
+#include "lib/core/halton.h"
 #include "lib/core/parallel.h"
 #include "lib/photon/photon_ledger.h"
 
@@ -61,6 +63,45 @@ std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::sp
   return result;
 }
 
+std::vector<double> beside_groups(std::span<const double> values, std::uint64_t seed) {
+  constexpr std::array<std::size_t, 4> bases{3, 5, 7, 2};   // of PhotonHalton's components
+  const std::size_t count = values.size();
+  std::array<std::size_t, 4> sides{1, 1, 1, 1};
+  std::size_t left = count;
+  for (std::size_t a = 0; a < 4; ++a)
+    for (; left > 1 && left % bases[a] == 0; left /= bases[a]) sides[a] *= bases[a];
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / double(std::max<std::size_t>(1, count));
+  std::vector<double> result(count, mean);
+  if (left != 1 || count < 2) return result;
+  const PhotonHalton halton(seed);
+  std::vector<std::array<std::size_t, 4>> box_of(count);
+  std::vector<std::size_t> group_in(count);
+  const auto number = [&](const std::array<std::size_t, 4>& box) {
+    std::size_t n = 0;
+    for (std::size_t a = 0; a < 4; ++a) n = n * sides[a] + box[a];
+    return n;
+  };
+  for (std::size_t g = 0; g < count; ++g) {
+    const std::array<double, 4> start = halton.point(g);
+    for (std::size_t a = 0; a < 4; ++a) box_of[g][a] = std::min(std::size_t(start[a] * double(sides[a])), sides[a] - 1);
+    group_in[number(box_of[g])] = g;
+  }
+  for (std::size_t g = 0; g < count; ++g) {
+    double sum = 0;
+    int beside = 0;
+    for (std::size_t a = 0; a < 4; ++a)
+      for (const bool up : {false, true}) {
+        std::array<std::size_t, 4> box = box_of[g];
+        if (up ? box[a] + 1 == sides[a] : box[a] == 0) continue;
+        box[a] += up ? 1 : std::size_t(-1);
+        sum += values[group_in[number(box)]];
+        ++beside;
+      }
+    result[g] = sum / beside;
+  }
+  return result;
+}
+
 GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer) {
   formats::PhotonReader reader(path, {.digest = false});
   GroupMoments groups;
@@ -85,6 +126,7 @@ GroupMoments read_moments(const std::string& path, const PhotonTracer& tracer) {
     // Flux is by 1 / n: of a path alone it is n times as much.
     groups.moments.push_back(squares[entry.group] * n);
   }
+  groups.moments = beside_groups(groups.moments, tracer.seed());
   return groups;
 }
 

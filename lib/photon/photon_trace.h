@@ -105,6 +105,7 @@ class PhotonTracer {
   PhotonBatch trace_members(std::uint32_t group, std::uint64_t first, std::uint64_t last) const;
   /// Paths of each group in the map, N_e.
   std::uint64_t members() const { return members_; }
+  std::uint64_t seed() const { return options_.seed; }
   /// Traces these paths, all of one group. Thread-safe.
   PhotonBatch trace_paths(std::span<const std::uint64_t> paths) const;
 

@@ -279,6 +279,54 @@ TEST_F(PhotonUpdate, RefinedMapsKeepTheirFlux) {
   EXPECT_NEAR(after.second, before.second, 0.06 * before.second);
 }
 
+/// On paper: 6 groups are boxes 3 x 2 of base 3 (where) and base 2; group g is that of digits g mod 3 and g mod 2, each permuted. The values are
+/// put so that a group's own is 1000 and those beside it are known: all others 1 give 1, whoever they are.
+TEST(BesideGroups, LeavesOutOnesOwn) {
+  for (const std::uint64_t seed : {0u, 1u, 7u})
+    for (std::size_t g = 0; g < 6; ++g) {
+      std::vector<double> values(6, 1.0);
+      values[g] = 1000;
+      const std::vector<double> beside = beside_groups(values, seed);
+      EXPECT_EQ(beside[g], 1);
+      // In 3 x 2 boxes a corner has two neighbours, a middle one three, and each of those sees the 1000 among its own two or three.
+      int seen = 0;
+      for (std::size_t o = 0; o < 6; ++o) seen += beside[o] > 1;
+      EXPECT_TRUE(seen == 2 || seen == 3) << seen;
+    }
+  EXPECT_EQ(beside_groups(std::vector<double>(11, 2.0), 0), std::vector<double>(11, 2.0));   // no boxes: the mean of all
+  EXPECT_EQ(beside_groups(std::vector<double>{3}, 0), std::vector<double>{3});
+}
+
+/// Refined maps have the light of plain ones in the mean: 63 groups of 4 paths, of which a twentieth of the tentative photons is recorded, get five
+/// times as many more, over 300 seeds. Paths given to groups by what these found themselves lose 17 % of the light: the lucky are
+/// corrected, the unlucky are not. The plain maps have 38 000 records that count alike but for a factor of 2: .6 % by chance, and paths
+/// have more than one; 3 % is four deviations.
+TEST_F(PhotonUpdate, RefiningLosesNoLight) {
+  const Room thick(2, options_);
+  double before = 0, after = 0;
+  const auto collided = [&](const std::string& name) {
+    formats::PhotonReader reader(path(name));
+    formats::PhotonBlock block;
+    double sum = 0;
+    while (reader.read_block(block))
+      for (const formats::Photon& p : block.photons) sum += p.kind == formats::PathKind::tentative ? double(p.flux[0]) * double(p.normal[0]) : 0;
+    return sum;
+  };
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    PhotonOptions options = options_;
+    options.photon_count = 252;
+    options.volume_share = 0.05f;
+    options.seed = seed;
+    const PhotonTracer photons(*thick.tracer, *thick.lights, options);
+    written("0.photons", [&](const auto& sink) { write_photon_map(photons, options, header(0), sink, {}); });
+    const GroupMoments groups = read_moments(path("0.photons"), photons);
+    written("1.photons", [&](const auto& sink) { write_refined_map(photons, options, header(0), path("0.photons"), groups, 1260, sink); });
+    before += collided("0.photons");
+    after += collided("1.photons");
+  }
+  EXPECT_NEAR(after / before, 1, 0.03);
+}
+
 TEST_F(PhotonUpdate, RefusesMapsOfOtherPaths) {
   const Room thin(0.5f, options_);
   formats::PhotonHeader a = header(0);
