@@ -50,6 +50,15 @@ done
 "$bin/st-filter" "$work"/one.1[0-4].exr -o "$work/filtered.exr"
 "$info" --sheet $out/st-filter.png --columns 1 --tile 160 "$work/one.12.exr" "$work/filtered.exr"
 
+# Light textures: photons counted, smoothed; beside gathering.
+"$bin/st-filter" mesh $scene --frame 12 --photons "$work/p.photons" --filter none --cell 0.1 -o "$work/counted.meshirrad"
+"$bin/st-filter" mesh $scene --frame 12 --photons "$work/p.photons" -o "$work/smoothed.meshirrad"
+for textures in counted smoothed; do
+  "$bin/frame-render" $scene --frame 12 --size 320x180 --meshirrad "$work/$textures.meshirrad" -o "$work/$textures.exr"
+done
+"$info" --sheet $out/light-textures.png --columns 1 --tile 160 "$work/counted.exr" "$work/smoothed.exr"
+"$info" --sheet $out/light-textures-beside.png --columns 3 --tile 240 "$work/counted.exr" "$work/smoothed.exr" "$work/f.exr"
+
 # A walk: every fourth frame, keys marked; one frame as it was warped, and what of it is traced.
 make -f Makefile.example --no-print-directory demo BIN="$bin" METHOD=walkthrough SCENE=pipelines/scenes/S4_atrium.glb SIZE=320x180 OUT="$work/walk"
 every_fourth=$(for f in $(seq 0 4 44); do printf '%s/walk/frames/%04d.exr ' "$work" "$f"; done)

@@ -267,7 +267,7 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
     light = at.albedo * tempolux::sampled_light(tracer_, lights_, at, random.get2(1, Purpose::light_point), true,
                                                 {random, 1, way_shadow_of_medium}, to.counts.shadow_rays);
   Rgb weight = from.weight * at.albedo;
-  const float survival = std::min(kLargestSurvival, max_component(weight));
+  const float survival = std::min(kLargestSurvivalInMedia, max_component(weight));
   if (!(random.get1(1, Purpose::roulette) < survival)) return light;
   weight *= 1 / survival;
   const Vec3 travel = sample_hg(at.g, at.travel, random.get2(1, Purpose::phase));

@@ -56,7 +56,7 @@ PhotonTracer::Flown PhotonTracer::fly_through_media(Path& path, float end, std::
     const MediumOptions& medium = media_->collided(position, random.get1(bounce, Purpose::medium)).options();
     const Rgb scattered = flux * medium.albedo;
     const float survival =
-        std::min(kLargestPhotonSurvival, max_component(scattered) / std::max(max_component(flux), 1e-37f));
+        std::min(kLargestSurvivalInMedia, max_component(scattered) / std::max(max_component(flux), 1e-37f));
     const bool survives = random.get1(bounce, Purpose::roulette) < survival;
     const Rgb left = scattered * (survives ? 1 / survival : 0);
     path.balance->absorbed += Rgbd(path.flux) - Rgbd(left);

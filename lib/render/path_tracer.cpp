@@ -208,7 +208,7 @@ class EyeTracer {
   Passed pass_media(const Media& media, Walk& walk) const;
   bool scatter_in_medium(const MediumPoint& point, Walk& walk) const;
   bool scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, Walk& walk) const;
-  bool survives(Walk& walk) const;
+  bool survives(Walk& walk, float most) const;
   void go_on(const Ray& ray, Walk& walk) const;
   void add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const;
   void go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, const Walk& walk) const;
@@ -224,10 +224,10 @@ class EyeTracer {
   PathParts& parts_;
 };
 
-/// Roulette.
-bool EyeTracer::survives(Walk& walk) const {
+/// Roulette; `most`: the largest probability of going on.
+bool EyeTracer::survives(Walk& walk, float most) const {
   if (walk.bounce + 1 < kRouletteFrom) return true;
-  const float survival = std::min(kLargestSurvival, max_component(walk.throughput));
+  const float survival = std::min(most, max_component(walk.throughput));
   if (!(walk.random.get1(walk.bounce, Purpose::roulette) < survival)) return false;
   walk.throughput *= 1 / survival;
   return true;
@@ -255,7 +255,7 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
   else walk.beyond.specular = true;
   const bool front = dot(x.surface.normal_geometric, walk.ray.direction) < 0;
   if (!next.diffuse && is_solid_glass(material)) walk.inside.scatter(x.surface.material, front, next.transmitted);
-  if (!survives(walk)) return false;
+  if (!survives(walk, kLargestSurvival)) return false;
 
   LastScatter& last = walk.last;
   last.weighed = !next.delta;
@@ -282,7 +282,7 @@ bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
   (*walk.result)[walk.path.layer()] += walk.throughput * sampled_light(scene_.tracer, scene_.lights, point,
                                                                        walk.random.get2(walk.bounce, Purpose::light_point), true, bits, shadow_rays);
   count(shadow_rays, counts_.shadow, walk);
-  if (!survives(walk)) return false;
+  if (!survives(walk, kLargestSurvivalInMedia)) return false;
   const Vec3 travel = sample_hg(point.g, point.travel, walk.random.get2(walk.bounce, Purpose::phase));
   walk.last = {true, point.position, {}, pdf_hg(point.g, point.travel, travel), 1};
   go_on({point.position, travel, 0, INFINITY}, walk);
