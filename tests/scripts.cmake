@@ -28,53 +28,24 @@ add_test(NAME formats.read_radsamples COMMAND sh formats/read_radsamples_test.sh
 add_test(NAME formats.read_flow COMMAND sh formats/read_flow_test.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 
-add_test(NAME formats.read_paths COMMAND sh formats/read_paths_test.sh $<TARGET_FILE:paths_test>
-         WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-
-add_test(NAME formats.read_meshirrad COMMAND sh formats/read_meshirrad_test.sh $<TARGET_FILE:meshirrad_test>
-         WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+foreach(format paths meshirrad)
+  add_test(NAME formats.read_${format} COMMAND sh formats/read_totals_test.sh ${format} $<TARGET_FILE:${format}_test>
+           WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+endforeach()
 
 # Stages together, run by make at the top of the tree.
-add_test(NAME pipelines.rerun COMMAND sh tests/pipelines/rerun.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-add_test(NAME pipelines.make_asks COMMAND sh tests/pipelines/make_asks.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-add_test(NAME pipelines.plan_example COMMAND sh tests/pipelines/plan_example.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-add_test(NAME pipelines.plan_refuses COMMAND sh tests/pipelines/plan_refuses.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-add_test(NAME pipelines.walkthrough COMMAND sh tests/pipelines/walkthrough.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.walkthrough PROPERTIES TIMEOUT 300)
-add_test(NAME pipelines.filter COMMAND sh tests/pipelines/filter.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.filter PROPERTIES TIMEOUT 300)
-add_test(NAME pipelines.dynamic COMMAND sh tests/pipelines/dynamic.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.dynamic PROPERTIES TIMEOUT 300)
-add_test(NAME pipelines.temporal COMMAND sh tests/pipelines/temporal.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.temporal PROPERTIES TIMEOUT 300)
-add_test(NAME pipelines.split COMMAND sh tests/pipelines/split.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.split PROPERTIES TIMEOUT 300)
-add_test(NAME pipelines.content_camera COMMAND sh tests/pipelines/content_camera.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-add_test(NAME pipelines.drop_kind COMMAND sh tests/pipelines/drop_kind.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-add_test(NAME pipelines.environment COMMAND sh tests/pipelines/environment.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+foreach(script rerun make_asks plan_example plan_refuses content_camera drop_kind environment
+               scenes leaving_out walkthrough filter dynamic temporal split)
+  add_test(NAME pipelines.${script} COMMAND sh tests/pipelines/${script}.sh $<TARGET_FILE_DIR:scene-plan>
+           WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  set_tests_properties(pipelines.${script} PROPERTIES TIMEOUT 300)
+endforeach()
 add_test(NAME pipelines.textured_room COMMAND python3 -B tests/pipelines/textured_room.py $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-add_test(NAME pipelines.scenes COMMAND sh tests/pipelines/scenes.sh $<TARGET_FILE_DIR:scene-plan>
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 add_test(NAME pipelines.installed COMMAND sh tests/pipelines/installed.sh ${CMAKE_BINARY_DIR}
          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.installed PROPERTIES TIMEOUT 300 RUN_SERIAL ON)
-add_test(NAME pipelines.leaving_out COMMAND sh tests/pipelines/leaving_out.sh $<TARGET_FILE_DIR:scene-plan>
-         WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-set_tests_properties(pipelines.rerun pipelines.make_asks pipelines.leaving_out pipelines.plan_example pipelines.plan_refuses
-                     pipelines.drop_kind pipelines.environment pipelines.scenes pipelines.textured_room PROPERTIES TIMEOUT 300)
+set_tests_properties(pipelines.textured_room PROPERTIES TIMEOUT 300)
 
 add_test(NAME cli.no_heavy_libraries COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/cli/no_heavy_libraries.sh ${CMAKE_BINARY_DIR}/bin)
 

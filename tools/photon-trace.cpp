@@ -70,13 +70,13 @@ void warn_of_few(tools::Tool& tool, const Lights& lights, const PhotonMapResult&
                        : "start " + std::to_string((result.path_count * needed + seen - 1) / seen) + " with --photons"));
 }
 
-void count(tools::Tool& tool, const PhotonMapResult& result, std::uint64_t refused) {
+void count(tools::Tool& tool, const PhotonMapResult& result, const tools::Output& output, std::uint64_t refused) {
   tool.stats().count("photons", double(result.totals.photon_count));
   tool.stats().count("paths", double(result.path_count));
   tool.stats().count("rays", double(result.ray_count));
   tool.stats().count("specular_rays", double(result.specular_ray_count));
   if (result.medium_steps > 0) tool.stats().count("medium_steps", double(result.medium_steps));
-  tool.stats().count("bytes_written", double(result.byte_count));
+  tool.stats().count("bytes_written", double(output.written()));
   tool.stats().count("refused_rays", double(refused));
 }
 
@@ -151,7 +151,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   output.commit();
   tool.stats().end_phase();
   if (!lights.aim().empty() && !options.updating.updates()) warn_of_few(tool, lights, result, frame_number);
-  count(tool, result, tracer.refused_ray_count());
+  count(tool, result, output, tracer.refused_ray_count());
 }
 
 /// What moves in one interval of a segment: where it is, and a hash of its states.
@@ -230,7 +230,7 @@ void trace_standing(tools::Tool& tool, tools::SceneInput& input, const Options& 
   output.commit();
   tool.stats().end_phase();
   if (!lights.aim().empty()) warn_of_few(tool, lights, result, frame_number);
-  count(tool, result, tracer.refused_ray_count());
+  count(tool, result, output, tracer.refused_ray_count());
 }
 
 /// Refuses paths that were found for another segment, other things that stand or other movers.
@@ -290,7 +290,7 @@ void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options
   tool.stats().phase("commit");
   output.commit();
   tool.stats().end_phase();
-  count(tool, result, tracer.refused_ray_count() + standing_tracer.refused_ray_count());
+  count(tool, result, output, tracer.refused_ray_count() + standing_tracer.refused_ray_count());
   tool.stats().count("touched_paths", double(touched.size()));
 }
 

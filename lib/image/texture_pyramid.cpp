@@ -5,48 +5,9 @@
 #include <cstring>
 
 #include "lib/core/check.h"
-#include "lib/image/srgb.h"
 
 namespace tempolux {
 namespace {
-
-std::vector<float> make_table(std::size_t codes, bool srgb) {
-  std::vector<float> table(codes);
-  for (std::size_t i = 0; i < codes; ++i) {
-    const float value = float(double(i) / double(codes - 1));
-    table[i] = srgb ? srgb_to_linear(value) : value;
-  }
-  return table;
-}
-
-const std::vector<float>& table_of(int bits, bool srgb) {
-  static const std::vector<float> linear8 = make_table(256, false), srgb8 = make_table(256, true);
-  if (bits == 8) return srgb ? srgb8 : linear8;
-  static const std::vector<float> linear16 = make_table(65536, false), srgb16 = make_table(65536, true);
-  return srgb ? srgb16 : linear16;
-}
-
-/// The code whose value is nearest, but not 0 for a value above 0.
-std::uint32_t nearest_code(const std::vector<float>& table, float value) {
-  if (!(value > 0)) return 0;
-  const auto above = std::lower_bound(table.begin() + 1, table.end() - 1, value);
-  const auto code = std::uint32_t(above - table.begin());
-  return code > 1 && value - table[code - 1] < table[code] - value ? code - 1 : code;
-}
-
-/// The part of `from` samples that sample `to_index` of `to` covers, and its first sample's share.
-struct Span {
-  int first, last;       ///< inclusive
-  float first_share, last_share;
-  Span(int to_index, int to, int from) {
-    const double scale = double(from) / to, begin = to_index * scale, end = std::min(double(from), begin + scale);
-    first = std::min(int(begin), from - 1);
-    last = std::clamp(int(std::ceil(end)) - 1, first, from - 1);
-    first_share = float(std::min(end, double(first + 1)) - begin);
-    last_share = last > first ? float(end - last) : first_share;
-  }
-  float share(int i) const { return i == first ? first_share : i == last ? last_share : 1.0f; }
-};
 
 /// Texels left and right of a coordinate, and the right one's share.
 struct Pair {
@@ -88,97 +49,43 @@ TexturePyramid::TexturePyramid(CodedPixels pixels, TextureTransfer transfer, int
     : channels_(pixels.channels),
       bits_(pixels.bits),
       cutout_(transfer == TextureTransfer::srgb_cutout && pixels.channels % 2 == 0),
-      colour_(&table_of(pixels.bits, transfer != TextureTransfer::linear)),
-      alpha_(&table_of(pixels.bits, false)) {
+      colour_(&TexelCodes::of(pixels.bits, transfer != TextureTransfer::linear)),
+      alpha_(&TexelCodes::of(pixels.bits, false)) {
   TEMPOLUX_CHECK(pixels.width > 0 && pixels.height > 0 && max_side > 0);
   levels_.push_back({pixels.width, pixels.height, std::move(pixels.bytes)});
   if (const int side = std::max(pixels.width, pixels.height); side > max_side) {
     const double scale = double(max_side) / side;
-    levels_[0] = reduced(levels_[0], std::max(1, int(std::lround(pixels.width * scale))),
+    levels_[0] = smaller(levels_[0], std::max(1, int(std::lround(pixels.width * scale))),
                          std::max(1, int(std::lround(pixels.height * scale))));
   }
   while (levels_.back().width > 1 || levels_.back().height > 1) {
-    const Level& last = levels_.back();
-    levels_.push_back(reduced(last, std::max(1, last.width / 2), std::max(1, last.height / 2)));
+    const TexelLevel& last = levels_.back();
+    levels_.push_back(smaller(last, std::max(1, last.width / 2), std::max(1, last.height / 2)));
   }
+}
+
+TexelLevel TexturePyramid::smaller(const TexelLevel& from, int width, int height) const {
+  return reduce_texels(from, width, height, {channels_, bits_, cutout_, colour_, alpha_});
 }
 
 std::uint64_t TexturePyramid::byte_count() const {
   std::uint64_t bytes = 0;
-  for (const Level& level : levels_) bytes += level.codes.size();
+  for (const TexelLevel& level : levels_) bytes += level.codes.size();
   return bytes;
 }
 
-std::uint32_t TexturePyramid::code(const Level& level, std::size_t sample) const {
-  if (bits_ == 8) return level.codes[sample];
-  std::uint16_t value;
-  std::memcpy(&value, &level.codes[2 * sample], sizeof value);
-  return value;
-}
-
-TexturePyramid::Level TexturePyramid::reduced(const Level& from, int width, int height) const {
-  const auto channels = std::size_t(channels_);
-  Level to{width, height, std::vector<std::uint8_t>(std::size_t(width) * std::size_t(height) * channels *
-                                                    std::size_t(bits_ / 8))};
-  const bool has_alpha = channels_ % 2 == 0;
-  // A row of the result, not yet narrowed; and the same with colours times alpha, for cutouts.
-  std::vector<float> row(std::size_t(from.width) * channels), shown(cutout_ ? row.size() : 0);
-  for (int y = 0; y < height; ++y) {
-    const Span tall(y, height, from.height);
-    std::fill(row.begin(), row.end(), 0.0f);
-    std::fill(shown.begin(), shown.end(), 0.0f);
-    float rows = 0;
-    for (int j = tall.first; j <= tall.last; ++j) {
-      const float share = tall.share(j);
-      rows += share;
-      for (std::size_t i = 0; i < row.size(); ++i) {
-        const auto& table = has_alpha && i % channels == channels - 1 ? *alpha_ : *colour_;
-        const float value = table[code(from, std::size_t(j) * row.size() + i)];
-        row[i] += share * value;
-        if (!cutout_) continue;
-        const std::size_t alpha = std::size_t(j) * row.size() + i / channels * channels + channels - 1;
-        shown[i] += share * value * (*alpha_)[code(from, alpha)];
-      }
-    }
-    for (int x = 0; x < width; ++x) {
-      const Span wide(x, width, from.width);
-      const auto sum_of = [&](const std::vector<float>& values, std::size_t c) {
-        float sum = 0;
-        for (int i = wide.first; i <= wide.last; ++i) sum += wide.share(i) * values[std::size_t(i) * channels + c];
-        return sum;
-      };
-      float columns = 0;
-      for (int i = wide.first; i <= wide.last; ++i) columns += wide.share(i);
-      const float covered = cutout_ ? sum_of(row, channels - 1) : 0;
-      for (std::size_t c = 0; c < channels; ++c) {
-        const bool is_alpha = has_alpha && c == channels - 1;
-        const float value = covered > 0 && !is_alpha ? sum_of(shown, c) / covered : sum_of(row, c) / (rows * columns);
-        const std::uint32_t result = nearest_code(is_alpha ? *alpha_ : *colour_, value);
-        const std::size_t at = (std::size_t(y) * std::size_t(width) + std::size_t(x)) * channels + c;
-        if (bits_ == 8) {
-          to.codes[at] = std::uint8_t(result);
-        } else {
-          const auto narrow = std::uint16_t(result);
-          std::memcpy(&to.codes[2 * at], &narrow, sizeof narrow);
-        }
-      }
-    }
-  }
-  return to;
-}
-
-Rgba TexturePyramid::texel(const Level& level, int x, int y) const {
+Rgba TexturePyramid::texel(const TexelLevel& level, int x, int y) const {
   const auto channels = std::size_t(channels_);
   const std::size_t at = (std::size_t(y) * std::size_t(level.width) + std::size_t(x)) * channels;
   Rgba value;
-  for (std::size_t c = 0; c < 3; ++c) value[c] = (*colour_)[code(level, at + (channels < 3 ? 0 : c))];
-  value[3] = channels % 2 == 0 ? (*alpha_)[code(level, at + channels - 1)] : 1.0f;
+  for (std::size_t c = 0; c < 3; ++c) value[c] = colour_->value[code_of(level, bits_, at + (channels < 3 ? 0 : c))];
+  value[3] = channels % 2 == 0 ? alpha_->value[code_of(level, bits_, at + channels - 1)] : 1.0f;
   return value;
 }
 
 Rgba TexturePyramid::texel(int level, int x, int y) const { return texel(levels_[std::size_t(level)], x, y); }
 
-Rgba TexturePyramid::bilinear(const Level& level, Vec2 uv, TextureWrap wrap_u, TextureWrap wrap_v) const {
+Rgba TexturePyramid::bilinear(const TexelLevel& level, Vec2 uv, TextureWrap wrap_u, TextureWrap wrap_v) const {
   const Pair x = pair_at(uv.x, level.width, wrap_u), y = pair_at(uv.y, level.height, wrap_v);
   return mix(mix(texel(level, x.a, y.a), texel(level, x.b, y.a), x.share),
              mix(texel(level, x.a, y.b), texel(level, x.b, y.b), x.share), y.share);
@@ -186,7 +93,7 @@ Rgba TexturePyramid::bilinear(const Level& level, Vec2 uv, TextureWrap wrap_u, T
 
 Rgba TexturePyramid::read(Vec2 uv, TextureWrap wrap_u, TextureWrap wrap_v, bool nearest, float level) const {
   if (!(level > 0)) {
-    const Level& image = levels_[0];
+    const TexelLevel& image = levels_[0];
     if (!nearest) return bilinear(image, uv, wrap_u, wrap_v);
     const auto at = [](float u, int size) { return std::clamp(int(u * float(size)), 0, size - 1); };
     return texel(image, at(wrapped(uv.x, wrap_u), image.width), at(wrapped(uv.y, wrap_v), image.height));
@@ -207,7 +114,7 @@ bool TexturePyramid::any_colour(Vec2 lower, Vec2 upper, TextureWrap wrap_u, Text
   while (l + 1 < levels_.size() && (size.x * float(levels_[l].width) > float(kWindow) ||
                                     size.y * float(levels_[l].height) > float(kWindow)))
     ++l;
-  const Level& level = levels_[l];
+  const TexelLevel& level = levels_[l];
   const auto steps = [&](float extent, int texels) {
     return int(std::min(extent * float(texels), float(texels))) + 4;
   };

@@ -7,6 +7,7 @@
 
 #include "lib/core/vec.h"
 #include "lib/image/encoded_image.h"
+#include "lib/image/reduce_texels.h"
 #include "lib/image/texture_wrap.h"
 
 namespace tempolux {
@@ -43,20 +44,15 @@ class TexturePyramid {
   bool any_colour(Vec2 lower, Vec2 upper, TextureWrap wrap_u, TextureWrap wrap_v) const;
 
  private:
-  struct Level {
-    int width = 0, height = 0;
-    std::vector<std::uint8_t> codes;
-  };
-  std::uint32_t code(const Level& level, std::size_t sample) const;
-  Level reduced(const Level& from, int width, int height) const;
-  Rgba bilinear(const Level& level, Vec2 uv, TextureWrap wrap_u, TextureWrap wrap_v) const;
-  Rgba texel(const Level& level, int x, int y) const;
+  TexelLevel smaller(const TexelLevel& from, int width, int height) const;
+  Rgba bilinear(const TexelLevel& level, Vec2 uv, TextureWrap wrap_u, TextureWrap wrap_v) const;
+  Rgba texel(const TexelLevel& level, int x, int y) const;
 
   int channels_ = 0, bits_ = 8;
   bool cutout_ = false;                         ///< means of colours are weighted by alpha
-  const std::vector<float>* colour_ = nullptr;  ///< by code: linear value
-  const std::vector<float>* alpha_ = nullptr;
-  std::vector<Level> levels_;
+  const TexelCodes* colour_ = nullptr;
+  const TexelCodes* alpha_ = nullptr;
+  std::vector<TexelLevel> levels_;
 };
 
 }  // namespace tempolux

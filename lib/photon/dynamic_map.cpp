@@ -83,12 +83,7 @@ PhotonMapResult write_dynamic_map(const PhotonTracer& standing, const PhotonTrac
   header.group_count = whole.group_count();
   header.emitted_count = whole.photon_count();
   header.kinds = options.kinds();
-  formats::PhotonWriter writer(
-      [&](const void* data, std::size_t size) {
-        sink(data, size);
-        result.byte_count += size;
-      },
-      header);
+  formats::PhotonWriter writer(sink, header);
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
   parallel_ordered(
       borders.size() - 1, std::size_t(kChunksPerThread * parallel_thread_count()),

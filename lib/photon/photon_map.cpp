@@ -27,12 +27,7 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
                                  const std::function<void(double)>& progress) {
   PhotonMapResult result;
   describe_map(tracer, options, header);
-  formats::PhotonWriter writer(
-      [&](const void* data, std::size_t size) {
-        sink(data, size);
-        result.byte_count += size;
-      },
-      header);
+  formats::PhotonWriter writer(sink, header);
 
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
   std::vector<formats::GroupFlux> ledger;   // only with tentative photons

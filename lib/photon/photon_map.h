@@ -12,7 +12,7 @@ namespace tempolux {
 
 struct PhotonMapResult {
   formats::PhotonTotals totals;      ///< photon_count and stored_flux as the writer counted them
-  std::uint64_t path_count = 0, ray_count = 0, specular_ray_count = 0, byte_count = 0, medium_steps = 0;
+  std::uint64_t path_count = 0, ray_count = 0, specular_ray_count = 0, medium_steps = 0;
   std::uint64_t seen_count = 0;      ///< photons stored in the spheres of Lights::aim()
   std::vector<formats::TouchedPath> touched;   ///< if the tracer watches movers: in the order of the map
 };

@@ -136,12 +136,7 @@ PhotonMapResult write_refined_map(const PhotonTracer& tracer, const PhotonOption
   const std::vector<std::uint64_t> paths = spread_paths(groups.moments, groups.paths, extra);
   header.emitted_count = std::accumulate(paths.begin(), paths.end(), std::uint64_t(0));
   PhotonMapResult result;
-  formats::PhotonWriter writer(
-      [&](const void* data, std::size_t size) {
-        sink(data, size);
-        result.byte_count += size;
-      },
-      header);
+  formats::PhotonWriter writer(sink, header);
   formats::PhotonReader reader(path, {.digest = false});
   formats::PhotonBlock block;
   bool more = reader.read_block(block);

@@ -118,12 +118,7 @@ PhotonMapResult write_updated_map(const PhotonTracer& tracer, const PhotonOption
     header.base_digest = upon_overlay ? previous.header.base_digest : previous.digest;
   }
   PhotonMapResult result;
-  formats::PhotonWriter writer(
-      [&](const void* data, std::size_t size) {
-        sink(data, size);
-        result.byte_count += size;
-      },
-      header);
+  formats::PhotonWriter writer(sink, header);
   // What is kept: of an overlay its own groups, else all.
   std::unique_ptr<formats::photons::FileReader> file;
   std::unique_ptr<formats::PhotonReader> whole;

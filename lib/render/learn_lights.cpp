@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kMostCells = 4096;   ///< 9 MB
 constexpr std::size_t kMostPlaces = 16;    ///< of a cell
 constexpr float kAcrossSeen = 20;          ///< cells along what is seen: 15 are as good, 60 too many to learn (prototype.md 9)
-constexpr double kOpen = 0.5;              ///< share of rays from what is seen that leave the scene: above it nothing hides the sky
+constexpr double kOpen = 0.1;              ///< share of rays from what is seen that leave the scene: rooms with windows below, streets above it
+constexpr int kPixelsPerRay = 450;         ///< of the picture, for a ray of each cell: learning is to stay a small part of a small picture
 constexpr double kLearned = 0.8;           ///< of the samples; the rest as if nothing were known
 constexpr double kFromFirst = 0.6;         ///< of the second pass' rays: by what the first one learned
 constexpr int kBlur = 2;                   ///< parts of the sky about one that have a say in it
@@ -81,12 +82,12 @@ std::vector<std::vector<Place>> by_cell(std::vector<Place> places) {
 
 class Learner {
  public:
-  Learner(const RenderScene& scene, const LearnOptions& options, const LightGrid& grid)
-      : scene_(scene), options_(options), grid_(grid), suns_(scene.lights.suns()) {}
+  Learner(const RenderScene& scene, const LearnOptions& options, int rays, const LightGrid& grid)
+      : scene_(scene), options_(options), rays_(rays), grid_(grid), suns_(scene.lights.suns()) {}
 
   /// One pass over a cell; `before`: what is known already, or nullptr.
   void look(const std::vector<Place>& places, const LightGrid::Cell* before, int pass, Found& found) const {
-    const int rays = options_.rays;
+    const int rays = rays_;
     for (int i = 0; i < rays; ++i) {
       const Place& place = places[std::size_t(i) % places.size()];
       const PathRandom random(options_.seed + std::uint64_t(pass) * 0x9e3779b97f4a7c15ull, place.cell * 1024 + std::uint64_t(i));
@@ -140,6 +141,7 @@ class Learner {
 
   const RenderScene& scene_;
   const LearnOptions& options_;
+  int rays_;
   const LightGrid& grid_;
   std::vector<Lights::Sun> suns_;
 };
@@ -238,7 +240,8 @@ std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, const CameraVi
   std::vector<std::uint64_t> keys;
   for (const std::vector<Place>& cell : cells) keys.push_back(cell.front().cell);
 
-  const Learner learner(scene, options, *grid);
+  const int rays = std::clamp(view.width() * view.height() / kPixelsPerRay, 1, options.rays);
+  const Learner learner(scene, options, rays, *grid);
   const bool suns = !scene.lights.suns().empty(), lamps = scene.lights.has_placed();
   const std::vector<double> parts = light_of_parts(*grid);
   std::vector<LightGrid::Cell> known(cells.size());

@@ -14,13 +14,13 @@ namespace tempolux {
 struct LearnOptions {
   std::uint64_t seed = 0;
   int looks = 4096;     ///< eye rays of a view; each goes on for one bounce
-  int rays = 128;       ///< of a cell, of each of two passes
+  int rays = 128;       ///< of a cell, of each of two passes, at most: one for each 450 pixels
 };
 
 /// A grid for what a view of the scene sees and, less densely, for what that sees. Its cells are a twentieth of what is seen wide
 /// (2nd to 98th percentile along the longest axis), most_cells at most: those most looked at. Same grid for any number of
-/// threads. nullptr where there is no light from far away, nothing is seen, or more than half of the rays from there leave the scene:
-/// little hides the sky then, and samples of its map are as good as learned ones. docs/pixels.md says how shares are made of rays.
+/// threads. nullptr where there is no light from far away, nothing is seen, or more than a tenth of the rays from there leave the
+/// scene: samples of the map by the cosine are then as good as learned ones. docs/pixels.md says how shares are made of rays.
 std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, const CameraView& view, const LearnOptions& options);
 
 }  // namespace tempolux

@@ -2,10 +2,12 @@
 
 Used by read_irradpoints.py and read_irradcache.py. Checks everything but what a page says of its keys, records and totals.
 """
+import json
 import math
 import os
 import re
 import struct
+import sys
 import zlib
 
 HASHES = ["static-geometry", "moving-geometry", "materials", "lights", "media"]
@@ -147,3 +149,17 @@ def save(path, data):
     with open(path + ".tmp", "wb") as stream:
         stream.write(data)
     os.replace(path + ".tmp", path)
+
+
+def second_reader(doc, read, numbers, write):
+    """The main of a second reader: FILE [COPY]. Prints numbers of FILE as JSON, writes it again to COPY; of a bad file the reason, exit 2."""
+    if len(sys.argv) not in (2, 3):
+        sys.exit(doc)
+    try:
+        file = read(sys.argv[1])
+    except (ValueError, OSError) as error:
+        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
+        sys.exit(2)
+    print(json.dumps(numbers(file), indent=1))
+    if len(sys.argv) == 3:
+        write(sys.argv[2], file)

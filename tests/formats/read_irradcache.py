@@ -11,12 +11,10 @@ As a module: read_irradcache(path) -> Irradcache; write_irradcache(path, cache).
     write_irradcache("out.irradcache", c)
 """
 import dataclasses
-import json
 import math
 import struct
-import sys
 
-from containers import cut, encode_container, exact_sums, integers, read_container, reals, refuse, save
+from containers import cut, encode_container, exact_sums, integers, read_container, reals, refuse, save, second_reader
 
 MAGIC, MARK = b"\x89TIRRC\r\n", b"IRRC"
 # Section 3: position, normal, object, set, reserved, irradiance, rotational, translational, radius, radius_unclamped
@@ -140,13 +138,4 @@ def summary(c):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    try:
-        file = read_irradcache(sys.argv[1])
-    except (ValueError, OSError) as error:
-        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
-        sys.exit(2)
-    print(json.dumps(summary(file), indent=1))
-    if len(sys.argv) == 3:
-        write_irradcache(sys.argv[2], file)
+    second_reader(__doc__, read_irradcache, summary, write_irradcache)

@@ -12,12 +12,10 @@ As a module: read_irradpoints(path) -> Irradpoints; write_irradpoints(path, poin
     write_irradpoints("out.irradpoints", p)
 """
 import dataclasses
-import json
 import math
 import struct
-import sys
 
-from containers import cut, encode_container, exact_sums, integers, read_container, reals, refuse, save
+from containers import cut, encode_container, exact_sums, integers, read_container, reals, refuse, save, second_reader
 
 MAGIC, MARK = b"\x89TIRPT\r\n", b"IRPT"
 RECORD = struct.Struct("<3f2HHBBf")             # section 3: position, normal, object, set, reserved, radius
@@ -107,13 +105,4 @@ def summary(p):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    try:
-        file = read_irradpoints(sys.argv[1])
-    except (ValueError, OSError) as error:
-        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
-        sys.exit(2)
-    print(json.dumps(summary(file), indent=1))
-    if len(sys.argv) == 3:
-        write_irradpoints(sys.argv[2], file)
+    second_reader(__doc__, read_irradpoints, summary, write_irradpoints)

@@ -7,13 +7,11 @@
 As a module: read_meshirrad(path) -> Mesh; write_meshirrad(path, mesh).
 """
 import dataclasses
-import json
 import math
 import re
 import struct
-import sys
 
-from containers import REAL, cut, encode_container, read_container, refuse, save
+from containers import REAL, cut, encode_container, read_container, refuse, save, second_reader
 
 MAGIC, MARK = b"\x89TMESH\r\n", b"MESH"
 # section 3: surface, triangle, cell, cuts, side, position, normal, area, photons, sums, irradiance, object, reserved
@@ -87,13 +85,6 @@ def cell_of(n, u, v):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    try:
-        file = read_meshirrad(sys.argv[1])
-    except (ValueError, OSError) as error:
-        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
-        sys.exit(2)
-    print(json.dumps({"header": file.header, "history": file.history, "elements": totals(file)[0], "photons": totals(file)[1]}, indent=1))
-    if len(sys.argv) == 3:
-        write_meshirrad(sys.argv[2], file)
+    second_reader(__doc__, read_meshirrad,
+                  lambda file: {"header": file.header, "history": file.history, "elements": totals(file)[0], "photons": totals(file)[1]},
+                  write_meshirrad)

@@ -7,12 +7,10 @@
 As a module: read_paths(path) -> Paths; write_paths(path, paths).
 """
 import dataclasses
-import json
 import re
 import struct
-import sys
 
-from containers import cut, encode_container, integers, read_container, refuse, save
+from containers import cut, encode_container, integers, read_container, refuse, save, second_reader
 
 MAGIC, MARK = b"\x89TPATH\r\n", b"PATH"
 RECORD = struct.Struct("<QQ")                   # section 3: path, intervals
@@ -69,13 +67,6 @@ def write_paths(path, p):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    try:
-        file = read_paths(sys.argv[1])
-    except (ValueError, OSError) as error:
-        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
-        sys.exit(2)
-    print(json.dumps({"header": file.header, "history": file.history, "paths": totals(file)[0], "intervals": totals(file)[1]}, indent=1))
-    if len(sys.argv) == 3:
-        write_paths(sys.argv[2], file)
+    second_reader(__doc__, read_paths,
+                  lambda file: {"header": file.header, "history": file.history, "paths": totals(file)[0], "intervals": totals(file)[1]},
+                  write_paths)

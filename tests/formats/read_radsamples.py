@@ -9,14 +9,12 @@
 """
 import collections
 import dataclasses
-import json
 import math
 import re
 import struct
-import sys
 import zlib
 
-from containers import IDENTITY, cut, exact_sums, integers, parse_text, reals, refuse, save
+from containers import IDENTITY, cut, exact_sums, integers, parse_text, reals, refuse, save, second_reader
 
 MAGIC = b"\x89TRADS\r\n"
 POINT = struct.Struct("<3f")
@@ -219,13 +217,4 @@ def summary(f):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    try:
-        file = read_radsamples(sys.argv[1])
-    except (ValueError, OSError) as error:
-        print(f"{sys.argv[1]}: {error}", file=sys.stderr)
-        sys.exit(2)
-    print(json.dumps(summary(file), indent=1))
-    if len(sys.argv) == 3:
-        save(sys.argv[2], encode_radsamples(file))
+    second_reader(__doc__, read_radsamples, summary, lambda path, file: save(path, encode_radsamples(file)))

@@ -1,0 +1,25 @@
+#!/bin/sh
+# A second reader (read_FORMAT.py, written from the page) and the C++ agree: on files that the C++ wrote, on bytes when it writes
+# them again, and on the folders accept and refuse.
+#
+#     read_totals_test.sh FORMAT PATH-OF-ITS-TEST       in the folder tests; FORMAT: paths or meshirrad
+format=$1 program=$2
+here=$(pwd)/formats
+folder=$(mktemp -d) || exit 3
+export PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$here
+trap 'rm -rf "$folder"' EXIT
+bad=0
+fail() { echo "read_totals_test: $format: $*"; bad=1; }
+TEMPOLUX_SECOND_READER=$folder "$program" --gtest_filter='*.FilesForTheSecondReader' >"$folder/log" 2>&1 ||
+  { cat "$folder/log"; fail "the C++ failed"; }
+[ -e "$folder/rich.$format" ] || fail "the C++ wrote nothing"
+for file in "$folder"/*."$format"; do
+  python3 "$here/read_$format.py" "$file" "$folder/copy" >"$folder/json" || fail "$file not read"
+  python3 -c 'import json, sys
+j = json.load(sys.stdin)
+print(j.get("paths", j.get("elements")))' <"$folder/json" | cmp - "$file.expected" ||
+    fail "$file: other numbers"
+  cmp "$file" "$folder/copy" || fail "$file: written again, other bytes"
+done
+python3 "$here/accept_and_refuse.py" "$format" "$here/$format"/*/*."$format" || fail "folders accept and refuse"
+exit $bad
