@@ -38,6 +38,7 @@ struct Options {
 struct Chain {
   KeptHemispheres kept;
   std::optional<SceneFrame> before;   ///< none: nothing is kept
+  tools::KeptFiles files;
 };
 
 void write_cache(const Options& options, const SceneFrame& frame, const RecordStore& store, const std::string& history, tools::Output& output) {
@@ -98,8 +99,9 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   const tools::FramePoints points = tools::read_frame_points(tool, tools::frame_name(options.points, number), frame);
   const std::string history = points.read.history + tool.history_line(number);
   if (resume && std::filesystem::is_regular_file(cache))
-    if (std::optional<KeptHemispheres> found = tools::find_kept(samples, frame, points, history)) {
-      chain = {std::move(*found), std::move(frame)};
+    if (std::optional<KeptHemispheres> found = chain.files.find(samples, frame, points, history)) {
+      chain.kept = std::move(*found);
+      chain.before.emplace(std::move(frame));
       tool.say("frame " + std::to_string(number) + ": found");
       return;
     }
@@ -108,7 +110,7 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
     tool.stats().phase("read samples");
     chain.kept = tools::read_kept(tool, input, options.previous, frame, points, chain.before).kept;
   }
-  if (chain.before && chain.before->segment.first != frame.segment.first) chain = {};
+  if (chain.before && chain.before->segment.first != frame.segment.first) chain.kept = {}, chain.before.reset();
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
@@ -128,7 +130,7 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   gather.place(views, options.width, options.height, chain.kept, store, counts, [&](double done) { tool.progress(done); });
   tool.stats().phase("write");
   write_cache(options, frame, store, history, cache_output);
-  tools::write_kept(chain.kept, frame, points, history, kept_output);
+  chain.files.write(chain.kept, frame, points, history, kept_output);
   tool.stats().end_phase();
   count(tool, counts, number, !chain.before);
   chain.before.emplace(std::move(frame));

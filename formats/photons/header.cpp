@@ -1,6 +1,7 @@
 // formats/photons/header.cpp -- the text of a header (photons.md, section 2).
 #include <algorithm>
 
+#include "formats/base_file.h"
 #include "formats/photons/layout.h"
 
 namespace tempolux::formats::photons {
@@ -23,13 +24,6 @@ std::uint32_t parse_kinds(std::string_view list) {
   return kinds;
 }
 
-bool is_digest(std::string_view text) {
-  return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == text.npos;
-}
-bool is_base_name(std::string_view text) {
-  return !text.empty() && text != "." && text != ".." && text.find('/') == text.npos && is_printable(text);
-}
-
 constexpr std::uint32_t kTentative = 1u << int(PathKind::tentative);
 
 /// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
@@ -46,11 +40,7 @@ std::string_view fault_of(const PhotonHeader& h) {
   if (h.columns >= kColumnsNames.size()) return "columns are not known";
   if (h.group_count < 1 || h.group_count > kMaxGroupCount) return "groups is not in 1 .. 16777216";
   if (const std::string_view fault = fault_of_common(h.origin, h.identity); !fault.empty()) return fault;
-  if (h.base_name.empty() != h.base_digest.empty()) return "base and base-digest do not stand together";
-  if (!h.base_name.empty() && !is_base_name(h.base_name))
-    return "base is not the name of a file without folder";
-  if (!h.base_name.empty() && !is_digest(h.base_digest)) return "base-digest is not 32 hexadecimal digits";
-  return "";
+  return fault_of_base(h.base_name, h.base_digest);
 }
 
 constexpr std::uint16_t kEmissionSince = 1, kPartSince = 2, kTentativeSince = 3, kPilotsSince = 4;  ///< minor versions

@@ -3,6 +3,7 @@
 #include <functional>
 #include <stdexcept>
 
+#include "formats/base_file.h"
 #include "formats/hash.h"
 #include "formats/large_pages.h"
 #include "formats/photons/file_reader.h"
@@ -54,7 +55,6 @@ class Digest {
 };
 
 /// The folder of a path with its slash; "" for a bare name and for "-".
-std::string folder_of(const std::string& path) { return path.substr(0, path.rfind('/') + 1); }
 
 /// The ledger of a map: of two lists, groups ascending, the overlay's entry if both have one.
 std::vector<GroupFlux> merge_ledgers(const std::vector<GroupFlux>& overlay,
@@ -90,7 +90,7 @@ struct PhotonReader::State {
 };
 
 void PhotonReader::State::open_base(const std::string& path) {
-  base = std::make_unique<FileReader>(folder_of(path) + file.header().base_name);
+  base = std::make_unique<FileReader>(path_of_base(path, file.header().base_name));
   if (base->is_overlay()) file.fail("its base is an overlay itself", "make it again upon a whole map");
   const PhotonHeader &a = file.header(), &b = base->header();
   if (a.map != b.map || rules_of(a).kinds != rules_of(b).kinds || a.columns != b.columns ||

@@ -5,7 +5,9 @@
 #include <limits>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
+#include "formats/base_file.h"
 #include "formats/container.h"
 #include "formats/exact_sum.h"
 #include "formats/float_bits.h"
@@ -14,7 +16,8 @@
 namespace tempolux::formats {
 namespace {
 
-constexpr Format kFormat{{"\x89TRADS\r\n", 8}, ".radsamples", "gather-temporal"};
+constexpr Format kFormat{{"\x89TRADS\r\n", 8}, ".radsamples", "gather-temporal", 1, 1};
+constexpr std::uint16_t kBaseSince = 1;   ///< minor version
 constexpr std::string_view kPointsMark = "RADP", kRecordsMark = "RADR", kSamplesMark = "RADS";
 constexpr std::size_t kPointSize = 12, kSampleSize = 8, kAnchorSize = 4, kEndBodySize = 48;
 constexpr std::uint32_t kNoAnchor = 0xffffffff;
@@ -24,10 +27,11 @@ std::string_view fault_of(const RadsamplesHeader& h) {
   if (!std::isfinite(h.diagonal) || h.diagonal <= 0) return "diagonal is not a length above 0";
   if (h.segment[0] > h.segment[1]) return "segment ends before it begins";
   if (h.anchors == h.points_hash.empty()) return "points go with the column anchor";
+  if (const std::string_view fault = fault_of_base(h.base_name, h.base_digest); !fault.empty()) return fault;
   return fault_of_common(h.origin, h.identity);
 }
 
-Line take_line(std::string_view key, std::string_view value, RadsamplesHeader& h) {
+Line take_line(std::string_view key, std::string_view value, std::uint16_t minor, RadsamplesHeader& h) {
   const auto result = [](bool good) { return good ? Line::good : Line::bad_value; };
   if (key == "columns") return h.anchors = value == "anchor", result(h.anchors || value == "none");
   if (key == "diagonal") return result(parse_numbers(value, &h.diagonal, 1));
@@ -36,6 +40,8 @@ Line take_line(std::string_view key, std::string_view value, RadsamplesHeader& h
     h.points_hash = value;
     return result(!value.empty() && value.size() <= 128 && value.find(' ') == value.npos);
   }
+  if (minor >= kBaseSince && key == "base") return h.base_name = value, result(!value.empty());
+  if (minor >= kBaseSince && key == "base-digest") return h.base_digest = value, result(!value.empty());
   return take_common_line(key, value, common_keys(h));
 }
 
@@ -47,15 +53,19 @@ std::string header_text(const RadsamplesHeader& h) {
   text.line("diagonal", text_of(h.diagonal));
   text.line("segment", text_of(h.segment[0]) + " " + text_of(h.segment[1]));
   if (h.anchors) text.line("points", h.points_hash);
+  if (!h.base_name.empty()) {
+    text.line("base", h.base_name);
+    text.line("base-digest", h.base_digest);
+  }
   text.identity(h.identity);
   text.history(h.history);
   return text.finish();
 }
 
-std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown, RadsamplesHeader& h) {
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, bool allow_unknown, RadsamplesHeader& h) {
   h = RadsamplesHeader();
   constexpr std::array<std::string_view, 4> required{"columns", "origin", "diagonal", "segment"};
-  const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, h); };
+  const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, minor, h); };
   if (auto error = parse_lines(text, allow_unknown, required, take)) return error;
   if (const std::string_view fault = fault_of(h); !fault.empty()) return HeaderError{0, "header: " + std::string(fault)};
   return std::nullopt;
@@ -105,6 +115,21 @@ std::string_view fault_of(const RadianceSample& s, std::uint32_t anchor, std::si
   return "";
 }
 
+std::uint64_t samples_of(std::span<const RadsamplesRecord> records) {
+  std::uint64_t count = 0;
+  for (const RadsamplesRecord& record : records) count += record.samples();
+  return count;
+}
+
+/// Does a record of the file have its own samples in it? Always, but in overlays.
+bool is_own(const RadsamplesFile& file, std::size_t record) { return file.kept_from.empty() || file.kept_from[record] == 0; }
+std::uint64_t own_samples(const RadsamplesFile& file) {
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < file.records.size(); ++i)
+    if (is_own(file, i)) count += file.records[i].samples();
+  return count;
+}
+
 struct Totals {
   std::uint64_t points = 0, records = 0, samples = 0;
   std::array<double, 3> irradiance{};
@@ -113,13 +138,7 @@ struct Totals {
 Totals totals_of(const RadsamplesFile& file) {
   ExactRgbSum sum;
   for (const RadsamplesRecord& record : file.records) sum.add(record.irradiance);
-  return {file.point_light.size(), file.records.size(), file.samples.size(), sum.rounded()};
-}
-
-std::uint64_t samples_of(std::span<const RadsamplesRecord> records) {
-  std::uint64_t count = 0;
-  for (const RadsamplesRecord& record : records) count += record.samples();
-  return count;
+  return {file.point_light.size(), file.records.size(), own_samples(file), sum.rounded()};
 }
 
 void refuse_bad(const RadsamplesFile& file) {
@@ -130,6 +149,7 @@ void refuse_bad(const RadsamplesFile& file) {
     if (!is_finite(file.point_light[i]) || is_negative(file.point_light[i])) refuse("point", i, "light is not finite or is negative");
   for (std::size_t i = 0; i < file.records.size(); ++i)
     if (const std::string_view fault = fault_of(file.records[i]); !fault.empty()) refuse("record", i, fault);
+  if (file.kept_from.size() != (file.header.base_name.empty() ? 0 : file.records.size())) refuse("records", file.kept_from.size(), "are not told from the base's");
   if (samples_of(file.records) != file.samples.size()) refuse("samples", file.samples.size(), "are not those of the records");
   if (file.anchors.size() != (file.header.anchors ? file.samples.size() : 0)) refuse("anchors", file.anchors.size(), "are not one a sample");
   for (std::size_t i = 0; i < file.samples.size(); ++i)
@@ -184,7 +204,7 @@ class Blocks {
 };
 
 void read_samples(Blocks& blocks, RadsamplesFile& file) {
-  const std::uint64_t wanted = samples_of(file.records);
+  const std::uint64_t wanted = own_samples(file);
   const std::size_t size = kSampleSize + (file.header.anchors ? kAnchorSize : 0);
   while (blocks.next(kSamplesMark, size)) {
     const std::size_t first = file.samples.size();
@@ -204,17 +224,76 @@ void read_samples(Blocks& blocks, RadsamplesFile& file) {
   if (file.samples.size() != wanted) blocks.fail(0, "fewer samples than the records have");
 }
 
+/// What an overlay holds: records that say where their samples are, and the samples that are not the base's.
+struct OwnParts {
+  std::vector<RadsamplesRecord> records;
+  std::vector<RadianceSample> samples;
+  std::vector<std::uint32_t> anchors;
+};
+
+OwnParts own_parts(const RadsamplesFile& file) {
+  OwnParts own{file.records, {}, {}};
+  auto first = std::ptrdiff_t(0);
+  for (std::size_t i = 0; i < file.records.size(); ++i) {
+    own.records[i].reserved = file.kept_from[i];
+    const auto last = first + std::ptrdiff_t(file.records[i].samples());
+    if (is_own(file, i)) {
+      own.samples.insert(own.samples.end(), file.samples.begin() + first, file.samples.begin() + last);
+      if (file.header.anchors) own.anchors.insert(own.anchors.end(), file.anchors.begin() + first, file.anchors.begin() + last);
+    }
+    first = last;
+  }
+  return own;
+}
+
+/// Puts the base's samples where records have those. `fail` receives what is wrong.
+template <class Fail>
+void take_from_base(RadsamplesFile& file, const RadsamplesFile& base, const Fail& fail) {
+  const RadsamplesHeader &a = file.header, &b = base.header;
+  if (a.anchors != b.anchors || a.points_hash != b.points_hash || a.diagonal != b.diagonal || a.segment != b.segment ||
+      file.point_light.size() != base.point_light.size())
+    fail("its base " + a.base_name + " has other columns, points, segment or diagonal");
+  if (digest_of(base) != a.base_digest) fail("its base " + a.base_name + " has another digest than when the overlay was written");
+  std::vector<std::size_t> first_of;   // sample of each of the base's records
+  std::size_t samples = 0;
+  for (const RadsamplesRecord& record : base.records) first_of.push_back(std::exchange(samples, samples + record.samples()));
+  std::vector<RadianceSample> own = std::move(file.samples);
+  std::vector<std::uint32_t> own_anchors = std::move(file.anchors);
+  file.samples.clear(), file.anchors.clear();
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < file.records.size(); ++i) {
+    const bool is_mine = is_own(file, i);
+    const std::size_t there = file.kept_from[i] - std::size_t(1), count = file.records[i].samples();
+    if (!is_mine && (there >= base.records.size() || base.records[there].rings != file.records[i].rings ||
+                     base.records[there].sectors != file.records[i].sectors))
+      fail("record " + std::to_string(i) + " has samples of a record that its base " + a.base_name + " does not have");
+    const auto from = std::ptrdiff_t(is_mine ? std::exchange(next, next + count) : first_of[there]), to = from + std::ptrdiff_t(count);
+    const auto& source = is_mine ? own : base.samples;
+    const auto& anchors = is_mine ? own_anchors : base.anchors;
+    file.samples.insert(file.samples.end(), source.begin() + from, source.begin() + to);
+    if (a.anchors) file.anchors.insert(file.anchors.end(), anchors.begin() + from, anchors.begin() + to);
+  }
+}
+
+RadsamplesFile load(const std::string& path, bool is_base);
+
 }  // namespace
 
 void write_radsamples(const std::function<void(const void*, std::size_t)>& sink, const RadsamplesFile& file) {
   refuse_bad(file);
-  ContainerWriter out(sink, kFormat, header_text(file.header));
+  Format format = kFormat;
+  format.minor = file.header.base_name.empty() ? 0 : kBaseSince;
+  ContainerWriter out(sink, format, header_text(file.header));
   const auto none = [](std::size_t, std::size_t, std::string&) {};
   write_blocks<std::array<float, 3>>(out, kPointsMark, file.point_light, none);
-  write_blocks<RadsamplesRecord>(out, kRecordsMark, file.records, none);
-  write_blocks<RadianceSample>(out, kSamplesMark, file.samples, [&](std::size_t first, std::size_t count, std::string& body) {
-    if (file.header.anchors) put_array(body, std::span(file.anchors).subspan(first, count));
-  });
+  OwnParts own;
+  if (!file.kept_from.empty()) own = own_parts(file);
+  const auto& anchors = file.kept_from.empty() ? file.anchors : own.anchors;
+  write_blocks<RadsamplesRecord>(out, kRecordsMark, file.kept_from.empty() ? file.records : own.records, none);
+  write_blocks<RadianceSample>(out, kSamplesMark, file.kept_from.empty() ? file.samples : own.samples,
+                               [&](std::size_t first, std::size_t count, std::string& body) {
+                                 if (file.header.anchors) put_array(body, std::span(anchors).subspan(first, count));
+                               });
   const Totals totals = totals_of(file);
   std::string body;
   put(body, totals.points);
@@ -224,10 +303,16 @@ void write_radsamples(const std::function<void(const void*, std::size_t)>& sink,
   out.finish(body);
 }
 
-RadsamplesFile load_radsamples(const std::string& path) {
+RadsamplesFile load_radsamples(const std::string& path) { return load(path, false); }
+
+namespace {
+
+RadsamplesFile load(const std::string& path, bool is_base) {
   ContainerReader in(path, kFormat);
   RadsamplesFile file;
-  in.expect_good(parse_header_text(in.text(), in.later_minor(), file.header));
+  in.expect_good(parse_header_text(in.text(), in.minor(), in.later_minor(), file.header));
+  const bool overlay = !file.header.base_name.empty();
+  if (overlay && is_base) in.bytes().fail(kHeaderFixedSize, "it is the base of an overlay and an overlay itself", "make both again");
   Blocks blocks(in);
   while (blocks.next(kPointsMark, kPointSize))
     for (std::size_t i = 0; i < blocks.count; ++i) {
@@ -239,7 +324,8 @@ RadsamplesFile load_radsamples(const std::string& path) {
   while (blocks.next(kRecordsMark, sizeof(RadsamplesRecord)))
     for (std::size_t i = 0; i < blocks.count; ++i) {
       file.records.push_back(get<RadsamplesRecord>(blocks.body.data() + i * sizeof(RadsamplesRecord)));
-      file.records.back().reserved = 0;
+      const std::uint32_t kept_from = std::exchange(file.records.back().reserved, 0);
+      if (overlay) file.kept_from.push_back(kept_from);
       if (const std::string_view fault = fault_of(file.records.back()); !fault.empty()) blocks.fail(i * sizeof(RadsamplesRecord), fault);
     }
   read_samples(blocks, file);
@@ -252,8 +338,13 @@ RadsamplesFile load_radsamples(const std::string& path) {
   if (get<std::array<double, 3>>(end.data() + 24) != totals.irradiance)
     in.bytes().fail(in.body_offset() + 24, "total is not the sum of the records' irradiance");
   in.bytes().expect_end();
+  if (overlay)
+    take_from_base(file, load(path_of_base(path, file.header.base_name), true),
+                   [&](const std::string& fault) { in.bytes().fail(kHeaderFixedSize, fault, "make both again"); });
   return file;
 }
+
+}  // namespace
 
 std::string digest_of(const RadsamplesFile& file) {
   const auto hash = [](const auto& values) {

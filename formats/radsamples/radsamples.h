@@ -1,4 +1,4 @@
-// formats/radsamples/radsamples.h -- read and write .radsamples files, version 1.
+// formats/radsamples/radsamples.h -- read and write .radsamples files, version 1.1.
 //
 // radsamples.md is the definition of the format. If this code and that text disagree, the text is right.
 #pragma once
@@ -58,6 +58,8 @@ struct RadsamplesHeader {
   std::array<std::int32_t, 2> segment{0, 0};   ///< first and last frame
   bool anchors = false;             ///< samples have the column `anchor`, and the file the light of points
   std::string points_hash;          ///< of the anchored points' places; "" without anchors
+  /// Of an overlay: the file that records take samples from, and its digest.
+  std::string base_name, base_digest;
 };
 
 /// A whole file.
@@ -65,19 +67,22 @@ struct RadsamplesFile {
   RadsamplesHeader header;
   std::vector<std::array<float, 3>> point_light;   ///< W/m^2 of all kinds: of the points that anchors name, at this frame
   std::vector<RadsamplesRecord> records;
-  std::vector<RadianceSample> samples;             ///< of the first record, of the second, ...
+  std::vector<RadianceSample> samples;             ///< of the first record, of the second, ..., an overlay's too
   std::vector<std::uint32_t> anchors;              ///< by sample; empty without the column
+  /// Of an overlay, by record: 0, or 1 + the number of the base's record whose samples it has; empty without a base.
+  std::vector<std::uint32_t> kept_from;
 };
 
-/// Writes a file front to back; never seeks. A value out of the format's range is std::invalid_argument: nothing that a reader would
+/// Writes a file front to back; never seeks. Samples that are the base's are left out. A value out of the format's range is std::invalid_argument: nothing that a reader would
 /// refuse is written.
 void write_radsamples(const std::function<void(const void*, std::size_t)>& sink, const RadsamplesFile& file);
 
 /// Reads and checks a file; "-" is standard input. Every truncation, flipped bit and value out of range is an InputError
-/// "FILE: byte OFFSET: REASON; REMEDY". Memory: 12 bytes per sample, 200 per record, and one block.
+/// "FILE: byte OFFSET: REASON; REMEDY"; so is a base that is missing, has another digest or is an overlay itself. Memory: 12 bytes per sample, 200 per
+/// record, and one block; of an overlay twice that.
 RadsamplesFile load_radsamples(const std::string& path);
 
-/// Hash of the data without header and history (radsamples.md, section 8).
+/// Hash of the data without header and history (radsamples.md, section 9): an overlay has that of the same written whole.
 std::string digest_of(const RadsamplesFile& file);
 
 }  // namespace tempolux::formats

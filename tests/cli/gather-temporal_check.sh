@@ -58,6 +58,31 @@ gather-temporal final "$still" -q --size 48x27 --rays 64 --frames 0-2 --points s
 r = json.load(open("still.json"))["results"]
 assert all(r[name] == 0 for f in "12" for name in (f"update_rays.{f}", f"birth_rays.{f}"))' || bad 'what stands: rays'
 
+# Frames in which nothing changed are overlays of the one before: 200 of 1000 bytes a record and the points, the same digest, and as --previous as good.
+small() { [ $(($(wc -c <"$1") * 4)) -lt "$(wc -c <"$2")" ]; }
+small still/s.1.radsamples still/s.0.radsamples && small still/s.2.radsamples still/s.0.radsamples || bad "what stands: no overlays: $(ls -l still)"
+for f in 0 1; do
+  gather-temporal final "$still" -q --size 48x27 --rays 64 --frame 2 --points still.2.irradpoints --previous still/s.$f.radsamples -o from$f.radsamples \
+    --cache from.irradcache --depfile from$f.d || bad "from frame $f"
+done
+cmp from0.radsamples from1.radsamples || bad 'another file from an overlay than from its base'
+grep -q still/s.0.radsamples from1.d || bad "depfile without the base: $(cat from1.d)"
+# The box comes to rest in frame 47: what follows is laid over that.
+for f in 45 46 47 48 49; do
+  photon-trace "$moving" --frame $f --segment 60 --photons 20k -o p.photons -q &&
+  irradcache-build points "$moving" --frame $f --segment 60 --photons p.photons --point-count 1k -o p.00$f.irradpoints -q || bad "points of frame $f"
+done
+rest() { mkdir -p "$1"; temporal --frames 45-49 --segment 60 --points p.####.irradpoints -o "$1/s.####.radsamples" --cache "$1/c.####.irradcache" ${2:-}; }
+rest rest || bad 'comes to rest'
+small rest/s.0048.radsamples rest/s.0047.radsamples && small rest/s.0049.radsamples rest/s.0047.radsamples || bad "at rest: no overlays: $(ls -l rest)"
+small rest/s.0046.radsamples rest/s.0045.radsamples && bad "an overlay of what moves: $(ls -l rest)"
+cp -r rest again
+rm again/c.0049.irradcache again/c.0045.irradcache
+rest again --resume && diff -r rest again || bad 'resumed over overlays: other files'
+rm again/s.0047.radsamples
+refuses 's.0047.radsamples: cannot open' gather-temporal final "$moving" -q --frame 49 --segment 60 --points p.0049.irradpoints --size 48x27 --rays 64 \
+  --previous again/s.0048.radsamples -o refused --cache refused.c
+
 # Killed at any moment and resumed: the bytes of an undisturbed run. What is whole is not made again; what is damaged is.
 begin=$(date +%s%N)
 range timed

@@ -22,7 +22,7 @@ def record(samples, **other):
                   sectors=3, updates=2, object=7, set=0, fading=0, narrows_from=0, footprint=0.125, expected_share=0.75, lit_share=0.5,
                   radius=0.5, radius_unclamped=2, irradiance=(0.5, 0.25, 0.125), rotational=(1, 0, 0, 0, 2, 0, 0, 0, 3),
                   translational=(-1, 0, 0, 0, -2, 0, 0, 0, -3), clearance_reach=1, clearance=bytes(range(16)), further_share=0.25,
-                  birth_weight=0)
+                  birth_weight=0, kept_from=0)
     return Record(**(values | other), samples=samples)
 
 
@@ -121,6 +121,33 @@ two = copy.deepcopy(GOOD)
 two.records.append(record(samples() * 4, rings=3, sectors=4, narrows_from=1))
 save("accept/two-records", two)
 save("accept/reserved-not-zero", with_block(2, 12 + 196, b"\x09"))
+
+
+# Overlays of the worked example, whose digest is on the page: its record as it was, moved, or beside another.
+BASE = {"base": "worked-example.radsamples", "base-digest": "aa4789669a6a7579ec3021a5e46ea29b"}
+
+
+def overlay(*records, **header):
+    f = copy.deepcopy(GOOD)
+    f.header |= BASE | {"frames": "3 3"} | {key.replace("_", "-"): value for key, value in header.items()}
+    f.records = list(records)
+    return f
+
+
+KEPT, OWN = record([], kept_from=1), record(samples() * 4, rings=3, sectors=4)
+save("accept/overlay", overlay(record([], kept_from=1, narrows_from=1), OWN))
+save("accept/overlay-of-which-nothing-is-kept", overlay(OWN))
+save("accept/overlay-all-kept-twice", overlay(KEPT, KEPT))
+save("refuse/overlay-of-itself", overlay(KEPT, base="overlay-of-itself.radsamples"))
+save("refuse/overlay-base-missing", overlay(KEPT))
+save("refuse/overlay-base-in-a-folder", overlay(KEPT, base="../accept/worked-example.radsamples"))
+save("refuse/overlay-base-is-the-folder", overlay(KEPT, base="."))
+save("refuse/overlay-digest-short", overlay(KEPT, base_digest="aa47"))
+as_bytes = encode_radsamples(overlay(KEPT))
+overlay_text = as_bytes[16:16 + struct.unpack_from("<I", as_bytes, 12)[0]]
+save("refuse/overlay-without-digest", with_text(overlay_text.replace(b"base-digest: " + BASE["base-digest"].encode() + b"\n", b""), minor=1))
+save("refuse/overlay-without-base", with_text(overlay_text.replace(b"base: worked-example.radsamples\n", b""), minor=1))
+save("refuse/overlay-in-version-1.0", with_text(overlay_text))
 
 for name, bad in {"magic": with_text(text, magic=b"\x89TRADX\r\n"), "major-version-2": with_text(text, major=2),
                   "header-key-unknown": with_text(text + b"colour-of-ink: blue\n"),

@@ -115,7 +115,7 @@ TEST(Radsamples, ManyComeBackAndTakeTheRoomThePageSays) {
 
 TEST(Radsamples, EveryTruncationIsAnError) { expect_every_truncation_refused(bytes_of(example()), read); }
 TEST(Radsamples, EveryFlippedBitIsAnError) { expect_every_flipped_bit_refused(bytes_of(example()), read); }
-TEST(Radsamples, AcceptsEveryFileOfTheFolderAccept) { EXPECT_GE(expect_files(kFiles + "accept", true, read), 11); }
+TEST(Radsamples, AcceptsEveryFileOfTheFolderAccept) { EXPECT_GE(expect_files(kFiles + "accept", true, read), 14); }
 TEST(Radsamples, RefusesEveryFileOfTheFolderRefuse) { EXPECT_GE(expect_files(kFiles + "refuse", false, read), 60); }
 
 TEST(Radsamples, DigestIsOfTheDataAlone) {
@@ -142,11 +142,78 @@ TEST(Radsamples, TheWriterWritesNothingThatAReaderWouldRefuse) {
   refused([](auto& f) { f.samples.pop_back(); });
   refused([](auto& f) { f.anchors.pop_back(); });
   refused([](auto& f) { f.header.diagonal = 0; });
+  refused([](auto& f) { f.header.base_name = "a", f.header.base_digest = std::string(32, '0'); });
+  refused([](auto& f) { f.kept_from = {1}; });
+  refused([](auto& f) { f.header.base_name = "a", f.kept_from = {1}; });
   refused([](auto& f) { f.header.points_hash = ""; });
   refused([](auto& f) { f.records[0].radius = NAN; });
   refused([](auto& f) { f.samples[0].flags = sample_valid; });
   refused([](auto& f) { f.anchors[0] = 2; });
   refused([](auto& f) { f.point_light[1][1] = -1; });
+}
+
+/// An overlay of many(12) whose odd records are the base's, in another order, with fields of their own; even ones have other samples.
+RadsamplesFile overlay_of_many(const std::string& base) {
+  RadsamplesFile file = many(12);
+  file.header.base_name = base;
+  file.header.base_digest = digest_of(many(12));
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    file.kept_from.push_back(i % 2 ? 12 - i : 0);   // of number 11 - i
+    file.records[i].radius = 2;
+    for (std::size_t c = 12 * i; c < 12 * i + 12; ++c) {
+      if (i % 2) file.samples[c] = many(12).samples[12 * (11 - i) + c % 12];
+      else file.samples[c].rgbe[0] = 77;
+    }
+  }
+  return file;
+}
+
+// Six records of twelve keep 12 samples of 12 bytes each in the base; the keys of the base's name and digest come on top.
+TEST(Radsamples, AnOverlayWithItsBaseIsTheFileWrittenWhole) {
+  Folder folder;
+  const RadsamplesFile file = overlay_of_many("base.radsamples");
+  RadsamplesFile whole = file;
+  whole.header.base_name = whole.header.base_digest = "", whole.kept_from.clear();
+  const std::size_t keys = std::string("base: base.radsamples\nbase-digest: \n").size() + 32;
+  EXPECT_EQ(bytes_of(file).size() + 6 * 12 * 12, bytes_of(whole).size() + keys);
+  save(folder / "base.radsamples", bytes_of(many(12)));
+  save(folder / "a", bytes_of(file));
+  const RadsamplesFile again = load_radsamples(folder / "a");
+  EXPECT_EQ(again.records, whole.records);
+  EXPECT_EQ(again.samples, whole.samples);
+  EXPECT_EQ(again.anchors, whole.anchors);
+  EXPECT_EQ(again.kept_from, file.kept_from);
+  EXPECT_EQ(digest_of(again), digest_of(whole));
+  EXPECT_EQ(bytes_of(again), bytes_of(file));
+}
+
+TEST(Radsamples, AnOverlayTakesNoOtherBase) {
+  Folder folder;
+  const auto fault_with = [&](const RadsamplesFile& base) -> std::string {
+    save(folder / "base.radsamples", bytes_of(base));
+    save(folder / "a", bytes_of(overlay_of_many("base.radsamples")));
+    try {
+      load_radsamples(folder / "a");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto has = [](const std::string& fault, const char* words) { return fault.find(words) != fault.npos; };
+  EXPECT_EQ(fault_with(many(12)), "");
+  RadsamplesFile base = many(12);
+  base.samples[3].rgbe[1] = 99;
+  EXPECT_TRUE(has(fault_with(base), "another digest"));
+  base = many(12), base.header.diagonal = 9;
+  EXPECT_TRUE(has(fault_with(base), "other columns, points, segment or diagonal"));
+  base = many(12), base.point_light.pop_back();
+  EXPECT_TRUE(has(fault_with(base), "other columns, points, segment or diagonal"));
+  EXPECT_TRUE(has(fault_with(overlay_of_many("base.radsamples")), "overlay itself"));
+  RadsamplesFile file = overlay_of_many("base.radsamples");
+  save(folder / "base.radsamples", bytes_of(many(12)));
+  file.kept_from[1] = 13;   // the base has twelve
+  save(folder / "a", bytes_of(file));
+  EXPECT_THROW(load_radsamples(folder / "a"), InputError);
 }
 
 // Mantissas are 128 to 255 of the largest channel: reading back is off by less than 2^-7 of it; what a file holds comes back for any u.
@@ -212,6 +279,8 @@ TEST(Radsamples, FilesForTheSecondReader) {
   give("example.radsamples", example());
   give("many.radsamples", many(6000));
   give("empty.radsamples", many(0));
+  save(std::string(folder) + "/base.radsamples", bytes_of(many(12)));
+  give("overlay.radsamples", overlay_of_many("base.radsamples"));
 }
 
 }  // namespace

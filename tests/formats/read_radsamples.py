@@ -10,6 +10,7 @@
 import collections
 import dataclasses
 import math
+import os
 import re
 import struct
 import zlib
@@ -21,7 +22,7 @@ POINT = struct.Struct("<3f")
 # Section 3, in its order.
 RECORD = struct.Struct("<3f3fQII2fHHIHBBIffff f3f9f9ff16sffI".replace(" ", ""))
 FIELDS = ("position normal key surface triangle barycentric rings sectors updates object set fading narrows_from footprint expected_share "
-          "lit_share radius radius_unclamped irradiance rotational translational clearance_reach clearance further_share birth_weight").split()
+          "lit_share radius radius_unclamped irradiance rotational translational clearance_reach clearance further_share birth_weight kept_from").split()
 COUNTS = {"position": 3, "normal": 3, "barycentric": 2, "irradiance": 3, "rotational": 9, "translational": 9}
 SAMPLE, ANCHOR, END = struct.Struct("<4BHH"), struct.Struct("<I"), struct.Struct("<QQQ3d")
 NO_ANCHOR = 0xFFFFFFFF
@@ -31,6 +32,10 @@ RULES = {
     "diagonal": lambda v: (reals(v, 1) or [0])[0] > 0,
     "segment": lambda v: (s := integers(v, 2, -2**31, 2**31 - 1)) and s[0] <= s[1],
     "points": lambda v: re.fullmatch("[!-~]{1,128}", v),
+}
+BASE_RULES = {      # since 1.1
+    "base": lambda v: v not in (".", "..") and re.fullmatch("[^\x00-\x1f\x7f/]+", v),
+    "base-digest": lambda v: re.fullmatch("[0-9a-f]{32}", v),
 }
 
 
@@ -88,7 +93,7 @@ def good_sample(s, points):
     return bool(s.flags & ANCHORED) == (s.anchor != NO_ANCHOR) and (s.anchor == NO_ANCHOR or s.anchor < points)
 
 
-def read_radsamples(path):
+def read_radsamples(path, is_base=False):
     with open(path, "rb") as stream:
         data = stream.read()
     at = 0
@@ -108,10 +113,13 @@ def read_radsamples(path):
     chain = take(4)
     if struct.unpack("<I", chain)[0] != zlib.crc32(fixed + text):
         refuse(at - 4, "wrong checksum of the header")
-    header, history = parse_text(text, minor > 0, ["columns", "diagonal", "segment"], RULES)
+    header, history = parse_text(text, minor > 1, ["columns", "diagonal", "segment"], RULES | (BASE_RULES if minor >= 1 else {}))
     anchors = header["columns"] == "anchor"
     if anchors != ("points" in header):
         refuse(16, "points go with the column anchor")
+    overlay = "base" in header
+    if overlay != ("base-digest" in header) or (overlay and is_base):
+        refuse(16, "base and base-digest go together, and a base has none")
     mark = take(4)
 
     def blocks(wanted, size):
@@ -141,10 +149,11 @@ def read_radsamples(path):
                 n = COUNTS.get(name)
                 fields.append(tuple(values[:n]) if n else values[0])
                 del values[:n or 1]
+            fields[-1] *= overlay       # reserved without a base
             records.append(Record(*fields, []))
             if not good_record(records[-1]):
                 refuse(start, f"record out of range: {records[-1]}")
-    wanted, samples = sum(r.rings * r.sectors for r in records), []
+    wanted, samples = sum(r.rings * r.sectors for r in records if not r.kept_from), []
     for start, body, count in blocks(b"RADS", SAMPLE.size + anchors * ANCHOR.size):
         if len(samples) % 65536:
             refuse(start, "a block of samples before this one is not full")
@@ -164,22 +173,39 @@ def read_radsamples(path):
         refuse(at, "bytes after the end block")
     first = 0
     for r in records:
-        r.samples.extend(samples[first:first + r.rings * r.sectors])
-        first += r.rings * r.sectors
+        if not r.kept_from:
+            r.samples.extend(samples[first:first + r.rings * r.sectors])
+            first += r.rings * r.sectors
     f = Radsamples(header, history, light, records)
     if END.unpack(end[4:]) != totals(f):
         refuse(at, "totals are not those of the file")
+    if overlay:
+        take_from_base(f, read_radsamples(os.path.join(os.path.dirname(path), header["base"]), True))
     return f
 
 
+def take_from_base(f, base):
+    """Section 6. The base's digest is not looked at: Python's own library has no XXH3."""
+    same = ("columns", "points", "diagonal", "segment")
+    if [f.header.get(k) for k in same] != [base.header.get(k) for k in same] or len(f.point_light) != len(base.point_light):
+        refuse(16, "the base is of other columns, points, diagonal or segment")
+    for r in f.records:
+        if r.kept_from:
+            there = base.records[r.kept_from - 1] if r.kept_from <= len(base.records) else None
+            if not there or (there.rings, there.sectors) != (r.rings, r.sectors):
+                refuse(16, "the base has no such record")
+            r.samples.extend(there.samples)
+
+
 def totals(f):
-    return (len(f.point_light), len(f.records), sum(len(r.samples) for r in f.records), *exact_sums(r.irradiance for r in f.records))
+    own = sum(len(r.samples) for r in f.records if not r.kept_from)
+    return (len(f.point_light), len(f.records), own, *exact_sums(r.irradiance for r in f.records))
 
 
 def encode_radsamples(f):
-    keys = ["columns", "origin", "diagonal", "segment", "points"] + IDENTITY
+    keys = ["columns", "origin", "diagonal", "segment", "points", "base", "base-digest"] + IDENTITY
     text = "".join([f"{k}: {f.header[k]}\n" for k in keys if k in f.header] + [f"history: {line}\n" for line in f.history]).encode()
-    head = struct.pack("<8sHHI", MAGIC, 1, 0, len(text)) + text
+    head = struct.pack("<8sHHI", MAGIC, 1, int("base" in f.header), len(text)) + text
     chain = struct.pack("<I", zlib.crc32(head))
     out = [head, chain]
 
@@ -197,8 +223,8 @@ def encode_radsamples(f):
     for some in cut(f.point_light):
         block(b"RADP", len(some), b"".join(POINT.pack(*l) for l in some))
     for some in cut(f.records):
-        block(b"RADR", len(some), b"".join(RECORD.pack(*flat(r), 0) for r in some))
-    for some in cut([s for r in f.records for s in r.samples]):
+        block(b"RADR", len(some), b"".join(RECORD.pack(*flat(r)) for r in some))
+    for some in cut([s for r in f.records if not r.kept_from for s in r.samples]):
         body = b"".join(SAMPLE.pack(*s.rgbe, s.half, s.flags) for s in some)
         if f.header["columns"] == "anchor":
             body += b"".join(ANCHOR.pack(s.anchor) for s in some)
@@ -210,8 +236,9 @@ def encode_radsamples(f):
 def summary(f):
     t = totals(f)
     ages = collections.Counter(s.age for r in f.records for s in r.samples)
-    return {"header": f.header, "history": f.history, "points": t[0], "records": t[1], "samples": t[2], "irradiance": t[3:],
-            "mean_age": sum(a * n for a, n in ages.items()) / max(1, t[2]),
+    samples = sum(ages.values())        # of an overlay: with those of its base
+    return {"header": f.header, "history": f.history, "points": t[0], "records": t[1], "samples": samples, "irradiance": t[3:],
+            "mean_age": sum(a * n for a, n in ages.items()) / max(1, samples),
             "radiance": math.fsum(s.radiance[1] for r in f.records for s in r.samples),
             "distance": math.fsum(s.distance for r in f.records for s in r.samples)}
 

@@ -3,6 +3,8 @@
 
 #include <optional>
 #include <string>
+#include <unordered_map>
+#include <vector>
 
 #include "lib/temporal/temporal_gather.h"
 #include "tools/common/gather_input.h"
@@ -27,14 +29,27 @@ struct KeptFrame {
 /// Unit of distances of the samples of a segment, m: the diagonal of all that is in it.
 float sample_unit(const SceneFrame& frame);
 
-/// Writes the samples of a frame.
-void write_kept(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points, const std::string& history, Output& output);
+/// The files of a range of frames, in their order: a whole one, then overlays of it while at least half of their samples are its own; else again
+/// a whole one, of which those after it are overlays.
+class KeptFiles {
+ public:
+  /// Writes the samples of a frame. `output` in another folder than the whole file is whole, too.
+  void write(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points, const std::string& history, Output& output);
+  /// Reads what an earlier run of the same command left for this frame; nothing if it is not there, not whole, or was made otherwise, from other points
+  /// or upon another base.
+  std::optional<KeptHemispheres> find(const std::string& file, const SceneFrame& frame, const FramePoints& points, const std::string& history);
+
+ private:
+  void make_base(const std::string& path, const formats::RadsamplesFile& file, const std::vector<std::string>& hashes);
+  bool lay_over_base(const std::string& path, const std::vector<std::string>& hashes, formats::RadsamplesFile& file) const;
+
+  std::string path_, digest_, points_hash_;   ///< of the whole file; "": none
+  std::array<std::int32_t, 2> segment_{};
+  std::unordered_map<std::string, std::uint32_t> records_;   ///< its records by the hash of their samples
+};
 /// Reads a file for `now`: its segment, the static points and the scene at its own frame must be those (InputError). `before` receives
 /// that scene.
 KeptFrame read_kept(Tool& tool, SceneInput& input, const std::string& file, const SceneFrame& now, const FramePoints& points,
                     std::optional<SceneFrame>& before);
-/// Reads what an earlier run of the same command left for this frame; nothing if it is not there, not whole, or was made otherwise or from other points.
-std::optional<KeptHemispheres> find_kept(const std::string& file, const SceneFrame& frame, const FramePoints& points,
-                                         const std::string& history);
 
 }  // namespace tempolux::tools
