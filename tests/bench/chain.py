@@ -5,6 +5,7 @@ Every process is counted: each writes its statistics, which load, read, write an
 import dataclasses
 import json
 import re
+from pathlib import Path
 
 
 @dataclasses.dataclass(frozen=True)
@@ -87,6 +88,7 @@ def frame(bench, name, seed, settings, size=None, fresh=False):
 
 
 STATES = 24              # of light in a segment, which what stands is computed for once
+KEPT = 8                 # frames that kept records follow from, before the one that is judged
 
 
 def updated_frame(bench, name, seed, settings, low):
@@ -129,6 +131,50 @@ def updated_frame(bench, name, seed, settings, low):
             for file in (*kept.values(), bench.out / "frames" / f"{stem}-part.json"):
                 file.unlink(missing_ok=True)
     image, *stats = bench.cached("frames", f"{name}-updated-{low}-{seed}", [scene, *tools, number, seed, bench.size, low, settings.text()],
+                                 [".exr", *(f"-{stage}.json" for stage in stages), ".json"], make)
+    return image, stats
+
+
+def kept_frame(bench, name, seed, settings):
+    """The same by records whose samples are kept: KEPT frames before it, from a first one that is gathered anew. Of what stands and of the first frame's
+    records beyond those of a later one 1/STATES of the cost counts."""
+    scene, number = bench.scene(name)
+    tools = [bench.bin / tool for tool in ("photon-trace", "irradcache-build", "gather-temporal", "frame-render")]
+    stages = ("standing", "photons", "points", "cache")
+    photons = settings.photons // 20 if bench.tiny else settings.photons
+    count = ("--point-count", "1k") if bench.tiny else settings.points
+
+    def make(stem):
+        files = bench.out / "frames" / stem
+        kept = {n: bench.memory / f"tempolux-bench-{stem}-{n}" for n in ("s.photons", "s.paths", "s.irradpoints", "d.photons", "d.irradpoints", "radsamples", "irradcache")}
+        once, common = [], ["-q", "--seed", seed]
+
+        def run(tool, *words, to):
+            bench.run([tool, *words, "--stats", to])
+            return json.loads(Path(to).read_text())
+        try:
+            first = number - (2 if bench.tiny else KEPT)
+            part = f"{files}-part.json"
+            stands = [scene, "--frame", number, *common, "--map", "static"]
+            once.append(run(tools[0], *stands, "--photons", photons, "--kinds", "indirect", "-o", kept["s.photons"], "--paths", kept["s.paths"], to=part))
+            once.append(run(tools[1], "points", *stands, "--photons", kept["s.photons"], *count, "-o", kept["s.irradpoints"], to=part))
+            for f in range(first, number + 1):
+                run(tools[0], scene, "--frame", f, "-q", "--map", "dynamic", "--static", kept["s.paths"], "-o", kept["d.photons"], to=f"{files}-photons.json")
+                run(tools[1], "points", scene, "--frame", f, *common, "--update", kept["s.irradpoints"], "--photons", kept["s.photons"], "--dynamic",
+                    kept["d.photons"], *count, "-o", kept["d.irradpoints"], to=f"{files}-points.json")
+                stats = run(tools[2], "final", scene, "--frame", f, *common, "--points", kept["d.irradpoints"], "--size", bench.size, *settings.records,
+                            *(["--previous", kept["radsamples"]] if f > first else []), "-o", kept["radsamples"], "--cache", kept["irradcache"],
+                            to=f"{files}-cache.json")
+                if f == first:
+                    once.append(stats)
+            beyond = {k: sum(s[k] for s in once) - stats[k] for k in ("cpu_s", "wall_s")}
+            Path(f"{files}-standing.json").write_text(json.dumps(once[0] | {k: v / STATES for k, v in beyond.items()}))
+            run(tools[3], scene, "--frame", number, *common, "--irradcache", kept["irradcache"], "--points", kept["d.irradpoints"], "--size", bench.size,
+                *settings.pixels, "--channels", "RGBA,layers,id", "-o", f"{files}.exr", to=f"{files}.json")
+        finally:
+            for file in (*kept.values(), bench.out / "frames" / f"{stem}-part.json"):
+                file.unlink(missing_ok=True)
+    image, *stats = bench.cached("frames", f"{name}-kept-{seed}", [scene, *tools, number, seed, bench.size, settings.text()],
                                  [".exr", *(f"-{stage}.json" for stage in stages), ".json"], make)
     return image, stats
 

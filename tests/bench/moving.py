@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """What updates cost and err where something moves: a segment's frames anew and by what movers change, as Markdown.
 
-    python3 tests/bench/moving.py BIN FOLDER [--scene room.glb] [--frames 8-13] [--photons 1M] [--size 320x180] [--reference]
+    python3 tests/bench/moving.py BIN FOLDER [--scene room.glb] [--frames 8-13] [--photons 1M] [--size 320x180] [--reference A-B]
 
 BIN: folder of the tools. FOLDER: for their files. Without --scene the furnished room of moving_room.py. Both chains run in the same order, frame
-by frame, with one seed; with --reference (slow: 4 times the photons, points and rays of another seed) flicker and errors against it,
-and flicker of a chain with a seed for each frame. CPU seconds are those of `--stats`, all phases.
+by frame, with one seed. --reference (slow: 4 times the photons, points and rays of another seed, for these frames): flicker and errors against it,
+flicker of a chain with a seed for each frame, and errors apart where light is updated, in part or in full gathered (the blend of
+`--channels influence`). CPU seconds are those of `--stats`, all phases.
 """
 import argparse
 import json
@@ -13,19 +14,23 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "formats"))
+sys.path[:0] = [str(Path(__file__).resolve().parents[n] / folder) for n, folder in ((1, "formats"), (2, "docs"))]
 sys.dont_write_bytecode = True
 import moving_room
+from draw import read_png
+from exr_files import exr
 from read_irradcache import read_irradcache
 
 LOW = 0.06                                   # lower threshold of influence, frame-render --influence-low
+SEGMENT = 24                                 # frames for which what stands is made once: the tools' --segment
+PARTS = {"updated": lambda blend: blend == 0, "in between": lambda blend: 0 < blend < 255, "gathered": lambda blend: blend == 255}
 
 
 class Chain:
     def __init__(self, options):
         self.bin, self.out, self.scene = Path(options.bin), Path(options.folder), Path(options.scene or Path(options.folder) / "room.glb")
-        first, last = map(int, options.frames.split("-"))
-        self.frames, self.photons, self.size = range(first, last + 1), options.photons, options.size
+        self.frames, self.photons, self.size = frames_of(options.frames), options.photons, options.size
+        self.judged = frames_of(options.reference) if options.reference else ()
         self.cost = {}
 
     def file(self, *parts):
@@ -39,12 +44,13 @@ class Chain:
         return found
 
     def render(self, kind, frame, *arguments):
-        self.run(f"{kind} pixels", "frame-render", self.scene, "--frame", frame, "--irradcache", self.file(kind, frame, "irradcache"), "--points",
-                 self.file(kind, frame, "irradpoints"), "--size", self.size, "--spp", 16, "--pixel-error", 0, "--channels", "indirect",
-                 "-o", self.out / f"{kind}.{frame:04d}.exr", *arguments)
+        if frame in self.judged:
+            self.run(f"{kind} pixels", "frame-render", self.scene, "--frame", frame, "--irradcache", self.file(kind, frame, "irradcache"), "--points",
+                     self.file(kind, frame, "irradpoints"), "--size", self.size, "--spp", 16, "--pixel-error", 0, "--channels", "indirect",
+                     "-o", self.out / f"{kind}.{frame:04d}.exr", *arguments)
 
-    def stands(self):
-        f = self.frames[0]
+    def stands(self, f):
+        """What stands in the segment of f; what another segment left makes room."""
         self.run("stands photons", "photon-trace", self.scene, "--frame", f, "--map", "static", "--photons", self.photons, "--kinds", "indirect",
                  "-o", self.file("s.photons"), "--paths", self.file("s.paths"))
         self.run("stands points", "irradcache-build", "points", self.scene, "--frame", f, "--map", "static", "--photons", self.file("s.photons"),
@@ -53,13 +59,16 @@ class Chain:
                  self.file("s.irradpoints"), "--size", self.size, "-o", self.file("s.irradcache"))
 
     def updated(self, f):
-        dynamic = [self.file("u", g, "photons") for g in (f, f - 1, f - 2) if g in self.frames]
+        dynamic = [self.file("u", g, "photons") for g in (f, f - 1, f - 2) if g in self.frames and g // SEGMENT == f // SEGMENT]
         self.run("u photons", "photon-trace", self.scene, "--frame", f, "--map", "dynamic", "--static", self.file("s.paths"), "-o", dynamic[0])
         self.run("u points", "irradcache-build", "points", self.scene, "--frame", f, "--update", self.file("s.irradpoints"), "--photons",
                  self.file("s.photons"), "--dynamic", dynamic[0], "-o", self.file("u", f, "irradpoints"))
         self.run("u records", "irradcache-build", "records", self.scene, "--frame", f, "--update", self.file("s.irradcache"), "--points",
                  self.file("u", f, "irradpoints"), "--dynamic", *dynamic, "--size", self.size, "-o", self.file("u", f, "irradcache"))
         self.render("u", f)
+        if f in self.judged:
+            self.run("blend", "frame-render", self.scene, "--frame", f, "--irradcache", self.file("u", f, "irradcache"), "--points", self.file("u", f, "irradpoints"),
+                     "--size", self.size, "--spp", 1, "--pixel-error", 0, "--channels", "influence", "-o", self.file("blend", f, "exr"))
 
     def anew(self, kind, f, photons, points=(), records=(), common=()):
         self.run(f"{kind} photons", "photon-trace", self.scene, "--frame", f, "--photons", photons, "--kinds", "indirect", *common,
@@ -74,11 +83,27 @@ class Chain:
         runs = self.cost[stage][min(2, len(self.cost[stage]) - 1):] if stage[0] in "ua" else self.cost[stage]   # with two frames before
         return sum(map(value, runs)) / len(runs)
 
-    def compare(self, kind):
+    def compare(self, kind, frames, *words):
         pattern = [self.out / f"{k}.%04d.exr" for k in (kind, "r")]
-        subprocess.run([self.bin / "aqm-compare", *pattern, "--frames", f"{self.frames[0]}-{self.frames[-1]}", "--layer", "indirect", "--allow-stale",
+        subprocess.run([self.bin / "aqm-compare", *pattern, "--frames", frames, "--layer", "indirect", "--allow-stale", *words,
                         "--json", self.out / "c.json", "-q"], check=True, stdout=subprocess.DEVNULL)
         return json.loads((self.out / "c.json").read_text())["total"]
+
+    def parts(self, f):
+        """Masks of frame f: by name of a part its file and how many pixels it has."""
+        picture = self.file("blend.png")
+        subprocess.run([self.bin / "tempolux-info", self.file("blend", f, "exr"), "--png", picture, "--layer", "blend", "--exposure", "0", "-q"], check=True)
+        rows = read_png(picture)
+        for name, holds in PARTS.items():
+            values = [float(holds(pixel[0])) for row in rows for pixel in row]
+            mask = self.file("mask.exr")
+            mask.write_bytes(exr(len(rows[0]), len(rows), {"mask": ("float", values)}))
+            yield name, mask, sum(values)
+
+
+def frames_of(text):
+    first, last = map(int, text.split("-"))
+    return range(first, last + 1)
 
 
 def cpu(stats):
@@ -107,14 +132,15 @@ def main():
     parser.add_argument("--frames", default="8-13")
     parser.add_argument("--photons", default="1M")
     parser.add_argument("--size", default="320x180")
-    parser.add_argument("--reference", action="store_true")
+    parser.add_argument("--reference", metavar="A-B")
     options = parser.parse_args()
     Path(options.folder).mkdir(parents=True, exist_ok=True)
     chain = Chain(options)
     if not options.scene:
         moving_room.make(chain.scene)
-    chain.stands()
     for f in chain.frames:
+        if f == chain.frames[0] or f % SEGMENT == 0:
+            chain.stands(f)
         chain.updated(f)
         chain.anew("a", f, options.photons)
     touched = chain.mean("u photons", lambda s: s["counts"]["touched_paths"]) / chain.mean("a photons", lambda s: s["counts"]["paths"])
@@ -132,13 +158,23 @@ def main():
     print(f"E_t / E_y - 1 at {count} places of low influence: mean {100 * bias:.2f} %, 99 % of them within {100 * worst:.1f} %")
     if not options.reference:
         return
-    for f in chain.frames:
+    for f in chain.judged:
         chain.anew("r", f, "4M", ("--point-count", "80k"), ("--rays", 2400, "--error-bound", 0.14), ("--seed", 1000))
         chain.anew("f", f, options.photons, common=("--seed", f))
     print("\n| against the reference, indirect light | relMSE | bias | flicker |\n|---|---|---|---|")
     for kind, name in (("u", "updated"), ("a", "anew, one seed"), ("f", "anew, a seed for each frame")):
-        total = chain.compare(kind)
+        total = chain.compare(kind, options.reference)
         print(f"| {name} | {total['relmse']:.6f} | {100 * total['bias']:.2f} % | {total['flicker']:.6f} |")
+    print("\n| where light is | pixels | relMSE, updated | anew |\n|---|---|---|---|")
+    sums = {name: [0, 0, 0] for name in PARTS}
+    for f in chain.judged:
+        for name, mask, pixels in chain.parts(f):
+            if pixels:
+                errors = (chain.compare(kind, str(f), "--mask", mask)["relmse"] for kind in "ua")
+                sums[name] = [s + v for s, v in zip(sums[name], (pixels, *(pixels * e for e in errors)))]
+    for name, (pixels, updated, anew) in sums.items():
+        if pixels:
+            print(f"| {name} | {pixels / len(chain.judged):.0f} | {updated / pixels:.6f} | {anew / pixels:.6f} |")
 
 
 if __name__ == "__main__":

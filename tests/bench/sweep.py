@@ -99,13 +99,15 @@ def split_curves(bench):
 
 
 def moving_curves(bench):
-    """What moves: each frame anew, gather rays; and by what movers change, lower threshold of influence."""
+    """What moves: each frame anew, gather rays; by what movers change, lower threshold of influence; and records kept from frame to frame, gather rays."""
     pixels = ("--spp", 16, "--pixel-error", 0)
     photons = 10**6
     return [("frame by frame, rays", [50, 100] if bench.tiny else [60, 125, 250, 500, 1000, 2000],
              lambda name, x, seed: chain.frame(bench, name, seed, Settings(photons, records=("--rays", x), pixels=pixels, steps=True))),
             ("static + dynamic, thresholds", [0.06, 0.2] if bench.tiny else [0.5, 0.2, 0.1, 0.06, 0.03, 0.01],
-             lambda name, x, seed: chain.updated_frame(bench, name, seed, Settings(photons, pixels=pixels), x))]
+             lambda name, x, seed: chain.updated_frame(bench, name, seed, Settings(photons, pixels=pixels), x)),
+            ("temporal gathering, rays", [50, 100] if bench.tiny else [60, 125, 250, 500, 1000, 2000],
+             lambda name, x, seed: chain.kept_frame(bench, name, seed, Settings(photons, records=("--rays", x), pixels=pixels)))]
 
 
 def curves(bench, name):
@@ -132,7 +134,7 @@ def measure(bench, peers, only=""):
         for curve, values, make in curves(bench, name):
             print(f"  {name}: {curve}", flush=True)
             for x in values:
-                for seed in ([1] if bench.tiny or (curve == "path tracing" and x > 16) or curve.startswith(("gathering", "low", "frame", "static")) or x > 10**5
+                for seed in ([1] if bench.tiny or (curve == "path tracing" and x > 16) or curve.startswith(("gathering", "low", "frame", "static", "temporal")) or x > 10**5
                              else [1, 2]):
                     image, stats = make(name, x, seed)
                     for layer in LAYERS[name]:

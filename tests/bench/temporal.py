@@ -6,7 +6,8 @@
 Points of each frame come from static and dynamic photons, as with MOVING=time, or with `--light anew` from photons of the frame alone: where a lamp
 moves no light stands. Both sides read the same points and take turns. Error: of the indirect layer, one sample a pixel, against records of 16 times the
 rays from the same points, over N seeds. Flicker: RMS of the change from one frame to the next beyond that of the reference. Processor seconds are those of
-the phase `records`, median over the frames after a segment's first. `--pixels`: frames too, as Makefile.example renders them; `--paths SPP`: a frame by path
+the phase `records`, median over the frames after a segment's first. `--pixels`: frames too, as Makefile.example renders them, photons and points anew, and what whole
+frames cost on both sides, what stands and a segment's first records counted by 1/24; `--paths SPP`: a frame by path
 tracing, its error and that of the chain against 64 SPP samples.
 """
 import argparse
@@ -55,8 +56,8 @@ def previous(f):
 
 
 def light():
-    """Points of all frames; CPU seconds of photons and points."""
-    spent = {"photons": [], "points": []}
+    """Points of all frames; CPU seconds of photons and points, of what stands, and of a frame's own."""
+    spent = {"photons": [], "points": [], "stands": [], "anew": []}
     for f in frames:
         if (options.work / points(f)).exists():
             continue
@@ -66,8 +67,13 @@ def light():
             run("irradcache-build", "points", scene, "--frame", f, "--photons", "d.photons", "-o", points(f), "--stats", "p.json")
         else:
             if f % SEGMENT == 0 or not spent["photons"]:
-                run("photon-trace", scene, "--frame", f, *map_of, "--map", "static", "-o", "s.photons", "--paths", "s.paths")
-                run("irradcache-build", "points", scene, "--frame", f, "--map", "static", "--photons", "s.photons", "-o", "s.irradpoints")
+                run("photon-trace", scene, "--frame", f, *map_of, "--map", "static", "-o", "s.photons", "--paths", "s.paths", "--stats", "d.json")
+                run("irradcache-build", "points", scene, "--frame", f, "--map", "static", "--photons", "s.photons", "-o", "s.irradpoints", "--stats", "p.json")
+                spent["stands"].append(stats("d.json")["cpu_s"] + stats("p.json")["cpu_s"])
+            if options.pixels and f % 8 == 1:
+                run("photon-trace", scene, "--frame", f, *map_of, "-o", "g.photons", "--stats", "d.json")
+                run("irradcache-build", "points", scene, "--frame", f, "--photons", "g.photons", "-o", "g.irradpoints", "--stats", "p.json")
+                spent["anew"].append(stats("d.json")["cpu_s"] + stats("p.json")["cpu_s"])
             run("photon-trace", scene, "--frame", f, "--map", "dynamic", "--static", "s.paths", "-o", "d.photons", "--stats", "d.json")
             run("irradcache-build", "points", scene, "--frame", f, "--photons", "s.photons", "--update", "s.irradpoints", "--dynamic", "d.photons",
                 "-o", points(f), "--stats", "p.json")
@@ -170,6 +176,13 @@ if later:
           f"from hits {share('update_rays', 'birth_rays', of='fresh_rays'):.1f} %; of the cells: "
           + ", ".join(f"{k[6:]} {share(k):.2f} %" for k in ("cells_moved", "cells_lost", "cells_unanchored", "cells_aged")))
     print("records by frame (fresh, over time):", *(f"{r['frame']}: {r['fresh_records']:.0f}, {r['time_records']:.0f};" for r in rows[:: max(1, len(rows) // 8)] + rows[-1:]))
+    if options.pixels and spent["anew"]:
+        lit = statistics.median(r["pixels"] for r in rows if "pixels" in r)
+        first = statistics.median(r["time_all"] for r in rows if r["first"])
+        whole = (spent["anew"] + median("fresh_all") + lit,
+                 spent["photons"] + spent["points"] + median("time_all") + lit + (spent["stands"] + first - median("time_all")) / SEGMENT)
+        print(f"photons and points anew {spent['anew']:.3f} s, of what stands {spent['stands']:.3f} s a segment; whole frames: {whole[0]:.3f}, {whole[1]:.3f} s: "
+              f"{whole[0] / whole[1]:.2f} x; but for the pixels {(whole[0] - lit) / (whole[1] - lit):.2f} x")
     if options.pixels:
         print(f"pixels {statistics.median(r['pixels'] for r in rows if 'pixels' in r):.3f} s a frame")
 if options.paths:
