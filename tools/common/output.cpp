@@ -163,7 +163,7 @@ struct Output::State : std::streambuf {
   std::optional<Temporary> temporary;  ///< absent: written in place
   std::vector<char> buffer;
   std::size_t ledger_line = 0;
-  std::uint64_t written = 0;
+  std::uint64_t bytes_written = 0;
   std::ostream stream{this};
 
   State(std::string name, bool keep_old) : path(std::move(name)), no_clobber(keep_old) {
@@ -342,9 +342,9 @@ void Output::flush() { state_->flush_buffer(); }
 
 void Output::write(const void* data, std::size_t size) {
   state_->put(static_cast<const char*>(data), size);
-  state_->written += size;
+  state_->bytes_written += size;
 }
-std::uint64_t Output::written() const { return state_->written; }
+std::uint64_t Output::written() const { return state_->bytes_written; }
 
 void Output::commit() { state_->commit(true); }
 void Output::commit_unsynced() { state_->commit(false); }
