@@ -143,7 +143,7 @@ TEST(Meshirrad, TheWriterWritesNothingThatAReaderWouldRefuse) {
 
 TEST(Meshirrad, FilesForTheSecondReader) {
   const char* name = std::getenv("TEMPOLUX_SECOND_READER");
-  if (!name) GTEST_SKIP() << "only for read_meshirrad_test.sh";
+  if (!name) GTEST_SKIP() << "only for read_totals_test.sh";
   const std::string folder = std::string(name) + "/";
   save(folder + "rich.meshirrad", bytes_of(rich()));
   save(folder + "plain.meshirrad", bytes_of(example()));

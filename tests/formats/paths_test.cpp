@@ -123,7 +123,7 @@ TEST(Paths, IntervalsDivideTheSegment) {
 
 TEST(Paths, FilesForTheSecondReader) {
   const char* name = std::getenv("TEMPOLUX_SECOND_READER");
-  if (!name) GTEST_SKIP() << "only for read_paths_test.sh";
+  if (!name) GTEST_SKIP() << "only for read_totals_test.sh";
   const std::string folder = std::string(name) + "/";
   save(folder + "rich.paths", bytes_of(rich_header(), {rich_paths()}));
   save(folder + "plain.paths", bytes_of(header(), {kExample}));

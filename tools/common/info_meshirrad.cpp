@@ -1,11 +1,10 @@
 // tempolux-info on .meshirrad: facts, difference.
-#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "formats/meshirrad/meshirrad.h"
-#include "tools/common/info_facts.h"
+#include "tools/common/info_difference.h"
 
 namespace tempolux::tools {
 namespace {
@@ -61,17 +60,10 @@ Facts meshirrad_facts(const std::string& path) {
 
 Facts meshirrad_difference(const std::string& a, const std::string& b) {
   const MeshirradFile file_a = load_meshirrad(a), file_b = load_meshirrad(b);
-  const std::string digest_a = digest_of(file_a), digest_b = digest_of(file_b);
-  Facts facts = {{"files", {a, b}}, {"type", "meshirrad"}, {"equal", digest_a == digest_b}, {"differing", Facts::object()}};
-  const Facts of_a = header_facts(file_a.header), of_b = header_facts(file_b.header);
-  for (const auto& [key, value] : of_a.items())
-    if (of_b[key] != value) facts["differing"][key] = {value, of_b[key]};
-  const std::size_t records = std::min(file_a.elements.size(), file_b.elements.size());
-  std::size_t differing = 0;
-  for (std::size_t i = 0; i < records; ++i) differing += !(file_a.elements[i] == file_b.elements[i]);
-  facts["records_compared"] = records;
-  facts["records_differing"] = differing;
-  facts["digests"] = {digest_a, digest_b};
+  const ComparedFile of_a{a, digest_of(file_a), header_facts(file_a.header)}, of_b{b, digest_of(file_b), header_facts(file_b.header)};
+  Facts facts = difference_of_headers("meshirrad", of_a, of_b);
+  add_differing_records(file_a.elements, file_b.elements, facts);
+  facts["digests"] = {of_a.digest, of_b.digest};
   return facts;
 }
 

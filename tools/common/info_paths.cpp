@@ -1,11 +1,10 @@
 // tempolux-info on .paths: facts, difference.
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "formats/paths/paths.h"
-#include "tools/common/info_facts.h"
+#include "tools/common/info_difference.h"
 
 namespace tempolux::tools {
 namespace {
@@ -41,17 +40,10 @@ Facts paths_facts(const std::string& path) {
 
 Facts paths_difference(const std::string& a, const std::string& b) {
   const PathsFile file_a = load_paths(a), file_b = load_paths(b);
-  const std::string digest_a = digest_of(file_a), digest_b = digest_of(file_b);
-  Facts facts = {{"files", {a, b}}, {"type", "paths"}, {"equal", digest_a == digest_b}, {"differing", Facts::object()}};
-  const Facts of_a = header_facts(file_a.header), of_b = header_facts(file_b.header);
-  for (const auto& [key, value] : of_a.items())
-    if (of_b[key] != value) facts["differing"][key] = {value, of_b[key]};
-  const std::size_t records = std::min(file_a.paths.size(), file_b.paths.size());
-  std::size_t differing = 0;
-  for (std::size_t i = 0; i < records; ++i) differing += !(file_a.paths[i] == file_b.paths[i]);
-  facts["records_compared"] = records;
-  facts["records_differing"] = differing;
-  facts["digests"] = {digest_a, digest_b};
+  const ComparedFile of_a{a, digest_of(file_a), header_facts(file_a.header)}, of_b{b, digest_of(file_b), header_facts(file_b.header)};
+  Facts facts = difference_of_headers("paths", of_a, of_b);
+  add_differing_records(file_a.paths, file_b.paths, facts);
+  facts["digests"] = {of_a.digest, of_b.digest};
   return facts;
 }
 

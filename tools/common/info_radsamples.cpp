@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "formats/radsamples/radsamples.h"
-#include "tools/common/info_facts.h"
+#include "tools/common/info_difference.h"
 
 namespace tempolux::tools {
 namespace {
@@ -74,20 +74,11 @@ Facts radsamples_facts(const std::string& path) {
 
 Facts radsamples_difference(const std::string& a, const std::string& b) {
   const RadsamplesFile file_a = load_radsamples(a), file_b = load_radsamples(b);
-  const std::string digest_a = digest_of(file_a), digest_b = digest_of(file_b);
-  Facts facts = {{"files", {a, b}}, {"type", "radsamples"}, {"equal", digest_a == digest_b}, {"differing", Facts::object()}};
-  const Facts of_a = header_facts(file_a), of_b = header_facts(file_b);
-  for (const auto& [key, value] : of_a.items())
-    if (!of_b.contains(key) || of_b[key] != value) facts["differing"][key] = {value, of_b.contains(key) ? of_b[key] : Facts()};
-  const std::size_t records = std::min(file_a.records.size(), file_b.records.size()),
-                    samples = std::min(file_a.samples.size(), file_b.samples.size());
-  std::size_t differing_records = 0, differing_samples = 0;
-  for (std::size_t i = 0; i < records; ++i) differing_records += !(file_a.records[i] == file_b.records[i]);
-  for (std::size_t i = 0; i < samples; ++i) differing_samples += !(file_a.samples[i] == file_b.samples[i]);
-  facts["records_compared"] = records;
-  facts["records_differing"] = differing_records;
-  facts["samples_differing"] = differing_samples;
-  facts["digests"] = {digest_a, digest_b};
+  const ComparedFile of_a{a, digest_of(file_a), header_facts(file_a)}, of_b{b, digest_of(file_b), header_facts(file_b)};
+  Facts facts = difference_of_headers("radsamples", of_a, of_b);
+  add_differing_records(file_a.records, file_b.records, facts);
+  facts["samples_differing"] = count_differing(file_a.samples, file_b.samples);
+  facts["digests"] = {of_a.digest, of_b.digest};
   return facts;
 }
 
