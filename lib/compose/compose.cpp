@@ -15,7 +15,8 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kChunk = 256;          ///< pixels
-constexpr int kMostSlices = 4096;            ///< along a ray
+constexpr float kMostSlices = 4096;          ///< along a ray
+constexpr float kNothingLeft = 1e-30f;       ///< light from behind adds nothing to a float; slices there would be divided by 0
 
 struct Slice {
   float begin, length;                       ///< m
@@ -41,14 +42,16 @@ void cut(const Media& media, const Ray& ray, float end, float step, std::vector<
   float from = 0, to = 0;
   const auto cut_piece = [&] {
     const float size = to - from;
-    const int n = std::clamp(int(std::ceil(size / step)), 1, kMostSlices);
+    const int n = int(std::clamp(std::ceil(size / step), 1.0f, kMostSlices));
     const float each = size / float(n);
     for (int i = 0; i < n && size > 0; ++i) {
       const float begin = from + float(i) * each;
       const float a = media.extinction(ray.origin + ray.direction * (begin + kGauss * each));
       const float b = media.extinction(ray.origin + ray.direction * (begin + (1 - kGauss) * each));
       const float depth = 0.5f * each * (a + b);
-      if (depth > 0) slices.push_back({begin, each, depth, float(std::exp(-tau))});
+      const auto left = float(std::exp(-tau));
+      if (left < kNothingLeft) return;
+      if (depth > 0) slices.push_back({begin, each, depth, left});
       tau += double(depth);
     }
   };
@@ -80,12 +83,12 @@ void send_on(const MediaLight& light, const MediumPoint& point, std::uint32_t bo
 }
 
 /// Light scattered towards the eye from places along the slices, which are drawn by what is scattered from them: direct light of the lamps.
-/// `sent_on` receives rays whose radiance is to be added.
+/// `whole`: share of what the eye would see from behind that is scattered or absorbed on the way. `sent_on` receives rays whose radiance is to be
+/// added.
 Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray, const std::vector<Slice>& slices,
-                  float left, int samples, const PixelRandom& random, std::vector<SentOn>& sent_on, RayCounts& counts) {
+                  float whole, int samples, const PixelRandom& random, std::vector<SentOn>& sent_on, RayCounts& counts) {
   const std::size_t before = sent_on.size();
   Rgb sum{0.0f};
-  const float whole = 1 - left;              // share of what the eye would see from behind that is scattered or absorbed on the way
   std::size_t at = 0;
   float passed = 0;                          // of it, before slice `at`
   for (int k = 0; k < samples; ++k) {
@@ -116,13 +119,16 @@ SmokePixel march(const RenderScene& scene, const Media& media, const MediaLight&
   SmokePixel pixel;
   cut(media, ray, end, step, slices);
   if (slices.empty()) return pixel;
+  double tau = 0;
   for (const Slice& slice : slices) {
     const Vec3 middle = ray.origin + ray.direction * (slice.begin + 0.5f * slice.length);
     pixel.light += light.scattered(middle) * (slice.left * slice.length * mean_left(slice.tau));
+    tau += double(slice.tau);
   }
-  pixel.left = slices.back().left * std::exp(-slices.back().tau);
-  if (options.sample_lights && pixel.left < 1)
-    pixel.light += sampled_light(scene, media, light, ray, slices, pixel.left, options.light_samples, random, sent_on, counts);
+  pixel.left = float(std::exp(-tau));
+  const auto whole = float(-std::expm1(-tau));   // 1 - left would have two digits where tau is 1e-6
+  if (options.sample_lights && whole > 0)
+    pixel.light += sampled_light(scene, media, light, ray, slices, whole, options.light_samples, random, sent_on, counts);
   return pixel;
 }
 

@@ -144,8 +144,11 @@ std::size_t FluenceSums::cell_of(Vec3 point) const {
 void FluenceSums::add(Vec3 point, Rgb worth, int times) {
   const std::size_t cell = cell_of(point);
   if (cell >= sums_.size() || !is_finite(worth)) return;
-  for (int c = 0; c < 3; ++c)
-    sums_[cell][std::size_t(c)] += times * std::int64_t(std::llrint(std::clamp(double(worth[c]) / unit_, -9e18, 9e18)));
+  for (int c = 0; c < 3; ++c) {              // unsigned: what overflows in a damaged file wraps, and comes back when it is taken away
+    std::int64_t& sum = sums_[cell][std::size_t(c)];
+    const auto more = std::uint64_t(std::llrint(std::clamp(double(worth[c]) / unit_, -9e18, 9e18)));
+    sum = std::int64_t(std::uint64_t(sum) + std::uint64_t(std::int64_t(times)) * more);
+  }
   photons_ += std::uint64_t(std::int64_t(times));
 }
 

@@ -1,5 +1,6 @@
 #include "lib/scene/volumes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,8 @@ namespace tempolux {
 namespace {
 
 using Json = nlohmann::json;
+
+constexpr double kFarthest = 1e15, kSmallest = 1e-12;   ///< m, of a medium's box: float32 has room for its cells and their inverses
 
 /// Values of one node's extras, each checked.
 class Extras {
@@ -111,11 +114,16 @@ std::vector<Medium> read_media(std::span<const VolumeSource> sources, std::span<
       throw InputError(files[i] + ": " + error.what());
     }
     const Medium& medium = media.back();
-    if (!(max_component(max(abs(medium.bounds().lower), abs(medium.bounds().upper))) < 1e15))
+    if (medium.bounds().empty()) {           // sigma_t is 0
+      media.pop_back();
+      continue;
+    }
+    if (!(max_component(max(abs(medium.bounds().lower), abs(medium.bounds().upper))) < kFarthest))
       throw InputError(files[i] + ": its voxels lie beyond 1e15 m");
+    if (const Vec3d size = medium.bounds().upper - medium.bounds().lower; !(std::min({size.x, size.y, size.z}) > kSmallest))
+      throw InputError(files[i] + ": all its voxels lie within 1e-12 m; its transform is in another unit than metres?");
     if (!std::isfinite(medium.grid().largest() * medium.options().sigma_t))
       throw InputError(files[i] + ": its extinction is beyond what numbers can hold; lower " + sources[i].place + "'s sigma_t");
-    if (medium.bounds().empty()) media.pop_back();
   }
   return media;
 }

@@ -62,8 +62,9 @@ std::string MajorantGrid::hash() const {
 MajorantWalk::MajorantWalk(const MajorantGrid& grid, Vec3 origin, Vec3 direction, float length)
     : grid_(&grid), origin_(origin), begin_(0), end_(length) {
   if (grid.empty()) return;
+  constexpr float kAlong = 1e-30f;           // of smaller components 1 / d is infinite, and 0 x infinity no number: no ray gets anywhere by them
   for (int a = 0; a < 3; ++a) {
-    if (direction[a] == 0) {   // -0 as well
+    if (std::abs(direction[a]) < kAlong) {
       if (!(origin[a] >= grid.box_.lower[a] && origin[a] <= grid.box_.upper[a])) return;
       inverse_[a] = INFINITY;
       continue;
@@ -79,7 +80,7 @@ MajorantWalk::MajorantWalk(const MajorantGrid& grid, Vec3 origin, Vec3 direction
   const Vec3 entry = origin + direction * begin_;
   for (int a = 0; a < 3; ++a) {
     const auto i = std::size_t(a);
-    step_[i] = direction[a] > 0 ? 1 : direction[a] < 0 ? -1 : 0;
+    step_[i] = std::isinf(inverse_[a]) ? 0 : direction[a] > 0 ? 1 : -1;
     const float place = (entry[a] - grid.box_.lower[a]) / grid.cell_size_[a];
     cell_[i] = std::clamp(std::int32_t(std::clamp(place, 0.0f, 1e9f)), 0, grid.counts_[i] - 1);
     leave_[i] = crossing(a);

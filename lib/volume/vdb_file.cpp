@@ -20,6 +20,7 @@ constexpr std::uint64_t kExpansion = 64;             ///< bytes in memory for on
 constexpr std::uint64_t kSlowest = 10u << 20;        ///< bytes of the file read in a second, at least
 constexpr std::size_t kMostTogether = 16;            ///< files read by one process: its start is then 3 ms a file
 constexpr std::uint64_t kMostAhead = 16u << 20;      ///< bytes of files read by one process; in memory up to kExpansion times as many
+constexpr std::int32_t kFarStep = 1 << 16;           ///< voxels: float32 tells places within half of it to 1/256 of a voxel
 
 std::uint64_t size_of(const std::string& path) {
   struct stat status {};
@@ -45,6 +46,23 @@ class Printed {
   std::uint64_t at_ = 0;
 };
 
+/// Voxels far from index 0 get numbers near it, and the transform what that moves them by: float32 does not tell places between voxels from
+/// 2^24 on. By whole multiples of kFarStep, so that the numbers of a sequence stay the same while its smoke moves on.
+void renumber(std::vector<VoxelBlock>& blocks, Affine& world_from_index) {
+  if (blocks.empty()) return;
+  GridIndex low = blocks.front().origin;
+  for (const VoxelBlock& block : blocks)
+    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], block.origin[a]);
+  Vec3d moved{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t steps = (std::int64_t(low[a]) + kFarStep / 2) >> 16;   // to the nearest
+    moved[int(a)] = double(steps * kFarStep);
+    for (VoxelBlock& block : blocks)   // those beyond 32 bits stay beyond what VoxelGrid takes
+      block.origin[a] = std::int32_t(std::min<std::int64_t>(block.origin[a] - steps * kFarStep, INT32_MAX - 7));
+  }
+  world_from_index.translation = world_from_index.point(moved);
+}
+
 /// The next volume; `last`: nothing may follow.
 VdbVolume parse(Printed& printed, const std::string& path, bool last) {
   VdbPipeHead head;
@@ -64,6 +82,7 @@ VdbVolume parse(Printed& printed, const std::string& path, bool last) {
     throw InputError(path + ": tempolux-vdb gave another number of voxels than it promised");
   std::vector<VoxelBlock> blocks(head.block_count);
   if (!blocks.empty()) printed.take(blocks.data(), blocks.size() * sizeof(VoxelBlock));
+  renumber(blocks, volume.world_from_index);
   volume.voxels = std::make_shared<const VoxelGrid>(blocks);
   return volume;
 }

@@ -12,6 +12,7 @@ namespace tempolux {
 namespace {
 
 constexpr std::int32_t kFarthest = 1 << 28;   ///< an origin beyond: sums of places stay whole in 32 bits
+constexpr const char* kTooFar = "its voxels lie too far apart; save its parts as grids of their own and give each as a volume";
 
 std::size_t leaf_offset(int x, int y, int z) { return std::size_t(64 * x + 8 * y + z); }
 
@@ -21,8 +22,8 @@ BlocksByPlace by_place(const std::vector<VoxelBlock>& blocks) {
   BlocksByPlace sorted;
   for (const VoxelBlock& block : blocks) {
     for (const std::int32_t o : block.origin)
-      if (o % VoxelGrid::kBlock != 0 || o < -kFarthest || o > kFarthest)
-        throw std::invalid_argument("a block at " + std::to_string(o) + ": not a multiple of 8 within 2^28");
+      if (o % VoxelGrid::kBlock != 0) throw std::invalid_argument("a block at " + std::to_string(o) + ", not a multiple of 8");
+      else if (o < -kFarthest || o > kFarthest) throw std::invalid_argument(kTooFar);
     float greatest = 0;
     for (const float v : block.values) {
       if (!(v >= 0) || !std::isfinite(v)) throw std::invalid_argument("a value that is negative or not finite");
@@ -62,7 +63,7 @@ VoxelGrid::VoxelGrid(const std::vector<VoxelBlock>& blocks) {
     first_block_[a] = first[a] / kBlock - 1;   // the one before it reads its first layer
     block_count_[a] = last[a] / kBlock - first_block_[a] + 1;
     count *= std::uint64_t(block_count_[a]);
-    if (count > kMostBlocks) throw std::invalid_argument("its voxels lie too far apart");
+    if (count > kMostBlocks) throw std::invalid_argument(kTooFar);
   }
   table_.assign(count, kNoBrick);
   const auto entry = [&](const GridIndex& b) -> std::uint32_t& {

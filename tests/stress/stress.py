@@ -27,6 +27,7 @@ import family_glass
 import family_images
 import family_light
 import family_media
+import family_media_forms
 import family_movers
 import family_numbers
 import family_openings
@@ -37,7 +38,7 @@ import family_tools
 from session import CASES, FULL, LONG, SHORT, Failed, Session
 
 ORDER = [m.__name__ for m in (family_scale, family_light, family_openings, family_environment, family_energy,
-                              family_glass, family_geometry, family_photons, family_media, family_movers, family_caches, family_images, family_numbers, family_time,
+                              family_glass, family_geometry, family_photons, family_media, family_media_forms, family_movers, family_caches, family_images, family_numbers, family_time,
                               family_camera,
                               family_bad, family_tools)]
 CASES.sort(key=lambda case: ORDER.index(case[3].__module__))

@@ -28,6 +28,11 @@ std::string file_of(const VolumeSource& source, int frame) {
   return has_frame_pattern(source.pattern) ? frame_name(source.pattern, at) : source.pattern;
 }
 
+/// Do all volumes have the same file at both frames?
+bool same_files(const std::vector<VolumeSource>& sources, int a, int b) {
+  return a == b || std::ranges::all_of(sources, [&](const VolumeSource& source) { return file_of(source, a) == file_of(source, b); });
+}
+
 std::vector<VolumeSource> sources_of(const VolumeOptions& options) {
   std::vector<VolumeSource> sources;
   const std::size_t n = options.files.size();
@@ -68,8 +73,8 @@ int VolumeInput::last_frame() const {
 }
 
 std::vector<Medium> VolumeInput::read(int frame, Vec3d origin) {
-  const auto found = kept_.find(frame);
-  if (found != kept_.end() && found->second.origin == origin) return found->second.media;
+  for (const auto& [at, kept] : kept_)
+    if (kept.origin == origin && same_files(sources_, at, frame)) return kept.media;
   std::vector<Medium> media = parse(frame, origin);
   std::size_t bytes = 0;
   for (const Medium& medium : media) bytes += medium.grid().byte_count();

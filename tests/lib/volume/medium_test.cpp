@@ -141,6 +141,16 @@ TEST(Majorants, AxisParallelRaysAndRaysThatMiss) {
   MajorantWalk along(media.majorants(), {0.3f, 0.3f, -4}, {0, -0.0f, 1}, INFINITY);
   for (MajorantWalk::Piece piece; along.next(piece);) covered += piece.end - piece.begin;
   EXPECT_NEAR(covered, 1 + 1 / 16.0, 1e-5);   // 16 voxels and the ramps
+  // On a plane between cells, all but along it: 1 / 1e-40 is infinite.
+  const auto pieces = [&](float aside) {
+    MajorantWalk walk(media.majorants(), {float(media.majorants().cell(1, 0, 0).lower.x), 0.3f, -4}, {aside, 0, 1}, INFINITY);
+    int n = 0;
+    for (MajorantWalk::Piece piece; walk.next(piece);) ++n;
+    return n;
+  };
+  EXPECT_GT(pieces(0), 1);
+  EXPECT_EQ(pieces(1e-40f), pieces(0));
+  EXPECT_EQ(pieces(-1e-40f), pieces(0));
   MajorantWalk::Piece piece;
   EXPECT_FALSE(MajorantWalk(media.majorants(), {3, 0.3f, -4}, {0, 0, 1}, INFINITY).next(piece));
   EXPECT_FALSE(MajorantWalk(media.majorants(), {0.3f, 0.3f, -4}, {0, 0, 1}, 3).next(piece));
