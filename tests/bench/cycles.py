@@ -27,21 +27,25 @@ def blender():
     return program
 
 
-def by_cycles(bench, program, case, size, samples, seed):
-    """(picture, CPU seconds), Blender's start and its reading of the file counted, as ours are."""
-    image = bench.out / "tmp" / "cycles.exr"
+def render(program, image, scene, frame, size, samples, seed, sky="0,0,0", lights="COMPAT", smoke=(), threads=0):
+    """(picture, CPU seconds), Blender's start and its reading of the file counted, as ours are. `image`: where; other words as cycles_render.py has them."""
     image.unlink(missing_ok=True)
-    words = dict(zip(case.shared[::2], case.shared[1::2]))
     before = os.times()
-    done = subprocess.run([program, "-b", "--factory-startup", "-noaudio", "--python-use-system-env", "--python",
-                           str(Path(__file__).with_name("cycles_render.py")), "--", str(case.file), str(case.frame), size, str(samples), str(seed),
-                           words.get("--environment-color", "0,0,0"), "SPEC" if words.get("--light-units") == "spec" else "COMPAT", str(image)],
-                          capture_output=True, text=True)
+    done = subprocess.run([program, "-b", "--factory-startup", "-noaudio", "-t", str(threads), "--python-use-system-env", "--python",
+                           str(Path(__file__).with_name("cycles_render.py")), "--",
+                           *map(str, (scene, frame, size, samples, seed, sky, lights, image, *smoke))], capture_output=True, text=True,
+                          env={**os.environ, "PATH": "/usr/bin:" + os.environ["PATH"]})      # Debian's Python, which has numpy, before others
     after = os.times()
     if not image.exists():
         lines = [line for line in (done.stdout + done.stderr).splitlines() if "Error" in line]
         raise Missing(f"Blender rendered nothing: {lines[-1] if lines else 'no message'}")
     return exr.read(image), after.children_user - before.children_user + after.children_system - before.children_system
+
+
+def by_cycles(bench, program, case, size, samples, seed):
+    words = dict(zip(case.shared[::2], case.shared[1::2]))
+    return render(program, bench.out / "tmp" / "cycles.exr", case.file, case.frame, size, samples, seed, words.get("--environment-color", "0,0,0"),
+                  "SPEC" if words.get("--light-units") == "spec" else "COMPAT")
 
 
 def cycles(bench, _):

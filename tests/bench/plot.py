@@ -1,7 +1,7 @@
 """Line and bar charts as SVG text, with axes in round numbers; no library."""
 import math
 
-COLOURS = ("#1f5fa8", "#c2571a", "#3a8a3a", "#8a3a8a", "#666666")
+COLOURS = ("#1f5fa8", "#c2571a", "#3a8a3a", "#8a3a8a", "#666666", "#a8860b", "#0b8b8b")
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 640, 360, 70, 20, 52, 44
 
 

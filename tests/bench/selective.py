@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """Selective photon tracing: error of the layer volume by strategy and share of paths traced, and what further photons are worth.
 
-    python3 tests/bench/selective.py build/release/bin [updates] [refine] [deviation] --make-vdb build/release/tests/make-vdb
+    python3 tests/bench/selective.py build/release/bin [updates] [cost] [refine] [deviation] --make-vdb build/release/tests/make-vdb
 
 updates: S6 (../shared/scenes) and the chimney of chimney.py, 24 frames of one segment each. Of every frame but the first some groups of the
 map before are traced again; pilots, 3 % of each group's paths, count as traced. The reference of a frame is a fresh map of the same
 seed, as in the paper's figures 5 and 6: what is measured is what groups err that were not traced again. Prints for each strategy the mean
 RMSE from the sixth frame on, the share of these frames in which it is below oldest and random, the groups of a frame and CPU seconds.
-"plain" is without the factor age, "corrective" with negative photons.
+"plain" is without the factor age, "corrective" with negative photons. FOLDER/NAME-SHARE.svg draws the errors by frame.
+
+cost: S6, an update of 10 % against a fresh map, CPU seconds of frames 5 to 11 as one process for each and as one for all, in turns; and what that saves
+of a whole frame, points, records and 320x180 pixels with smoke included.
 
 refine: S6 at frame 12, 299 880 paths and 54 264 more by --refine, against as many spread evenly (a fresh map of 354 144), several seeds, to
 a reference of 6 million; all by the same filter, so that what differs is noise.
@@ -26,6 +29,7 @@ from pathlib import Path
 
 import chimney
 import smoky_rooms
+from plot import chart
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "formats"))
 from read_photons import FLUX, KIND, RECORD, read_photons  # noqa: E402
@@ -106,10 +110,51 @@ def measure_updates(options, runner):
                 rows[strategy] = (errors, groups, cpu / (last - first))
             for strategy, (errors, groups, cpu) in rows.items():
                 judged = range(5, len(errors))               # of frames first + 1 ...: from the sixth on
-                better = sum(errors[i] < min(rows[other][0][i] for other in ("oldest", "random") if other != strategy) for i in judged)
+                better = sum(all(errors[i] < rows[other][0][i] for other in ("oldest", "random") if other in rows and other != strategy) for i in judged)
                 print(f"| {share} | {strategy} | {sum(errors[i] for i in judged) / len(judged):.5f} | {better} of {len(judged)} | {groups:.0f} | {cpu:.3f} |",
                       flush=True)
-            (runner.folder / f"{name}-{share.rstrip('%')}.json").write_text(json.dumps({s: r[0] for s, r in rows.items()}))
+            stem = runner.folder / f"{name}-{share.rstrip('%')}"
+            stem.with_suffix(".json").write_text(json.dumps({s: r[0] for s, r in rows.items()}))
+            stem.with_suffix(".svg").write_text(chart(f"{name}: {share} of the paths traced again, pilots counted", "frame", "RMSE of the layer volume, W/m²/sr",
+                                                      [(s, list(enumerate(r[0], first + 1))) for s, r in rows.items()]))
+
+
+def measure_cost(options, runner):
+    _, scene, smoke, _, _ = next(scenes(options))
+    runner.run("scene-plan", scene, *smoke, "--frames", "0-23", "-o", runner.folder / "plan")
+    smoke = [*smoke, "--majorants", runner.folder / "plan/state/majorants.0000"]
+    photons, frames, common = runner.folder / "cost.####.photons", range(5, 12), [scene, *smoke, "--kinds", "caustic,indirect,volume"]
+    first = runner.folder / "cost.0004.photons"
+    others = None
+    print("\n| paths | strategy | a process for each frame, CPU s | of a fresh map | one for all, CPU s | of fresh maps | a whole frame, of one with a fresh map |\n|---:|---|---:|---:|---:|---:|---:|")
+    for paths in (PATHS, 999810):
+        common_paths = [*common, "--photons", paths]
+        ways = {"fresh": [], **{s: ["--update", photons, "--share", "10%", "--strategy", s] for s in ("oldest", "census", "fde", "dip", "hybrid")}}
+        single, ranges = {w: [] for w in ways}, {w: [] for w in ways}
+        for _ in range(options.rounds):
+            for way, words in ways.items():
+                runner.run("photon-trace", *common_paths, "--frame", 4, "--pilots", options.pilots, "-o", first)
+                single[way].append(sum(runner.run("photon-trace", *common_paths, "--frame", f, *words, "-o", photons) for f in frames) / len(frames))
+                runner.run("photon-trace", *common_paths, "--frame", 4, "--pilots", options.pilots, "-o", first)
+                ranges[way].append(runner.run("photon-trace", *common_paths, "--frames", "5-11", *words, "-o", photons) / len(frames))
+        if others is None:                     # from a fresh map of the last frame
+            runner.run("photon-trace", *common_paths, "--frame", 11, "-o", photons)
+            others = whole_frame(runner, [scene, *smoke, "--frame", 11], runner.folder / "cost.0011.photons")
+        least = {w: (min(single[w]), min(ranges[w])) for w in ways}
+        for way, (one, many) in least.items():
+            print(f"| {paths} | {way} | {one:.3f} | {one / least['fresh'][0]:.2f} | {many:.3f} | {many / least['fresh'][1]:.2f} | {(others + many) / (others + least['fresh'][1]):.2f} |", flush=True)
+    print(f"\nPoints, records, pixels and smoke: {others:.2f} CPU s.")
+
+
+def whole_frame(runner, common, photons):
+    """CPU seconds of all but the photons."""
+    points, records, clear = (runner.folder / f"cost.{end}" for end in ("irradpoints", "irradcache", "exr"))
+    size, light = ["--size", "320x180"], ["--photons", photons]
+    return (runner.run("irradcache-build", "points", *common, *light, "-o", points)
+            + runner.run("irradcache-build", "records", *common, "--points", points, *size, "-o", records)
+            + runner.run("frame-render", *common, *light, "--points", points, "--irradcache", records, *size, "--spp", 8, "--pixel-error", 0.02,
+                         "--channels", "RGBA,layers,Z", "-o", clear)
+            + runner.run("volume-compose", *common, *light, "--points", points, "--base", clear, "--spp", 4, "-o", runner.folder / "cost.smoke.exr"))
 
 
 def measure_refine(options, runner):
@@ -193,12 +238,13 @@ def main():
     parser.add_argument("--size", default="96x54")
     parser.add_argument("--seeds", type=int, default=4)
     parser.add_argument("--passes", type=int, default=30)
+    parser.add_argument("--rounds", type=int, default=2, help="of cost: the least of them counts")
     parser.add_argument("--threads", type=int, default=0)
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     runner = Runner(options)
-    for part in options.parts or ("updates", "refine", "deviation"):
-        {"updates": measure_updates, "refine": measure_refine, "deviation": measure_deviation}[part](options, runner)
+    for part in options.parts or ("updates", "cost", "refine", "deviation"):
+        {"updates": measure_updates, "cost": measure_cost, "refine": measure_refine, "deviation": measure_deviation}[part](options, runner)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,10 @@
 Each seed is a whole chain: photons, points, records, frame, smoke. RMSE has the noise of references taken out (their two halves); biases are
 given with the standard error of the seeds' mean. "Moved": the same with the voxels half an edge farther along each axis, which is where Cycles
 3.4 looks them up. Pixels of opacity above .1 are those of which the smoke takes out a tenth.
+
+--cycles N: instead, Blender's Cycles (its importer of glTF wants python3-numpy) and our path tracer with N samples on this machine, one thread
+each, in turns, two seeds: CPU seconds, mean squared error, their product; and the chain's seconds. Each against a reference of its own voxels:
+Cycles against its own, we against our paths of --paths samples.
 """
 import argparse
 import math
@@ -17,6 +21,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "stress")]
+import cycles    # noqa: E402
 import exr       # noqa: E402
 import pixels    # noqa: E402
 
@@ -104,6 +109,30 @@ def against(name, frames, halves, thick):
     print(f"| {name} | " + " | ".join(line) + " |", flush=True)
 
 
+def beside_cycles(options, runner, shared, common):
+    """Table of both path tracers and the chain."""
+    stem = str(options.folder / "beside")
+    runner.run("frame-render", *common, "--size", SIZE, "--integrator", "path", "--spp", options.paths, "--seed", 1000, "--halves", "-o", stem + ".exr")
+    ours = [exr.read(f"{stem}_{h}.exr") for h in "ab"]
+    theirs = [exr.read(shared / f"ref/S6_smoke_f{FRAME:04d}_{h}.exr") for h in "ab"]
+    sides = {"Cycles": [], "our path tracer": [], "our chain": []}
+    smoke = (shared / f"made/S6_smoke_vdb/smoke_{FRAME:04d}.vdb", 10, ".85,.85,.88")
+    program = cycles.blender()
+    for seed in (1, 2):
+        image, spent = cycles.render(program, options.folder.resolve() / "cycles.exr", common[0], FRAME, SIZE, options.cycles, seed, smoke=smoke, threads=1)
+        sides["Cycles"].append((image, spent, theirs))
+        spent = runner.run("frame-render", *common, "--size", SIZE, "--integrator", "path", "--spp", options.cycles, "--seed", seed, "--threads", 1, "-o", stem + ".exr")
+        sides["our path tracer"].append((exr.read(stem + ".exr"), spent, ours))
+        image, spent = runner.chain([*common, "--threads", 1], stem, seed)
+        sides["our chain"].append((image, spent, ours))
+    print("| | CPU s | RMSE | CPU s x MSE | mean to its reference |\n|---|---:|---:|---:|---:|")
+    for name, runs in sides.items():
+        spent = sum(cpu for _, cpu, _ in runs) / len(runs)
+        mse = sum(pixels.squared_error(image, *halves)[0] for image, _, halves in runs) / len(runs)
+        mean = sum(pixels.mean(image) / pixels.mean_of_halves(*halves)[0] for image, _, halves in runs) / len(runs)
+        print(f"| {name} | {spent:.2f} | {math.sqrt(mse):.4f} | {spent * mse:.4g} | {100 * (mean - 1):+.2f} % |", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin", type=Path)
@@ -111,12 +140,15 @@ def main():
     parser.add_argument("--folder", type=Path, default=Path("smoke_chain"))
     parser.add_argument("--seeds", type=int, default=8)
     parser.add_argument("--paths", type=int, default=384, help="of a pixel of our own reference")
+    parser.add_argument("--cycles", type=int, default=0, help="samples a pixel beside Cycles, instead of the table of errors")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     runner = Runner(options)
     shared = HERE.parents[2] / "shared/scenes"
     scene, source = shared / "made/S6_smoke.glb", shared / f"made/S6_smoke_vdb/smoke_{FRAME:04d}.vdb"
-    cycles = [exr.read(shared / f"ref/S6_smoke_f{FRAME:04d}_{h}.exr") for h in "ab"]
+    if options.cycles:
+        return beside_cycles(options, runner, shared, [scene, "--frame", FRAME, "--volume", source, "--sigma-t", 10, "--albedo", ".85,.85,.88"])
+    of_cycles = [exr.read(shared / f"ref/S6_smoke_f{FRAME:04d}_{h}.exr") for h in "ab"]
     tempolux_vdb = options.bin.resolve().parent / "modules/tempolux-vdb"
     files = {"as it is": source, "moved": moved(source, options.folder, options.make_vdb, tempolux_vdb, 0.5)}
     print("| voxels | against | RMSE (floor) | image | opacity above .1 | layer volume |\n|---|---|---:|---:|---:|---:|")
@@ -133,10 +165,10 @@ def main():
         runner.run("frame-render", *common, "--size", SIZE, "--integrator", "path", "--spp", options.paths, "--seed", 1000, "--halves", "--channels", "RGBA,layers",
                    "-o", stem + ".path.exr")
         paths = [exr.read(f"{stem}.path_{h}.exr") for h in "ab"]
-        against(f"{name} | Cycles", frames, cycles, thick)
+        against(f"{name} | Cycles", frames, of_cycles, thick)
         against(f"{name} | our paths", frames, paths, thick)
         mean_path = exr.read(stem + ".path.exr")
-        against(f"{name}, our paths | Cycles", [mean_path], cycles, thick)
+        against(f"{name}, our paths | Cycles", [mean_path], of_cycles, thick)
     print(f"\nCPU s of a chain: {sum(spent) / len(spent):.2f}; pixels of opacity above .1: {len(thick)}")
 
 
