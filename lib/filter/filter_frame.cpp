@@ -18,7 +18,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::array<const char*, 5> kLayersInOrder{"emission", "specular", "direct", "caustic", "indirect"};
+constexpr std::array<const char*, 6> kLayersInOrder{"emission", "specular", "direct", "caustic", "indirect", "volume"};
 constexpr int kFirstRadius = 2;   ///< pixels: of the fit that values are compared by
 constexpr std::array<const char*, 3> kComponents{"R", "G", "B"};
 
@@ -109,17 +109,30 @@ void leave_numbers(Image& image) {
   }
 }
 
-void sum_layers(Image& image) {
+/// Sums of the layers by pixel, for R, G and B, in the order of frames.md 2; empty without any.
+using LayerSums = std::array<std::vector<float>, 3>;
+LayerSums sum_layers(Image& image) {
+  LayerSums sums;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t l = 0; l < kLayersInOrder.size(); ++l) {
+      const Channel* layer = float_channel(image, channel_name(kLayersInOrder[l], c));
+      if (!layer) continue;
+      if (sums[c].empty()) sums[c] = layer->values;
+      else std::transform(layer->values.begin(), layer->values.end(), sums[c].begin(), sums[c].begin(), [](float v, float sum) { return sum + v; });
+    }
+  return sums;
+}
+
+/// The picture after its layers have changed: their sum. Where it held more light than its layers, as some of them are not there, it keeps that. Half floats are
+/// off by 2^-11 each: twice that is no light.
+void renew_picture(const LayerSums& before, const LayerSums& after, Image& image) {
   for (std::size_t c = 0; c < 3; ++c) {
     Channel* whole = float_channel(image, kComponents[c]);
-    if (!whole) return;
-    std::array<const Channel*, 5> parts{};
-    for (std::size_t l = 0; l < parts.size(); ++l)
-      if (!(parts[l] = float_channel(image, channel_name(kLayersInOrder[l], c)))) return;
+    if (!whole || after[c].empty()) continue;
     for (std::size_t p = 0; p < whole->values.size(); ++p) {
-      float sum = parts[0]->values[p];
-      for (std::size_t l = 1; l < parts.size(); ++l) sum += parts[l]->values[p];
-      whole->values[p] = sum;
+      const float held = whole->values[p], rest = held - before[c][p];
+      const bool more = std::isfinite(rest) && std::abs(rest) > 1e-3f * (std::abs(held) + std::abs(before[c][p]));
+      whole->values[p] = more ? after[c][p] + rest : after[c][p];
     }
   }
 }
@@ -168,6 +181,8 @@ Image FrameFilter::finish(Image image) {
   State& state = *state_;
   const LightFrame& frame = state.frame;
   if (state.added != state.before + state.after) throw std::invalid_argument("FrameFilter: frames of the window are missing");
+  const bool by_layers = !frame.layers[0].empty();
+  const LayerSums before = by_layers ? sum_layers(image) : LayerSums{};
   Collected collected = state.collector->take();
   state.collector.reset();
   FitOptions fit_options;
@@ -188,7 +203,7 @@ Image FrameFilter::finish(Image image) {
       else write_inside(frame, light, values);
     }
   if (coverage.known()) resolve_passing(frame, coverage, image);
-  sum_layers(image);
+  if (by_layers) renew_picture(before, sum_layers(image), image);
   leave_numbers(image);
   return image;
 }

@@ -168,8 +168,11 @@ TEST(Filter, AlbedoIsNotBlurred) {
 Image layered_frame(Noise& noise) {
   Image frame = wall(32, 24);
   for (const char* c : {"R", "G", "B"}) frame.add(c);
-  for (const char* layer : {"emission", "specular", "direct", "caustic", "indirect"})
+  for (const char* layer : {"emission", "specular", "direct", "caustic", "indirect"}) {
     grey(frame, layer, [&](int, int) { return std::abs(noise()); });
+    for (const char* c : {"R", "G", "B"})
+      for (std::size_t p = 0; p < frame.pixel_count(); ++p) frame.find(c)->values[p] += frame.find(layer + std::string(".") + c)->values[p];
+  }
   tell_variance(frame, 0.1f);
   return frame;
 }
@@ -188,6 +191,28 @@ TEST(Filter, EmissionAndSpecularPassAndLayersSumToTheImage) {
       EXPECT_EQ(out.find(c)->values[p], sum);
     }
   }
+}
+
+/// Light of smoke passes and stays in the picture. Of a frame that has some layers alone the picture changes as they do, and keeps the rest: here 5.
+TEST(Filter, ThePictureKeepsWhatIsInNoFilteredLayer) {
+  Noise noise(1);
+  Image smoky = layered_frame(noise);
+  grey(smoky, "volume", everywhere(2));
+  for (const char* c : {"R", "G", "B"})
+    for (float& value : smoky.find(c)->values) value += 2;
+  const Image of_smoky = filtered({smoky});
+  for (std::size_t p = 0; p < 32 * 24; ++p) {
+    float sum = 0;
+    for (const char* layer : {"emission.G", "specular.G", "direct.G", "caustic.G", "indirect.G", "volume.G"}) sum += of_smoky.find(layer)->values[p];
+    EXPECT_EQ(of_smoky.find("G")->values[p], sum);
+  }
+  Image some = layered_frame(noise);
+  std::erase_if(some.channels, [](const Channel& channel) { return channel.name.starts_with("emission") || channel.name.starts_with("specular"); });
+  for (std::size_t p = 0; p < 32 * 24; ++p)   // R and B hold what was taken out
+    some.find("G")->values[p] = some.find("direct.G")->values[p] + some.find("caustic.G")->values[p] + some.find("indirect.G")->values[p] + 5;
+  const Image of_some = filtered({some});
+  for (std::size_t p = 0; p < 32 * 24; ++p)   // of numbers up to about 15: some roundings of 2^-21
+    EXPECT_NEAR(of_some.find("G")->values[p], of_some.find("direct.G")->values[p] + of_some.find("caustic.G")->values[p] + of_some.find("indirect.G")->values[p] + 5, 1e-5f);
 }
 
 /// A quarter of the pixels in column 20 is what column 19 shows. Their own sample is of either side; what comes out is the mixture, from both
