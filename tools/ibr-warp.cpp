@@ -162,7 +162,7 @@ void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& in
 /// Without a scene: what the target shows is read from its file.
 void warp_view(tools::Tool& tool, const Options& options, const std::vector<tools::LoadedKey>& keys) {
   Outputs outputs(options, 0, tool.common().no_clobber);
-  const Image other = load_exr(options.view);
+  const Image other = load_exr(options.view, {.our_names = true});
   tool.depends_on(options.view);
   const FrameCamera camera = camera_of(other, options.view);
   const SeenSurfaces seen = seen_in(other, options.view);
@@ -170,6 +170,8 @@ void warp_view(tools::Tool& tool, const Options& options, const std::vector<tool
   const tools::KeysOfFrame placed(keys, camera, identity);
   tool.stats().phase("warp", true);
   WarpedFrame warped = warp({&camera, &seen, {}, nullptr, {}}, placed.get(), options.warp);
+  if (std::find(warped.why.begin(), warped.why.end(), 0u) == warped.why.end())
+    tool.warn(options.view + ": the keys give none of its pixels; do they show the same scene?");
   Image image{other.width, other.height, {}, {}, other.numbers, other.matrices};
   image.numbers.erase("tempolux:samples");
   image.text["tempolux:history"] = keys[0].history + tool.history_line();

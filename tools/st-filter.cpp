@@ -123,7 +123,7 @@ class FilterRun {
       if (all && (options_.channels.empty() || is_named(channel))) return true;
       return all ? is_read_to_filter(channel) : is_read_by_others(channel);
     };
-    Image image = load_exr(file, {.allow_nan = colour, .wanted = wanted});
+    Image image = load_exr(file, {.allow_nan = colour, .wanted = wanted, .our_names = true});
     tool_.depends_on(file);
     return image;
   }

@@ -29,6 +29,7 @@
 #include "lib/image/byte_file.h"
 #include "lib/image/exr_claims.h"
 #include "lib/image/exr_plain.h"
+#include "lib/image/foreign_names.h"
 
 namespace tempolux {
 namespace {
@@ -304,7 +305,9 @@ Image read_data_window(const ByteFile& file, const ExrClaims& claims, const ExrR
   for (const auto& channel : claims.channels)
     if (is_rgb(channel.name)) rgb.insert(channel.name);
   const bool all = !options.only_rgb || rgb.size() < 3;
-  const auto wanted = [&](const std::string& name) { return (all || is_rgb(name)) && (!options.wanted || options.wanted(name)); };
+  const auto wanted = [&](const std::string& name) {
+    return (all || is_rgb(name)) && (!options.wanted || options.wanted(options.our_names ? our_name(name) : name));
+  };
   for (const auto& channel : claims.channels)
     if (wanted(channel.name) && names.insert(channel.name).second)
       channel.type == 0 ? image.add_ids(channel.name) : image.add(channel.name);
@@ -319,7 +322,7 @@ Image read_data_window(const ByteFile& file, const ExrClaims& claims, const ExrR
   return image;
 }
 
-/// The same attributes, the display window's pixels.
+/// The same attributes, the display window's pixels; what the data window lacks shows nothing.
 Image placed(Image&& from, const PixelWindow& data, const PixelWindow& display) {
   Image to;
   to.width = int(display.width());
@@ -335,10 +338,15 @@ Image placed(Image&& from, const PixelWindow& data, const PixelWindow& display) 
                   target.begin() + (y - display.y0) * to.width + (x0 - display.x0));
   };
   for (const Channel& channel : from.channels) {
-    if (channel.ids.empty())
-      copy(channel.values, to.add(channel.name).values);
-    else
-      copy(channel.ids, to.add_ids(channel.name).ids);
+    if (channel.ids.empty()) {
+      std::vector<float>& values = to.add(channel.name).values;
+      if (channel.name == "Z") values.assign(values.size(), INFINITY);
+      copy(channel.values, values);
+    } else {
+      std::vector<std::uint32_t>& ids = to.add_ids(channel.name).ids;
+      if (channel.name == "id.object") ids.assign(ids.size(), 0xffffffffu);
+      copy(channel.ids, ids);
+    }
   }
   return to;
 }
@@ -394,6 +402,7 @@ Image load_exr(const std::string& path, const ExrReadOptions& options) {
     throw InputError(path + ": pixels: " + one_line(e.what()) +
                      "; the file is damaged or truncated: write it again");
   }
+  if (options.our_names) name_as_ours(image);
   if (claims.data != claims.display) image = placed(std::move(image), claims.data, claims.display);
   if (!options.allow_nan) check_numbers(path, image);
   return image;

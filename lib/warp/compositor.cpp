@@ -54,7 +54,7 @@ bool Compositor::stands(std::size_t p, const KeyView& view) const {
     for (int nx = std::max(x - 1, 0); nx <= std::min(x + 1, here.width - 1); ++nx) {
       const std::size_t q = std::size_t(ny) * std::size_t(here.width) + std::size_t(nx);
       const std::uint32_t object = here.object_at(q);
-      if (!view.sees_the_same(object) || there.object_at(q) != object) return false;
+      if (!view.sees_the_same(object) || !may_be_same(there.object_at(q), object)) return false;
       const float z = here.depth[q], other = there.depth[q];
       if (z != other && !(std::abs(z - other) <= 1e-4f * z)) return false;
     }

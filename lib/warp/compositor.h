@@ -9,8 +9,6 @@
 
 namespace tempolux {
 
-inline constexpr std::size_t kMostChannels = 64;
-
 /// What the keys give for one pixel.
 struct ComposedPixel {
   alignas(32) std::array<float, kMostChannels> colour;                    ///< composed

@@ -9,16 +9,12 @@
 namespace tempolux {
 namespace {
 
-/// The name that our frames give a channel of colour; "": it is none. Blender's Combined is its picture.
-std::string our_colour_name(const std::string& channel) {
+bool is_colour(const std::string& channel) {
   const std::size_t dot = channel.rfind('.');
   const std::string last = dot == std::string::npos ? channel : channel.substr(dot + 1);
-  if (last != "R" && last != "G" && last != "B" && last != "A") return "";
-  if (dot == std::string::npos) return channel;
-  const std::string layer = channel.substr(0, dot);
-  if (layer == "Combined" || layer.ends_with(".Combined")) return last;
-  if (layer == "albedo" || layer == "variance" || layer.starts_with("variance.")) return "";
-  return channel;
+  if (last != "R" && last != "G" && last != "B" && last != "A") return false;
+  const std::string layer = dot == std::string::npos ? "" : channel.substr(0, dot);
+  return layer != "albedo" && layer != "variance" && !layer.starts_with("variance.");
 }
 
 }  // namespace
@@ -28,12 +24,14 @@ KeyFrame::KeyFrame(const Image& image, const std::string& name, const FrameCamer
   look_at_pixels();
   std::map<std::string, const Channel*> channels;
   for (const Channel& channel : image.channels)
-    if (const std::string ours = our_colour_name(channel.name); !ours.empty() && channel.ids.empty())
-      channels.emplace(ours, &channel);
+    if (is_colour(channel.name) && channel.ids.empty()) channels.emplace(channel.name, &channel);
   for (const char* needed : {"R", "G", "B"})
     if (!channels.contains(needed))
       throw InputError(name + ": has no channel " + needed + "; a key is a picture: render it with RGBA");
-  for (const auto& [ours, channel] : channels) names_.push_back(ours);
+  if (channels.size() > kMostChannels)
+    throw InputError(name + ": has " + std::to_string(channels.size()) + " channels of colour, at most " + std::to_string(kMostChannels) +
+                     " are warped; leave passes out");
+  for (const auto& [channel_name, channel] : channels) names_.push_back(channel_name);
   stride_ = (names_.size() + 7) / 8 * 8;
   colour_ = std::make_unique_for_overwrite<float[]>(image.pixel_count() * stride_);
   constexpr std::size_t kTogether = 256;   // pixels whose colours stay in the first-level cache
@@ -41,7 +39,7 @@ KeyFrame::KeyFrame(const Image& image, const std::string& name, const FrameCamer
     for (std::size_t first = begin; first < end; first += kTogether) {
       const std::size_t last = std::min(first + kTogether, end);
       std::size_t c = 0;
-      for (const auto& [ours, channel] : channels) {
+      for (const auto& [channel_name, channel] : channels) {
         const float* values = channel->values.data();
         float* colour = colour_.get() + c++;
         for (std::size_t p = first; p < last; ++p) colour[p * stride_] = values[p];

@@ -12,6 +12,8 @@
 
 namespace tempolux {
 
+inline constexpr std::size_t kMostChannels = 64;   ///< of colour, in a key
+
 /// A key's colour and what it shows, laid out for look-ups.
 class KeyFrame {
  public:

@@ -1,5 +1,6 @@
 #include "lib/warp/seen_surfaces.h"
 
+#include <array>
 #include <cmath>
 
 #include "formats/error.h"
@@ -23,12 +24,17 @@ float facing(const FrameCamera& camera, Vec3 normal, double x, double y) {
   return std::abs(dot(ray, n)) / length(ray);
 }
 
-const Channel* first_of(const Image& image, const std::string& ours, std::initializer_list<const char*> endings) {
-  if (const Channel* channel = image.find(ours)) return channel;
-  for (const char* ending : endings)
-    for (const Channel& channel : image.channels)
-      if (channel.name.ends_with(ending)) return &channel;
-  return nullptr;
+std::string pixel_of(const std::string& name, const std::string& channel, std::size_t p, int width) {
+  return name + ": channel " + channel + ": pixel (" + std::to_string(p % std::size_t(width)) + ", " + std::to_string(p / std::size_t(width)) + "): ";
+}
+
+/// N of a pixel with length 1, or 0: not known. Other programs filter normals, and write any length.
+Vec3 unit_normal(Vec3 n) {
+  const float length2_of = length2(n);
+  if (std::abs(length2_of - 1) < 1e-3f) return n;   // ours: its bits
+  const Vec3d wide(n);
+  const double size = length(wide);
+  return size > 0 ? Vec3(wide / size) : Vec3{};
 }
 
 }  // namespace
@@ -73,24 +79,26 @@ std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCame
 }
 
 SeenSurfaces seen_in(const Image& image, const std::string& name) {
-  const Channel* depth = first_of(image, "Z", {"depth.Z", "Depth.Z", ".Z.Z", "depth.z"});
+  const Channel* depth = image.find("Z");
   if (!depth || depth->values.empty())
     throw InputError(name + ": has no channel Z; how far away its pixels are must be known: render it with Z");
   SeenSurfaces seen{image.width, image.height, depth->values, {}, {}};
   for (std::size_t p = 0; p < seen.depth.size(); ++p) {
     float& z = seen.depth[p];
-    if (!(z < kNothingDepth)) z = INFINITY;
-    else if (!(z > 0) || std::isnan(z))
-      throw InputError(name + ": channel " + depth->name + ": pixel (" + std::to_string(p % std::size_t(image.width)) +
-                       ", " + std::to_string(p / std::size_t(image.width)) + "): depth is not above 0");
+    if (z >= kNothingDepth) z = INFINITY;
+    else if (!(z > 0))
+      throw InputError(pixel_of(name, "Z", p, image.width) + "depth is not above 0; Z is the distance along the view axis, +inf where nothing is seen");
   }
   if (const Channel* id = image.find("id.object"); id && !id->ids.empty()) seen.object = id->ids;
-  const Channel* n[3] = {first_of(image, "N.X", {".Normal.X"}), first_of(image, "N.Y", {".Normal.Y"}),
-                         first_of(image, "N.Z", {".Normal.Z"})};
-  if (n[0] && n[1] && n[2] && !n[0]->values.empty() && !n[1]->values.empty() && !n[2]->values.empty()) {
-    seen.normal.resize(seen.depth.size());
-    for (std::size_t p = 0; p < seen.normal.size(); ++p)
-      seen.normal[p] = {n[0]->values[p], n[1]->values[p], n[2]->values[p]};
+  const std::array<const Channel*, 3> n{image.find("N.X"), image.find("N.Y"), image.find("N.Z")};
+  for (const Channel* component : n)
+    if (!component || component->values.empty()) return seen;
+  seen.normal.resize(seen.depth.size());
+  for (std::size_t p = 0; p < seen.normal.size(); ++p) {
+    for (const Channel* component : n)
+      if (!std::isfinite(component->values[p]))
+        throw InputError(pixel_of(name, component->name, p, image.width) + "not finite; a normal that is not known is 0");
+    seen.normal[p] = unit_normal({n[0]->values[p], n[1]->values[p], n[2]->values[p]});
   }
   return seen;
 }

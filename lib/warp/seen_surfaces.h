@@ -11,7 +11,8 @@
 
 namespace tempolux {
 
-inline constexpr std::uint32_t kNoObject = 0xffffffffu;   ///< id.object where nothing is seen
+inline constexpr std::uint32_t kNoObject = 0xffffffffu;    ///< id.object where nothing is seen
+inline constexpr std::uint32_t kAnyObject = 0xfffffffeu;   ///< of a picture that does not say: it may be any
 
 /// Of the point that the ray through each pixel's centre meets. Nothing met: depth +inf, object kNoObject, normal 0.
 struct SeenSurfaces {
@@ -22,7 +23,7 @@ struct SeenSurfaces {
 
   std::size_t pixel_count() const { return depth.size(); }
   std::uint32_t object_at(std::size_t p) const {
-    return !object.empty() ? object[p] : std::isfinite(depth[p]) ? 0 : kNoObject;
+    return object.empty() ? kAnyObject : object[p];
   }
   Vec3 normal_at(std::size_t p) const { return normal.empty() ? Vec3{} : normal[p]; }
 };
@@ -44,9 +45,12 @@ inline float depth_tolerance(float pixel_angle, float facing) {
 /// Cosine below which two normals belong to two faces: their irradiance differs (algorithms.md 1.6).
 inline constexpr float kSameFace = 0.9f;
 
+/// May two pictures' objects be one? What is not known agrees with all.
+inline bool may_be_same(std::uint32_t a, std::uint32_t b) { return a == b || a == kAnyObject || b == kAnyObject; }
+
 /// Are two points, at most a pixel or two apart in a picture, on one face of one object? tolerance: of depths, relative.
 inline bool same_face(const FacePoint& a, const FacePoint& b, float tolerance) {
-  if (a.object != b.object) return false;
+  if (!may_be_same(a.object, b.object)) return false;
   if (!(a.depth < INFINITY && b.depth < INFINITY)) return a.depth == b.depth;
   if (!(std::abs(a.depth - b.depth) <= tolerance * a.depth)) return false;
   const bool known = length2(a.normal) > 0 && length2(b.normal) > 0;
@@ -57,8 +61,8 @@ inline bool same_face(const FacePoint& a, const FacePoint& b, float tolerance) {
 /// What is narrower than a pixel may lie between two centres unseen.
 std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCamera& camera);
 
-/// Depth, object and normal from the channels of a frame: Z, or what other programs call it (depth.Z, VIEW.Depth.Z, 1e10 for
-/// nothing); id.object and N if they are there. Throws InputError, beginning with `name`, if there is no depth.
+/// Depth, object and normal from the channels of a frame: Z, 1e10 and more for nothing; id.object and N if they are there, N brought to length 1.
+/// Throws InputError, beginning with `name`, if there is no depth, or a depth or normal that cannot be.
 SeenSurfaces seen_in(const Image& image, const std::string& name);
 
 }  // namespace tempolux

@@ -31,7 +31,7 @@ bool has_layer_name(const std::string& group) {
 bool is_data_channel(const std::string& channel) {
   for (const char* prefix : {"N.", "P.", "albedo."})
     if (channel.starts_with(prefix)) return true;
-  return channel == "Z" || channel == "id.object" || channel.ends_with("epth.Z");
+  return channel == "Z" || channel == "id.object";
 }
 
 }  // namespace tempolux

@@ -100,26 +100,29 @@ def unzipped(block):
     return bytes(result)
 
 
-def write(path, width, height, channels, matrices=None):
-    """channels: name -> values, lines from the top; all float. matrices: name -> the bytes of a 4x4 float attribute, as read() gives them."""
+def write(path, width, height, channels, matrices=None, numbers=None, place=None):
+    """channels: name -> values, lines from the top; all float. matrices: name -> the bytes of a 4x4 float attribute, as read() gives them. numbers:
+    name -> value of a double attribute. place: (x, y, display width, display height) of a data window that is not the display window."""
     def attribute(name, kind, value):
         return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
     names = sorted(channels)
-    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    left, top, shown_width, shown_height = place or (0, 0, width, height)
+    window = struct.pack("<4i", left, top, left + width - 1, top + height - 1)
     listed = b"".join(n.encode() + b"\0" + struct.pack("<iiii", FLOAT, 0, 1, 1) for n in names) + b"\0"
     header = struct.pack("<II", 20000630, 2) + b"".join([
         attribute("channels", "chlist", listed), attribute("compression", "compression", b"\0"),
-        attribute("dataWindow", "box2i", window), attribute("displayWindow", "box2i", window),
+        attribute("dataWindow", "box2i", window), attribute("displayWindow", "box2i", struct.pack("<4i", 0, 0, shown_width - 1, shown_height - 1)),
         attribute("lineOrder", "lineOrder", b"\0"), attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
         attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
         attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
-        *(attribute(name, "m44f", value) for name, value in (matrices or {}).items())]) + b"\0"
+        *(attribute(name, "m44f", value) for name, value in (matrices or {}).items()),
+        *(attribute(name, "double", struct.pack("<d", value)) for name, value in (numbers or {}).items())]) + b"\0"
     line = 8 + 4 * width * len(names)
     with open(path, "wb") as file:
         file.write(header)
         first = len(header) + 8 * height
         file.write(struct.pack(f"<{height}Q", *(first + y * line for y in range(height))))
         for y in range(height):
-            file.write(struct.pack("<ii", y, line - 8))
+            file.write(struct.pack("<ii", top + y, line - 8))
             for name in names:
                 file.write(array.array("f", channels[name][y * width:(y + 1) * width]).tobytes())

@@ -272,3 +272,100 @@ def warped(s):
     run, out = warp(far, far)
     s.done(run)
     s.true("nothing but sky: its own view is itself to the bit", exr.read(out).rgb() == key.rgb())
+
+
+@case("images", "ibr-warp and st-filter: frames of Blender and Nuke")
+def of_others(s):
+    """The same key under other programs' channel names: warped alike, with one warning; a data window that was cropped shows nothing outside; depth that
+    is infinite, names that st-filter reads, too; what is wrong is said with the file's name."""
+    scene = Scene()
+    scene.room((-1, -1, -1), (1, 1, 1), scene.material(0.0, 1.0))
+    scene.room((-0.3, -0.6, -0.7), (0.1, 0.0, -0.3), scene.material(0.0, 4.0))
+    camera = scene.camera((-0.1, 0.1, 0.9), (-0.1, 0.1, -1), fov=1.0)
+    scene.animate(camera, "translation", [0, 4 / 24], [(-0.1, 0.1, 0.9), (0.1, 0.1, 0.9)])
+    path, size = scene.save(s.path(".gltf")), (64, 48)
+    ours = {f: s.render(path, size, 1, "--integrator", "path", "--frame", f, "--channels", "RGBA,specular,Z,N,id") for f in (0, 2, 4)}
+    matrices = "worldToCamera", "worldToNDC"
+    ids, width = ours[2].channels["id.object"], size[0]   # inside one surface: the 8 pixels around see it, too
+    whole = [y * width + x for y in range(1, size[1] - 1) for x in range(1, width - 1)
+             if len({ids[(y + dy) * width + x + dx] for dy in (-1, 0, 1) for dx in (-1, 0, 1)}) == 1]
+
+    def blender(image):
+        theirs = {f"View Layer.Combined.{c}": image.channels[c] for c in "RGBA"} | {f"View Layer.Normal.{c}": image.channels["N." + c] for c in "XYZ"}
+        return theirs | {"View Layer.Depth.Z": [1e10 if z == INF else z for z in image.channels["Z"]], "View Layer.Denoising Depth.Z": [1.0] * len(image.channels["Z"])}
+
+    def nuke(image):
+        return {c: image.channels[c] for c in "RGBA"} | {"depth.Z": image.channels["Z"]}
+
+    def written(image, channels, frame=None, place=None, shown=size):
+        out = s.path(".exr")
+        exr.write(out, *shown, channels, {m: image.attributes[m] for m in matrices}, None if frame is None else {"tempolux:frame": frame}, place)
+        return out
+
+    def warp(*arguments):
+        out, mask = s.path(".exr"), s.path(".exr")
+        run = s.run("ibr-warp", *arguments, "--slow", 0, "-o", out, "--mask", mask)
+        return run, out, mask
+
+    def given(mask):
+        return sum(why == 0 for why in exr.read(mask).channels["why"])
+
+    run, out, mask = warp(ours[0].path, ours[4].path, "--scene", path, "--frame", 2)
+    s.done(run)
+    of_ours = given(mask)
+    for name, theirs in (("Blender", blender), ("Nuke", nuke)):
+        # With a scene: of its frame, though they know no objects.
+        keys = [written(ours[f], theirs(ours[f]), f) for f in (0, 4)]
+        run, out, mask = warp(*keys, "--scene", path, "--frame", 2)
+        s.done(run)
+        s.true(f"{name}, a scene: pixels given", given(mask) >= 0.9 * of_ours, str(given(mask)), f"nearly {of_ours}")
+        green, truth, why = exr.read(out).channels["G"], ours[2].channels["G"], exr.read(mask).channels["why"]
+        s.near(f"{name}, a scene: wrong of those given", 0, sum(abs(green[p] - truth[p]) > 1e-5 * truth[p] for p in whole if why[p] == 0), 0)
+        # Without one.
+        view = written(ours[2], theirs(ours[2]))
+        run, out, mask = warp(*keys, "--view", view)
+        s.done(run)
+        s.near(f"{name}: warnings", 1, len(run.err.splitlines()), 0)
+        s.near(f"{name}: not finite", 0, len(exr.read(out).not_finite()), 0)
+        s.true(f"{name}: has depth under our name", "Z" in exr.read(out).channels)
+        run, alone, mask = warp(*keys, "--view", keys[0])
+        s.done(run)
+        s.true(f"{name}: its own view is itself to the bit", exr.read(alone).rgb() == ours[0].rgb())
+        filtered = s.path(".exr")
+        s.done(s.run("st-filter", "-q", *keys, "-o", filtered))
+        s.true(f"{name}, st-filter: R, G, B", all(c in exr.read(filtered).channels for c in "RGBZ"))
+    # Depth is infinite in a channel that is not called Z; a data window that was cropped.
+    sky = nuke(ours[2])
+    sky["depth.Z"] = [INF if p == 5 else z for p, z in enumerate(sky["depth.Z"])]
+    run, out, mask = warp(ours[0].path, "--view", written(ours[2], sky))
+    s.done(run)
+    x, y, width, height = 10, 6, 40, 30
+    crop = {n: [v[(y + j) * size[0] + x + i] for j in range(height) for i in range(width)] for n, v in nuke(ours[0]).items()}
+    cropped = written(ours[0], crop, None, (x, y, *size), (width, height))
+    run, out, mask = warp(cropped, "--view", ours[0].path)
+    s.done(run)
+    why = exr.read(mask).channels["why"]
+    inside = [p for p in range(len(why)) if x < p % size[0] < x + width - 1 and y < p // size[0] < y + height - 1]
+    # Beside a key's pixels the nearest of 16 counts, at most 2 away.
+    outside = [p for p in range(len(why)) if not (x - 2 <= p % size[0] < x + width + 2 and y - 2 <= p // size[0] < y + height + 2)]
+    s.true("cropped: the inside is given", sum(why[p] == 0 for p in inside) > 0.8 * len(inside))
+    s.near("cropped: given outside", 0, sum(why[p] == 0 for p in outside), 0)
+    for name, channel, value in (("normal of infinity", "View Layer.Normal.X", INF), ("negative depth", "View Layer.Depth.Z", -1.0)):
+        bad = blender(ours[0])
+        bad[channel] = [value] * len(bad[channel])
+        run, out, mask = warp(written(ours[0], bad), "--view", ours[2].path)
+        s.refused(name, run, out)
+    many = blender(ours[0]) | {f"View Layer.Light{i}.{c}": ours[0].channels[c] for i in range(21) for c in "RGB"}
+    run, out, mask = warp(written(ours[0], many), "--view", ours[2].path)
+    s.refused("67 channels of colour", run, out)
+    run, out, mask = warp(written(ours[0], {c: v for c, v in blender(ours[0]).items() if "Depth" not in c}), "--view", ours[2].path)
+    s.refused("no depth", run, out)
+    # Nothing in common: all is masked, and said.
+    other = Scene()
+    other.room((-9, -9, -9), (9, 9, 9), other.material(0.0, 1.0))
+    other.camera((0, 0, 8), (0, 0, -1), fov=1.0)
+    strange = s.render(other.save(s.path(".gltf")), size, 1, "--integrator", "path", "--channels", "RGBA,specular,Z,N,id")
+    run, out, mask = warp(strange.path, "--view", ours[2].path)
+    s.done(run)
+    s.near("another scene: given", 0, given(mask), 0)
+    s.true("another scene: said", "do they show the same scene" in run.err, run.err)

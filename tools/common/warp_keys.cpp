@@ -11,7 +11,7 @@ namespace tempolux::tools {
 namespace {
 
 LoadedKey load_key(Tool& tool, const std::string& file) {
-  const Image image = load_exr(file);
+  const Image image = load_exr(file, {.our_names = true});
   tool.depends_on(file);
   LoadedKey key;
   key.file = file;
@@ -22,9 +22,17 @@ LoadedKey load_key(Tool& tool, const std::string& file) {
     key.frame = int(std::lround(frame->second));
   key.key = std::make_unique<KeyFrame>(image, file, camera_of(image, file));
   key.points = grid_of_points(key.key->seen(), key.key->camera());
-  if (key.history.empty() && !key.identity.known())
-    tool.warn(file + ": another program's frame: taken as linear radiance, its Z along the view axis in metres");
   return key;
+}
+
+bool is_foreign(const LoadedKey& key) { return key.history.empty() && !key.identity.known(); }
+
+/// One warning for all keys of other programs.
+void warn_of_foreign(Tool& tool, const std::vector<LoadedKey>& keys) {
+  std::string files;
+  for (const LoadedKey& key : keys)
+    if (is_foreign(key)) files += (files.empty() ? "" : ", ") + key.file;
+  if (!files.empty()) tool.warn(files + ": by another program: taken as linear radiance of this scene, Z along the view axis in metres");
 }
 
 /// Do two frames show the same light on what stands? Unknown: not said.
@@ -55,6 +63,7 @@ std::vector<LoadedKey> load_keys(Tool& tool, const std::vector<std::string>& fil
     if (key.key->colour_names() != first.colour_names())
       throw InputError(key.file + ": has other colour layers than " + first.name() + "; render both with the same --channels");
   }
+  warn_of_foreign(tool, keys);
   return keys;
 }
 
@@ -106,7 +115,7 @@ KeysOfFrame::KeysOfFrame(Tool& tool, const std::vector<LoadedKey>& keys, FramesO
       throw InputError(key.file + ": attribute tempolux:frame is missing: at which frame of the scene it was rendered is not "
                                   "known; write it (a double), or give --view instead of --scene");
     const SceneFrame& there = frames.at(*key.frame);
-    check_identity(tool, key.file, key.identity, there);
+    if (!is_foreign(key)) check_identity(tool, key.file, key.identity, there);
     const bool same = same_attributes(key.key->camera(), frames.camera(*key.frame), key.points);
     // The scene's camera in double, of which the attributes are a rounding.
     const FrameCamera& camera = same ? frames.camera(*key.frame) : key.key->camera();
@@ -119,8 +128,12 @@ KeysOfFrame::KeysOfFrame(Tool& tool, const std::vector<LoadedKey>& keys, FramesO
     add(key, camera, frames.camera(number), identity_of(here));
     keys_.back().frames_away = std::abs(double(number) - *key.frame);
     const int step = number < *key.frame ? -1 : 1;
-    for (int f = *key.frame; f != number && !keys_.back().cut_off; f += step)
+    for (int f = *key.frame; f != number && !keys_.back().cut_off; f += step) {
       keys_.back().cut_off = is_cut(key.points, frames.camera(f), frames.camera(f + step));
+      std::vector<int> needed{number, f + step};   // of a key far away not all frames between are kept
+      for (const LoadedKey& each : keys) needed.push_back(each.frame.value_or(number));
+      frames.keep(needed);
+    }
   }
 }
 

@@ -195,15 +195,17 @@ TEST(Exr, DataWindowIsPlacedIntoTheDisplayWindow) {
   const Folder folder;
   // Display 3 x 2 at (10, 20); data 3 x 2 at (9, 21): its left column and lower line fall outside.
   const std::string head = exr::magic() +
-                           exr::header(exr::channel("Y", 2) + exr::channel("id", 0), exr::box(9, 21, 11, 22),
-                                       exr::box(10, 20, 12, 21)) +
+                           exr::header(exr::channel("Y", 2) + exr::channel("Z", 2) + exr::channel("id", 0) + exr::channel("id.object", 0),
+                                       exr::box(9, 21, 11, 22), exr::box(10, 20, 12, 21)) +
                            '\0';
   std::string table, chunks;
   for (int line = 0; line < 2; ++line) {
     table += raw(std::uint64_t(head.size() + 16 + chunks.size()));
-    chunks += raw(21 + line) + raw(24);
-    for (int x = 0; x < 3; ++x) chunks += raw(float(10 * line + x + 1));
-    for (int x = 0; x < 3; ++x) chunks += raw(std::uint32_t(10 * line + x + 1));
+    chunks += raw(21 + line) + raw(48);
+    for (int twice = 0; twice < 2; ++twice)
+      for (int x = 0; x < 3; ++x) chunks += raw(float(10 * line + x + 1));
+    for (int twice = 0; twice < 2; ++twice)
+      for (int x = 0; x < 3; ++x) chunks += raw(std::uint32_t(10 * line + x + 1));
   }
   put_bytes(folder / "a.exr", head + table + chunks);
   const Image image = load_exr(folder / "a.exr");
@@ -211,6 +213,10 @@ TEST(Exr, DataWindowIsPlacedIntoTheDisplayWindow) {
   EXPECT_EQ(image.height, 2);
   EXPECT_EQ(image.find("Y")->values, (std::vector<float>{0, 0, 0, 2, 3, 0}));
   EXPECT_EQ(image.find("id")->ids, (std::vector<std::uint32_t>{0, 0, 0, 2, 3, 0}));
+  // Where nothing was written nothing is seen.
+  EXPECT_EQ(image.find("Z")->values, (std::vector<float>{INFINITY, INFINITY, INFINITY, 2, 3, INFINITY}));
+  constexpr std::uint32_t none = 0xffffffff;
+  EXPECT_EQ(image.find("id.object")->ids, (std::vector<std::uint32_t>{none, none, none, 2, 3, none}));
 }
 
 /// Lines without compression are copied, past channels of halves too. A file whose line says that it is another one, or whose

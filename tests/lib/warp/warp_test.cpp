@@ -25,6 +25,30 @@ TEST(Warp, ToItsOwnFrameIsTheSameToTheBit) {
   }
 }
 
+/// Another program's key: it does not know the scene's objects, and filters its normals. Depth and normals say what is what, so it gives nearly all that
+/// the same key with objects gives, and no ghosts: blue is the object's number, and the room's objects have a depth or a normal of their own wherever they meet.
+TEST(Warp, KeysThatKnowNoObjectsAreOfUse) {
+  const Cornell room;
+  const View left(room, camera_at({-0.1, 1, 1.9})), right(room, camera_at({0.1, 1, 1.9}));
+  const Image key = painted(left, smooth_paint), truth = painted(right, smooth_paint);
+  Image plain = key;
+  std::erase_if(plain.channels, [](const Channel& channel) { return channel.name == "id.object"; });
+  for (const char* component : {"N.X", "N.Y", "N.Z"})
+    for (float& value : plain.find(component)->values) value *= 0.8f;
+  const Warped same(left, {{left, plain, 0}});
+  for (std::size_t p = 0; p < key.pixel_count(); ++p) ASSERT_EQ(same.frame.why[p], 0u) << p;
+  const Warped with(right, {{left, key}}), without(right, {{left, plain}});
+  int given = 0, given_without = 0;
+  for (std::size_t p = 0; p < truth.pixel_count(); ++p) {
+    given += with.frame.why[p] == 0;
+    if (without.frame.why[p] != 0) continue;
+    ++given_without;
+    EXPECT_NEAR(without.colour(p).b, truth.find("B")->values[p], 1e-5) << p;
+  }
+  EXPECT_GT(given, 5000);
+  EXPECT_GE(given_without, given * 99 / 100);
+}
+
 /// Two equal keys, the camera standing: the weights of the blend leave their bits alone. Where the box moved the key is of no use.
 TEST(Warp, WhatStandsKeepsItsBitsBetweenTwoKeys) {
   const Cornell before(9), now(10), after(11);
@@ -244,6 +268,33 @@ TEST(Warp, SpecularLightThatMattersIsMasked) {
   EXPECT_GT(masked(0.2f, 0.4f), 0.9);
   EXPECT_LT(masked(0.3f, 0.3f), 0.1);   // both keys agree: what is mirrored looks the same; but one key alone is not believed
   EXPECT_EQ(masked(0.005f, 0.018f), 0);   // below a fiftieth of the light
+}
+
+/// What the keys show in a mirror differs by a slope: in between it is equal. Where that is narrower than a pixel, .033 m, they agree by chance and all is
+/// masked; a hand's breadth in which they agree is believed.
+TEST(Warp, AgreementByChanceIsNotBelieved) {
+  const Cornell room;
+  const View view(room, kMiddle), a(room, camera_at({0.02, 1, 1.9})), b(room, camera_at({-0.02, 1, 1.9}));
+  const auto key = [](const View& from, double slope) {
+    Image image = painted(from, [](Vec3d, std::uint32_t) { return Rgb(1.0f); });
+    for (const char* name : {"specular.R", "specular.G", "specular.B"}) {
+      std::vector<float>& values = image.add(name).values;
+      for (std::size_t p = 0; p < values.size(); ++p) values[p] = float(2 + slope * (world_at(from, p).x - 0.1));
+    }
+    return image;
+  };
+  const std::vector<std::uint8_t> whole = whole_pixels(view.seen.seen(), view.seen.camera());
+  for (const double slope : {1.2, 0.12}) {   // they agree to .02 within 1/60 m, 1/6 m
+    const Warped warped(view, {{a, key(a, 0)}, {b, key(b, slope)}});
+    int wall = 0;
+    for (std::size_t p = 0; p < warped.frame.why.size(); ++p) {
+      const Vec3d at = world_at(view, p);
+      if (std::abs(at.z + 1.4) > 1e-4 || !whole[p] || std::abs(at.x - 0.1) > 0.1 || at.y < 1.5) continue;   // above what stands in the room
+      ++wall;
+      EXPECT_EQ((warped.frame.why[p] & why_specular) != 0, slope > 1) << p;
+    }
+    EXPECT_GT(wall, 30);
+  }
 }
 
 /// All layers are there: their sum is RGB to the bit, after warping too.

@@ -1,0 +1,76 @@
+#include "lib/image/foreign_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace tempolux {
+namespace {
+
+constexpr float kNothingDepth = 1e10f;   // what Blender writes where nothing is
+
+/// A pass of another program: what its channels' names end with, before the last dot and after it.
+struct Pass {
+  std::string_view layer, component, ours;
+};
+constexpr std::array<Pass, 15> kPasses{{{"Combined", "R", "R"}, {"Combined", "G", "G"}, {"Combined", "B", "B"}, {"Combined", "A", "A"},
+                                        {"Depth", "Z", "Z"}, {"depth", "Z", "Z"}, {"depth", "z", "Z"}, {"Z", "Z", "Z"},
+                                        {"Normal", "X", "N.X"}, {"Normal", "Y", "N.Y"}, {"Normal", "Z", "N.Z"},
+                                        {"Vector", "X", "backward.u"}, {"Vector", "Y", "backward.v"},
+                                        {"Vector", "Z", "forward.u"}, {"Vector", "W", "forward.v"}}};
+
+/// "VIEW.Combined.R" -> "VIEW", "Combined", "R".
+struct Parts {
+  std::string_view view, layer, component;
+};
+Parts parts_of(std::string_view channel) {
+  const std::size_t last = channel.rfind('.');
+  if (last == std::string_view::npos || last == 0) return {};
+  const std::size_t dot = channel.rfind('.', last - 1);
+  if (dot == std::string_view::npos) return {"", channel.substr(0, last), channel.substr(last + 1)};
+  return {channel.substr(0, dot), channel.substr(dot + 1, last - dot - 1), channel.substr(last + 1)};
+}
+
+const Pass* pass_of(const Parts& parts) {
+  for (const Pass& pass : kPasses)
+    if (parts.layer == pass.layer && parts.component == pass.component) return &pass;
+  return nullptr;
+}
+
+/// The view layer whose passes count; "" if none has a picture.
+std::string view_of(const Image& image) {
+  std::string first;
+  bool any = false;
+  for (const Channel& channel : image.channels)
+    if (const Parts parts = parts_of(channel.name); parts.layer == "Combined" && (!any || parts.view < first)) {
+      first = parts.view;
+      any = true;
+    }
+  return first;
+}
+
+}  // namespace
+
+std::string our_name(const std::string& channel) {
+  const Pass* pass = pass_of(parts_of(channel));
+  return pass ? std::string(pass->ours) : channel;
+}
+
+void name_as_ours(Image& image) {
+  const std::string view = view_of(image);
+  for (Channel& channel : image.channels) {
+    const Parts parts = parts_of(channel.name);
+    const Pass* pass = pass_of(parts);
+    if (!pass || image.find(pass->ours) || (!view.empty() && parts.view != view)) continue;
+    const bool turned = parts.layer == "Vector" && pass->ours.starts_with("forward");
+    channel.name = pass->ours;   // parts looks into the name before
+    for (float& value : channel.values) {
+      if (channel.name == "Z" && value >= kNothingDepth) value = INFINITY;
+      if (turned) value = -value;
+    }
+  }
+  std::sort(image.channels.begin(), image.channels.end(), [](const Channel& a, const Channel& b) { return a.name < b.name; });
+}
+
+}  // namespace tempolux
