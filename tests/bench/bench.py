@@ -27,7 +27,7 @@ def options():
     parser.add_argument("--docs", type=Path, default=project / "docs", help="folder of its figures [docs]")
     parser.add_argument("--only", help="parts, by comma [sweep,%s; cycles with --peers]" % ",".join(name for name in FIGURES if name != "cycles"))
     parser.add_argument("--peers", action="store_true", help="also Cycles on this machine; wants Blender and numpy")
-    parser.add_argument("--scenes", default="", help="parts sweep, found, everyscene: regular expression, these scenes alone; of the last two the others as measured before")
+    parser.add_argument("--scenes", default="", help="parts sweep (also walk, filter), found, everyscene: regular expression, these alone; the others as measured before")
     parser.add_argument("--sizes", default="320x180", help="part everyscene: by comma [320x180]")
     parser.add_argument("--seeds", type=int, default=8, help="part everyscene: seeds of the chain [8]")
     parser.add_argument("--reference-samples", type=int, default=2048,
@@ -41,7 +41,7 @@ def draw_curves(bench, peers, only):
     """The sweep; beside error-report's folder, what it was made with."""
     load = os.getloadavg()[0]
     print((sweep.measure(bench, peers, only) / "report.md").read_text())
-    made = {"machine": machine(bench), "load": f"{load:.1f}", "reference_samples": bench.reference_samples,
+    made = {"machine": machine(bench), "load": f"{load:.1f}", "reference_samples": bench.reference_samples, "only": only,
             "date": time.strftime("%Y-%m-%d %H:%M", time.gmtime())}
     (bench.out / "sweep.json").write_text(json.dumps(made))
 

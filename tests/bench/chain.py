@@ -25,8 +25,8 @@ class Settings:
 
 
 def final(project):
-    """Those of Makefile.example with QUALITY=final, records with the rays that they get at most."""
-    text = (project / "Makefile.example").read_text()
+    """Those of pipelines/quality.mk with QUALITY=final, records with the rays that they get at most."""
+    text = (project / "pipelines" / "quality.mk").read_text()
     block = re.search(r"^else\n((?:[A-Z]+ *=.*\n)+)endif", text, re.M).group(1)
     values = dict(re.findall(r"^([A-Z]+) *= *([^#\n]*?) *(?:#.*)?$", block, re.M))
     for name, value in values.items():

@@ -6,7 +6,7 @@ MOST_CHANGES = 30     # of the code that a verdict judges: after more it is expi
 SCENE = ["lib/core", "lib/image", "lib/scene", "lib/trace"]
 PHOTONS = [*SCENE, "lib/material", "lib/light", "lib/photon", "formats/photons", "tools/photon-trace.cpp"]
 PATHS = [*SCENE, "lib/material", "lib/light", "lib/render", "tools/frame-render.cpp"]
-ALL = ["formats", "lib", "tools", "Makefile.example"]     # of parts that are not listed: whole frames
+ALL = ["formats", "lib", "tools", "Makefile.example", "pipelines"]     # of parts that are not listed: whole frames
 JUDGES = {
     "path-tracer": PATHS, "references": PATHS, "photon-rate": PHOTONS, "photon-growth": PHOTONS, "nearest": ["lib/core", "lib/density"],
     "start": ["tools", "modules", "cmake", "CMakeLists.txt", "lib/CMakeLists.txt"], "reading": ["lib/core", "formats/photons", "formats/CMakeLists.txt"],

@@ -67,16 +67,17 @@ def curves(bench, docs, command):
     if not made.exists():
         return
     made = json.loads(made.read_text())
-    for old in docs.glob("error-*.svg"):
-        old.unlink()
-    for plot in report.glob("*.svg"):
-        shutil.copy(plot, docs / plot.name)
     text = (report / "report.md").read_text().split("\n", 1)[1]
     text = re.sub(r"\]\(([^)]*\.svg)\)", r"](../\1)", text)
     text = re.sub(r"^### (.*)\n\n((?:\|.*\n)+)", long_tables, text, flags=re.M)
-    (docs / "results" / "curves.md").write_text(f"""# Error against run time
+    head = f"{made['machine']} · load {made['load']} · {made.get('date', '- -')}"
+    page = docs / "results" / "curves.md"
+    if made.get("only") and page.exists():
+        text = merged(page.read_text(), text, f"`{command} --only sweep --scenes '{made['only']}'`, references of {made['reference_samples']} samples · {head}")
+    else:
+        text = f"""# Error against run time
 
-`{command} --only sweep` · {made['machine']} · load {made['load']} · {made.get('date', '- -')}; every run: report/report.csv in its output folder
+`{command} --only sweep` · {head}; every run: report/report.csv in its output folder
 
 Each scene is swept over samples per pixel (path tracing), over photons that are looked up directly (photon-trace, then
 frame-render with 16 samples per pixel), and over the parameters of final gathering with the irradiance cache
@@ -86,7 +87,22 @@ path-traced reference of {made["reference_samples"]} samples per pixel, whose no
 processes, loading and writing included. A Monte Carlo curve falls with slope -0.5; one that flattens has reached its bias,
 or the noise of what is not swept (the 16 samples of direct light). With k fixed more photons shrink only the blur; with k
 growing as their cube root (100 at 10^5) both noise and blur fall.
-""" + text)
+""" + text
+    page.write_text(text)
+    for plot in report.glob("*.svg"):
+        shutil.copy(plot, docs / plot.name)
+    for old in docs.glob("error-*.svg"):
+        if f"](../{old.name})" not in text:
+            old.unlink()
+
+
+def merged(page, text, head):
+    """The page with the scenes of `text` in place of those of the same name, or behind the others; each says how it was measured."""
+    sections = {part.split("\n", 1)[0]: part for part in re.split(r"^(?=## )", page, flags=re.M)}
+    for part in re.split(r"^(?=## )", text, flags=re.M)[1:]:
+        title, rest = part.split("\n", 1)
+        sections[title] = f"{title}\n\n{head}\n{rest}"
+    return "\n".join(part.rstrip("\n") + "\n" for part in sections.values())
 
 
 def long_tables(match):

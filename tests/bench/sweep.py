@@ -125,7 +125,8 @@ def curves(bench, name):
 
 
 def measure(bench, peers, only=""):
-    """Runs every point of the scenes that the regular expression names, has error-report draw the curves; the folder of the report."""
+    """Runs every point of the scenes that the regular expression names, and of "filter" and "walk" (few_samples.py), has error-report draw the curves; the
+    folder of the report."""
     runs, points = [], []
     for name in (["S1", "spot", "room"] if bench.tiny else FRAMES):
         if not re.search(only, name):
@@ -143,12 +144,14 @@ def measure(bench, peers, only=""):
                         bench.compare(image, halves, comparison, layer)
                         runs.append({"scene": title, "curve": curve, "label": big(x) if isinstance(x, int) else str(x), "x": x, "parameters": {"seed": seed},
                                      "stats": [str(s) for s in stats], "comparison": str(comparison)})
-        if name == ("S1" if bench.tiny else "S2"):
-            runs += filter_runs(bench, name, f"{name}, {FRAMES[name]}", halves)
         for peer, rows in peers.items():
             points += [{"scene": f"{name}, {FRAMES[name]}", "label": f"{peer}, {row['samples']} samples",
                         "cpu_s": row["cpu_s"], "rmse": row["rmse"]} for row in rows if row["scene"] == name]
-    runs += [] if only else warping_runs(bench)
+    if re.search(only, "filter"):
+        name = "S1" if bench.tiny else "S2"
+        runs += filter_runs(bench, name, f"{name}, few samples, filtered", bench.reference_halves(name))
+    if re.search(only, "walk"):
+        runs += warping_runs(bench)
     manifest = {"schema": "tempolux.report", "version": "1.0", "title": "Error against run time",
                 "baseline": "path tracing", "runs": runs, "points": points}
     file = bench.out / "report.json"
