@@ -10,7 +10,7 @@ aimed    = $(sort $(foreach f,$(call members,$1),$(view_$f)))#          where th
 # Dynamic photons of up to two states before one, in the same segment: where they mattered, records are gathered still.
 earlier  = $(sort $(filter-out $1,$(foreach p,$(previous_$1) $(previous_$(previous_$1)),$(if $(filter $(stands_$1),$(stands_$(photons_$p))),$(photons_$p)))))
 frames_of = $$(echo $1 | tr ' ' ,)
-spent_on_segment = $(OUT)/stands/$1.json+$(OUT)/stands/$1_points.json+$(if $(updated_records),$(OUT)/stands/$1_cache.json+)
+spent_on_segment = $(OUT)/stands/$1.json+$(OUT)/stands/$1_points.json+$(if $(filter records,$(plan_moving)),$(OUT)/stands/$1_cache.json+)
 $(if $(segments),$(shell mkdir -p $(OUT)/stands))
 
 # What stands, once for a segment: its light, which of its paths of light movers can touch, its points and records.

@@ -7,9 +7,12 @@ over_time = $(foreach f,$(updated),$(if $(word 2,$(views_$f)),,$f))
 kept_from = $(foreach p,$(filter $(over_time),$(photons_$(previous_$1))),$(if $(filter $(stands_$1),$(stands_$p)),$p))
 updated_records = $(over_time:%=$(OUT)/cache/%.irradcache)
 $(if $(over_time),$(shell mkdir -p $(OUT)/kept))
-.PRECIOUS: $(OUT)/kept/%.radsamples
 
-$(OUT)/cache/%.irradcache $(OUT)/kept/%.radsamples: $(OUT)/points/%.irradpoints $$(foreach p,$$(call kept_from,$$*),$(OUT)/kept/$$p.radsamples) \
-  $$(camera_$$*) $(OUT)/options/cache $(BIN)/gather-temporal
-	$(RUN) $(BIN)/gather-temporal final $(SCENE) --frame $* --points $< $(patsubst %,--previous $(OUT)/kept/%.radsamples,$(call kept_from,$*)) \
-	  $(options_cache) -o $(OUT)/kept/$*.radsamples --cache $(OUT)/cache/$*.irradcache --stats $(OUT)/cache/$*.json
+# A rule for each by name: make does not use one pattern rule twice in a chain, and a frame follows from the one before it.
+define kept_rule
+$(OUT)/cache/$1.irradcache $(OUT)/kept/$1.radsamples &: $(OUT)/points/$1.irradpoints $(patsubst %,$(OUT)/kept/%.radsamples,$(call kept_from,$1)) \
+  $(camera_$1) $(OUT)/options/cache $(BIN)/gather-temporal
+	$$(RUN) $(BIN)/gather-temporal final $$(SCENE) --frame $1 --points $$< $(patsubst %,--previous $(OUT)/kept/%.radsamples,$(call kept_from,$1)) \
+	  $$(options_cache) -o $(OUT)/kept/$1.radsamples --cache $(OUT)/cache/$1.irradcache --stats $(OUT)/cache/$1.json
+endef
+$(foreach f,$(over_time),$(eval $(call kept_rule,$f)))
