@@ -4,9 +4,11 @@ KEY_DISTANCE = 16#       frames between the first keys; intervals are halved whe
 THRESHOLD    = $(if $(filter draft,$(QUALITY)),0.035,0.01)# relMSE between what two keys give for the frame in their middle, above which an interval is halved
 walkthrough  = $(dir $(lastword $(MAKEFILE_LIST)))walkthrough.sh
 
-# Keys need the layer of light by mirrors, glass and gloss.
-options_keys = $(subst --channels $(CHANNELS),--channels $(CHANNELS)$(if $(findstring specular,$(CHANNELS))$(findstring layers,$(CHANNELS)),,$(comma)specular),$(options_frames))
+# Keys need depth, normals, objects, and the layer of light by mirrors, glass and gloss.
 comma       := ,
+asked        = $(subst $(comma), ,$(CHANNELS))
+missing      = $(filter-out $(asked),Z N id $(if $(filter layers,$(asked)),,specular))
+options_keys = $(subst --channels $(CHANNELS),--channels $(CHANNELS)$(missing:%=$(comma)%),$(options_frames))
 options_walk = $(KEY_DISTANCE) $(THRESHOLD)
 STAGES      += keys walk
 intervals   := $(if $(word 2,$(plan_pictures)),$(shell sh $(walkthrough) intervals $(KEY_DISTANCE) $(plan_pictures)))
