@@ -145,22 +145,25 @@ int main(int argc, char** argv) {
     options.point.count = std::uint32_t(options.point_count);
     options.placement.clamp_neighbours = !options.free_radii;
     options.gather.curvature = options.placement.by_curvature = options.radii == "hessian";
-    options.point.seed = options.gather.seed = tool.common().seed_for_frame(frames.front());
+    const auto seeded = [&](int frame) -> const Options& {   // for a file of this frame, alone or of a range
+      options.point.seed = options.gather.seed = tool.common().seed_for_frame(frame);
+      return options;
+    };
     tool.stats().phase("load");
     const unsigned camera = options.mode() == "points" ? tools::SceneInput::nothing : tools::SceneInput::a_camera;
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | camera);
     StandingTree standing;
     if (options.mode() == "points")
       for (int frame : frames)
-        if (options.map == "static") tools::build_standing_points(tool, input, options, frame);
-        else if (!options.update.empty()) tools::build_updated_points(tool, input, options, frame, standing);
-        else tools::build_points(tool, input, options, frame, standing);
+        if (options.map == "static") tools::build_standing_points(tool, input, seeded(frame), frame);
+        else if (!options.update.empty()) tools::build_updated_points(tool, input, seeded(frame), frame, standing);
+        else tools::build_points(tool, input, seeded(frame), frame, standing);
     else if (!options.update.empty() && !tools::has_frame_pattern(options.output))
-      tools::build_updated_records(tool, input, options, frames, standing);
+      tools::build_updated_records(tool, input, seeded(frames.front()), frames, standing);
     else if (!options.update.empty())
-      for (int frame : frames) tools::build_updated_records(tool, input, options, {frame}, standing);
+      for (int frame : frames) tools::build_updated_records(tool, input, seeded(frame), {frame}, standing);
     else
-      tools::build_records(tool, input, options, frames);
+      tools::build_records(tool, input, seeded(frames.front()), frames);
     return tools::exit_ok;
   });
 }

@@ -109,7 +109,7 @@ void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options
   if (plan.photon_kinds.empty()) return;
   if (light.segments == 0)
     return use_moving(plan, "anew", "no segment has " + std::to_string(kFewestStates) + " states of light");
-  if (plan.media && (options.moving == "light" || options.moving == "records"))
+  if (plan.media && options.moving != "auto" && options.moving != "anew")
     throw InputError("--moving " + options.moving + ": the scene has media, which all light meets: what movers change of it cannot be told apart; "
                      "use --moving anew");
   if (plan.media && options.moving == "auto") return use_moving(plan, "anew", "there are media, which all light meets");

@@ -132,6 +132,7 @@ double CellEdge::edge() const {
   for (const Place& place : kept.places_) bounds.add(place.position), records += place.count;
   if (kept.places_.size() < 2) return 1;
   double edge = double(max_component(bounds.upper - bounds.lower));
+  if (!(edge > 0)) return 1;   // 0 and -0 are one place
   // From all in one cell, a quarter of an octave at a time, until a cell holds so many of those kept.
   for (int step = 0; step < 100; ++step, edge *= 0.8408964152537145) {   // 2^(-1/4)
     std::set<std::array<std::int64_t, 3>> cells;

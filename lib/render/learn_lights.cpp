@@ -240,7 +240,7 @@ std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, const CameraVi
   std::vector<std::uint64_t> keys;
   for (const std::vector<Place>& cell : cells) keys.push_back(cell.front().cell);
 
-  const int rays = std::clamp(view.width() * view.height() / kPixelsPerRay, 1, options.rays);
+  const int rays = int(std::clamp(std::int64_t(view.width()) * view.height() / kPixelsPerRay, std::int64_t(1), std::int64_t(options.rays)));   // 65536 x 65536 is no int
   const Learner learner(scene, options, rays, *grid);
   const bool suns = !scene.lights.suns().empty(), lamps = scene.lights.has_placed();
   const std::vector<double> parts = light_of_parts(*grid);

@@ -1,5 +1,7 @@
 #include "lib/scene/standing.h"
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "lib/scene/scene_hash.h"
@@ -9,6 +11,9 @@ namespace {
 
 /// Boxes of rays' targets are this much larger, of the largest coordinate: that of the search trees (trees.h).
 constexpr float kMargin = 0x1p-18f;
+/// A piece for as many triangles at least: what is kept of a surface is then less than its own vertices and indices.
+constexpr double kTrianglesOfPiece = 4;
+constexpr std::size_t kMostAlong = 4;   ///< cells along each axis (docs/methods/dynamic.md)
 
 bool moves(const SceneFrame& frame, std::uint32_t node) {
   return node < frame.segment.node_moves.size() && frame.segment.node_moves[node] != 0;
@@ -19,6 +24,37 @@ void shrink(Surface& surface) {
   surface.positions = std::vector<Vec3>(surface.primitive->positions.size());
   surface.normals = {};
   surface.tangents = {};
+}
+
+/// A little larger, of the largest coordinate.
+Box3 widened(const Box3& box) {
+  if (box.empty()) return box;
+  const float margin = kMargin * max_component(max(abs(box.lower), abs(box.upper)));
+  return {box.lower - Vec3{margin, margin, margin}, box.upper + Vec3{margin, margin, margin}};
+}
+
+/// Boxes of the surface's pieces; `box`: its own. None where there are too few triangles for more than one.
+std::vector<Box3> pieces_of(const Surface& surface, const Box3& box) {
+  const auto& triangles = surface.primitive->triangles;
+  const auto along = std::min(std::size_t(std::cbrt(double(triangles.size()) / kTrianglesOfPiece)), kMostAlong);
+  if (along < 2) return {};
+  std::vector<Box3> pieces(along * along * along);
+  const auto cell_of = [&](Vec3 centre) {
+    std::size_t cell = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float edge = box.upper[axis] - box.lower[axis];
+      const float part = edge > 0 ? (centre[axis] - box.lower[axis]) / edge * float(along) : 0;
+      cell = cell * along + std::min(std::size_t(std::max(part, 0.0f)), along - 1);
+    }
+    return cell;
+  };
+  for (const auto& corner : triangles) {
+    Box3 triangle;
+    for (const std::uint32_t vertex : corner) triangle.add(surface.position(vertex));
+    pieces[cell_of(triangle.centre())].add(triangle);
+  }
+  for (Box3& piece : pieces) piece = widened(piece);
+  return pieces;
 }
 
 }  // namespace
@@ -49,8 +85,17 @@ bool light_moves(const SceneFrame& frame) {
 }
 
 void MovingBoxes::add(const MovingBoxes& other) {
-  surfaces.resize(std::max(surfaces.size(), other.surfaces.size()));
-  for (std::size_t i = 0; i < other.surfaces.size(); ++i) surfaces[i].add(other.surfaces[i]);
+  const std::size_t known = surfaces.size();
+  surfaces.resize(std::max(known, other.surfaces.size()));
+  pieces.resize(surfaces.size());
+  for (std::size_t i = 0; i < other.surfaces.size(); ++i) {
+    surfaces[i].add(other.surfaces[i]);
+    const std::span<const Box3> more = other.pieces_of(i);
+    if (i >= known) pieces[i].assign(more.begin(), more.end());
+    else if (pieces[i].size() != more.size()) pieces[i].clear();   // of one frame the whole box is all that is known
+    else
+      for (std::size_t k = 0; k < more.size(); ++k) pieces[i][k].add(more[k]);
+  }
   all.add(other.all);
 }
 
@@ -60,13 +105,9 @@ MovingBoxes moving_boxes(const SceneFrame& frame) {
     const Surface& surface = frame.surfaces[s];
     Box3 box;
     for (std::uint32_t v = 0; v < surface.primitive->positions.size(); ++v) box.add(surface.position(v));
-    if (!box.empty()) {
-      const float margin = kMargin * max_component(max(abs(box.lower), abs(box.upper)));
-      box.lower = box.lower - Vec3{margin, margin, margin};
-      box.upper = box.upper + Vec3{margin, margin, margin};
-      boxes.all.add(box);
-    }
-    boxes.surfaces.push_back(box);
+    boxes.pieces.push_back(pieces_of(surface, box));
+    boxes.surfaces.push_back(widened(box));
+    boxes.all.add(boxes.surfaces.back());
   }
   return boxes;
 }

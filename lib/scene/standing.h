@@ -1,6 +1,7 @@
 // lib/scene/standing.h -- the scene without what moves: what a segment's frames have in common.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "lib/core/vec.h"
@@ -21,11 +22,18 @@ bool light_moves(const SceneFrame& frame);
 /// Where what moves is: boxes, scene space, m, a little larger than what is in them.
 struct MovingBoxes {
   std::vector<Box3> surfaces;   ///< one for each that moves
+  /// Closer: of each surface the boxes of its pieces, which together hold all of it; some may be empty. No pieces: its own box is all that is known.
+  std::vector<std::vector<Box3>> pieces;
   Box3 all;                     ///< empty if nothing moves
 
-  /// Widens each box by those of another frame of the segment.
+  std::span<const Box3> pieces_of(std::size_t surface) const {
+    return surface < pieces.size() ? std::span<const Box3>(pieces[surface]) : std::span<const Box3>();
+  }
+  /// Widens each box by those of another frame of the segment, piece by piece.
   void add(const MovingBoxes& other);
 };
+/// Pieces are the triangles whose centres lie in one cell of a grid in the surface's box, up to 4 x 4 x 4 of them: of a ball rays then meet
+/// few boxes that do not meet it, while they meet its own box twice as often as itself (docs/methods/dynamic.md).
 MovingBoxes moving_boxes(const SceneFrame& frame);
 
 }  // namespace tempolux

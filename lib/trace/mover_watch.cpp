@@ -8,26 +8,35 @@ namespace {
 
 /// A ray as boxes are asked about it.
 struct Slabs {
-  Vec3 origin, inverse;
+  Vec3 below, above, inverse;   ///< the ray's origin a little moved, down and up
   float leave;
 
-  /// False only if the ray does not come near. 0 x infinity (a ray in a face's plane) is NaN, which min and max drop as
-  /// their second argument. Boxes are 2^-18 larger than their content and `leave` a few roundings longer than the way.
+  /// Rays are traced by coordinates relative to their origin, to 2^-24 of the distance. Boxes are 2^-18 of their largest coordinate larger than
+  /// their content; of rays from farther away they are met as if they were 2^-21 of the origin's coordinate larger still. `leave` is a
+  /// few roundings longer than the way.
+  Slabs(const Ray& ray, float t) : inverse{1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z}, leave(t * (1 + 0x1p-20f)) {
+    const float far = 0x1p-21f * max_component(abs(ray.origin));
+    below = ray.origin - Vec3{far, far, far};
+    above = ray.origin + Vec3{far, far, far};
+  }
+  /// False only if the ray does not come near. 0 x infinity (a ray in a face's plane) is NaN, which min and max drop as their second argument.
   bool meet(const Box3& box) const {
     if (box.empty()) return false;
     float first = 0, last = leave;
     for (int axis = 0; axis < 3; ++axis) {
-      const float a = (box.lower[axis] - origin[axis]) * inverse[axis], b = (box.upper[axis] - origin[axis]) * inverse[axis];
+      const float a = (box.lower[axis] - above[axis]) * inverse[axis], b = (box.upper[axis] - below[axis]) * inverse[axis];
       first = std::max(first, inverse[axis] < 0 ? b : a);
       last = std::min(last, inverse[axis] < 0 ? a : b);
     }
     return first <= last;
   }
+  /// The same of a surface.
+  bool meet(const MovingBoxes& boxes, std::size_t surface) const {
+    if (!meet(boxes.surfaces[surface])) return false;
+    const std::span<const Box3> pieces = boxes.pieces_of(surface);
+    return pieces.empty() || std::ranges::any_of(pieces, [this](const Box3& box) { return meet(box); });
+  }
 };
-
-}  // namespace
-
-namespace {
 
 /// Can a segment from `from` to a place in `target` meet `box`? Axis by axis, where along the segment may it be within the
 /// box's slab: at t it lies between from + t low and from + t high.
@@ -60,13 +69,17 @@ MoverWatch::MoverWatch(std::vector<MovingBoxes> intervals) : intervals_(std::mov
 }
 
 std::uint64_t MoverWatch::touching(const Ray& ray, float t) const {
-  const Slabs slabs{ray.origin, {1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z}, t * (1 + 0x1p-20f)};
+  const Slabs slabs(ray, t);
   if (!slabs.meet(whole_)) return 0;
   std::uint64_t found = 0;
   for (std::size_t i = 0; i < intervals_.size(); ++i) {
     const MovingBoxes& boxes = intervals_[i];
-    if (slabs.meet(boxes.all) && std::ranges::any_of(boxes.surfaces, [&](const Box3& box) { return slabs.meet(box); }))
-      found |= std::uint64_t(1) << i;
+    if (!slabs.meet(boxes.all)) continue;
+    for (std::size_t surface = 0; surface < boxes.surfaces.size(); ++surface)
+      if (slabs.meet(boxes, surface)) {
+        found |= std::uint64_t(1) << i;
+        break;
+      }
   }
   return found;
 }

@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """What updates cost and err where something moves: a segment's frames anew and by what movers change, as Markdown.
 
-    python3 tests/bench/moving.py BIN FOLDER [--scene room.glb] [--frames 8-13] [--photons 1M] [--size 320x180] [--reference A-B]
+    python3 tests/bench/moving.py BIN FOLDER [--scene room.glb] [--frames 8-13] [--photons 1M] [--size 320x180] [--reference A-B] [--in-turns N]
 
 BIN: folder of the tools. FOLDER: for their files. Without --scene the furnished room of moving_room.py. Both chains run in the same order, frame
-by frame, with one seed. --reference (slow: 4 times the photons, points and rays of another seed, for these frames): flicker and errors against it,
-flicker of a chain with a seed for each frame, and errors apart where light is updated, in part or in full gathered (the blend of
-`--channels influence`). CPU seconds are those of `--stats`, all phases.
+by frame, with one seed. --reference (slow: 4 times the photons, points and rays, twice, by two other seeds, for these frames): flicker and errors
+against the two as halves, so that their own noise is out of them, flicker of a chain with a seed for each frame, and errors apart where light is
+updated, in part or in full gathered (the blend of `--channels influence`). --in-turns: nothing but the photons and points of one frame, the first of
+--frames, N times by both ways in turns: medians. CPU seconds are those of `--stats`, all phases.
 """
 import argparse
 import json
+import statistics
 import subprocess
 import sys
 from pathlib import Path
@@ -23,6 +25,7 @@ from read_irradcache import read_irradcache
 
 LOW = 0.06                                   # lower threshold of influence, frame-render --influence-low
 SEGMENT = 24                                 # frames for which what stands is made once: the tools' --segment
+REFERENCES = {"r": 1000, "q": 2000}          # two halves of the reference, by seed
 PARTS = {"updated": lambda blend: blend == 0, "in between": lambda blend: 0 < blend < 255, "gathered": lambda blend: blend == 255}
 
 
@@ -43,6 +46,9 @@ class Chain:
         self.cost.setdefault(stage, []).append(found)
         return found
 
+    def median(self, stage):
+        return statistics.median(map(cpu, self.cost[stage]))
+
     def render(self, kind, frame, *arguments):
         if frame in self.judged:
             self.run(f"{kind} pixels", "frame-render", self.scene, "--frame", frame, "--irradcache", self.file(kind, frame, "irradcache"), "--points",
@@ -58,11 +64,16 @@ class Chain:
         self.run("stands records", "irradcache-build", "records", self.scene, "--frame", f, "--map", "static", "--points",
                  self.file("s.irradpoints"), "--size", self.size, "-o", self.file("s.irradcache"))
 
-    def updated(self, f):
-        dynamic = [self.file("u", g, "photons") for g in (f, f - 1, f - 2) if g in self.frames and g // SEGMENT == f // SEGMENT]
-        self.run("u photons", "photon-trace", self.scene, "--frame", f, "--map", "dynamic", "--static", self.file("s.paths"), "-o", dynamic[0])
+    def updated_light(self, f):
+        """Photons and points of f from those of what stands."""
+        dynamic = self.file("u", f, "photons")
+        self.run("u photons", "photon-trace", self.scene, "--frame", f, "--map", "dynamic", "--static", self.file("s.paths"), "-o", dynamic)
         self.run("u points", "irradcache-build", "points", self.scene, "--frame", f, "--update", self.file("s.irradpoints"), "--photons",
-                 self.file("s.photons"), "--dynamic", dynamic[0], "-o", self.file("u", f, "irradpoints"))
+                 self.file("s.photons"), "--dynamic", dynamic, "-o", self.file("u", f, "irradpoints"))
+
+    def updated(self, f):
+        self.updated_light(f)
+        dynamic = [self.file("u", g, "photons") for g in (f, f - 1, f - 2) if g in self.frames and g // SEGMENT == f // SEGMENT]
         self.run("u records", "irradcache-build", "records", self.scene, "--frame", f, "--update", self.file("s.irradcache"), "--points",
                  self.file("u", f, "irradpoints"), "--dynamic", *dynamic, "--size", self.size, "-o", self.file("u", f, "irradcache"))
         self.render("u", f)
@@ -70,11 +81,14 @@ class Chain:
             self.run("blend", "frame-render", self.scene, "--frame", f, "--irradcache", self.file("u", f, "irradcache"), "--points", self.file("u", f, "irradpoints"),
                      "--size", self.size, "--spp", 1, "--pixel-error", 0, "--channels", "influence", "-o", self.file("blend", f, "exr"))
 
-    def anew(self, kind, f, photons, points=(), records=(), common=()):
+    def light_anew(self, kind, f, photons, points=(), common=()):
         self.run(f"{kind} photons", "photon-trace", self.scene, "--frame", f, "--photons", photons, "--kinds", "indirect", *common,
                  "-o", self.file("all.photons"))
         self.run(f"{kind} points", "irradcache-build", "points", self.scene, "--frame", f, "--photons", self.file("all.photons"), *points, *common,
                  "-o", self.file(kind, f, "irradpoints"))
+
+    def anew(self, kind, f, photons, points=(), records=(), common=()):
+        self.light_anew(kind, f, photons, points, common)
         self.run(f"{kind} records", "irradcache-build", "records", self.scene, "--frame", f, "--points", self.file(kind, f, "irradpoints"),
                  "--size", self.size, *records, *common, "-o", self.file(kind, f, "irradcache"))
         self.render(kind, f, *common)
@@ -84,8 +98,8 @@ class Chain:
         return sum(map(value, runs)) / len(runs)
 
     def compare(self, kind, frames, *words):
-        pattern = [self.out / f"{k}.%04d.exr" for k in (kind, "r")]
-        subprocess.run([self.bin / "aqm-compare", *pattern, "--frames", frames, "--layer", "indirect", "--allow-stale", *words,
+        tested, *halves = [self.out / f"{k}.%04d.exr" for k in (kind, *REFERENCES)]
+        subprocess.run([self.bin / "aqm-compare", tested, "--reference-halves", *halves, "--frames", frames, "--layer", "indirect", "--allow-stale", *words,
                         "--json", self.out / "c.json", "-q"], check=True, stdout=subprocess.DEVNULL)
         return json.loads((self.out / "c.json").read_text())["total"]
 
@@ -121,7 +135,24 @@ def update_error(chain):
                 ratios.append(sum(r.update) / sum(twin.irradiance) - 1)
                 weights.append(sum(twin.irradiance))
     size = sorted(map(abs, ratios))
+    if not size:
+        return 0, 0, 0
     return sum(r * w for r, w in zip(ratios, weights)) / sum(weights), size[int(0.99 * len(size))], len(size)
+
+
+def in_turns(chain, times):
+    """Photons and points of one frame by both ways, one after the other: the medians of their CPU seconds as a table."""
+    f = chain.frames[0]
+    chain.stands(f)
+    for _ in range(times):
+        chain.updated_light(f)
+        chain.light_anew("a", f, chain.photons)
+    counts = [chain.cost[f"{k} photons"][0]["counts"] for k in "ua"]
+    print(f"{100 * counts[0]['touched_paths'] / counts[1]['paths']:.1f} % of the paths are touched\n")
+    print(f"| frame {f}, CPU s, median of {times} | anew | updated | updated / anew |\n|---|---|---|---|")
+    for stage in ("photons", "points"):
+        updated, anew = (chain.median(f"{k} {stage}") for k in "ua")
+        print(f"| {stage} | {anew:.3f} | {updated:.3f} | {updated / anew:.3f} |")
 
 
 def main():
@@ -133,11 +164,15 @@ def main():
     parser.add_argument("--photons", default="1M")
     parser.add_argument("--size", default="320x180")
     parser.add_argument("--reference", metavar="A-B")
+    parser.add_argument("--in-turns", type=int, default=0, metavar="N")
     options = parser.parse_args()
     Path(options.folder).mkdir(parents=True, exist_ok=True)
     chain = Chain(options)
     if not options.scene:
         moving_room.make(chain.scene)
+    if options.in_turns:
+        in_turns(chain, options.in_turns)
+        return
     for f in chain.frames:
         if f == chain.frames[0] or f % SEGMENT == 0:
             chain.stands(f)
@@ -159,7 +194,8 @@ def main():
     if not options.reference:
         return
     for f in chain.judged:
-        chain.anew("r", f, "4M", ("--point-count", "80k"), ("--rays", 2400, "--error-bound", 0.14), ("--seed", 1000))
+        for kind, seed in REFERENCES.items():
+            chain.anew(kind, f, "4M", ("--point-count", "80k"), ("--rays", 2400, "--error-bound", 0.14), ("--seed", seed))
         chain.anew("f", f, options.photons, common=("--seed", f))
     print("\n| against the reference, indirect light | relMSE | bias | flicker |\n|---|---|---|---|")
     for kind, name in (("u", "updated"), ("a", "anew, one seed"), ("f", "anew, a seed for each frame")):

@@ -87,6 +87,11 @@ pixels=$(tempolux-info --diff round.exr narrow.exr | sed -n 's/^ *channel R *pix
 irradcache-build "$still" --photons p.photons --point-count 1k $small --frames 0-2 -o frames.irradcache --stats frames.json -q || bad '--frames'
 grep -q '"records_added.2": 0' frames.json || bad 'the same camera needs more records at a later frame'
 photon-trace "$moving" --frame 3 --photons 20k -o moving.photons -q
+# A file of a range is that of its frame alone, also where each frame has a seed of its own.
+photon-trace "$moving" --frame 4 --photons 4k -o range.4.photons -q && photon-trace "$moving" --frame 3 --photons 4k -o range.3.photons -q || bad photons
+irradcache-build points "$moving" --frames 3-4 --seed-mode frame --photons range.#.photons --point-count 500 -o range.#.irradpoints -q || bad 'points of a range'
+irradcache-build points "$moving" --frame 4 --seed-mode frame --photons range.4.photons --point-count 500 -o alone.irradpoints -q || bad 'points of a frame'
+same range.4.irradpoints alone.irradpoints || bad "points of a range have the first frame's seed: $(cat diff.txt)"
 refuses 'one cache cannot hold for both' irradcache-build "$moving" --photons moving.photons --point-count 500 $small --frames 3-5 -o refused
 
 # Points in two parts: bright ones are sampled explicitly. Of an infinite limit nothing is high: the records of the whole. The same for any threads.

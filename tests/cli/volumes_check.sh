@@ -139,6 +139,7 @@ expect 2 'has another number of groups or paths' photon-trace $sun --frame 1 --u
 # What movers change cannot be told apart where all light meets media: said before anything is made.
 room=$HERE/../../pipelines/scenes/S2_cornell_moving.glb
 expect 2 '--moving records: the scene has media' scene-plan "$room" --volume smoke.vdb --frames 0-7 --moving records -q -o moving
+expect 2 '--moving time: the scene has media' scene-plan "$room" --volume smoke.vdb --frames 0-7 --moving time -q -o moving
 
 # Frames of a range are read together: one that is damaged does not harm those before it, and is named.
 head -c 300 cube.vdb > sun.0001.vdb

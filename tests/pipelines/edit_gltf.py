@@ -9,7 +9,7 @@ OUT may be a .glb, or a .gltf that gets its buffer as a .bin file beside it.
   lamp [FRAME]          a lamp that moves through frames 0 to 5; one centimetre higher at FRAME
   still                 no animation
   event KIND            of frames 0 to 8 at frame 4 the moving box is elsewhere (teleports), larger (grows), there from then on (born), there no
-                        more (gone), or the lamp has no area (lamp-off); else all stands
+                        more (gone), or no more below the lamp, which it covered (uncovers), or the lamp has no area (lamp-off); else all stands
   nudge FRAME           the moving box is two centimetres aside at FRAME
   mirror                the first material that emits nothing is a perfect mirror
   drop NAME             without the key NAME at the top level (cameras, for example)
@@ -102,10 +102,13 @@ def event(gltf, binary, kind):
     gltf.pop("animations", None)
     name = "Emitter" if kind == "lamp-off" else "MovingBox"
     node = next(i for i, n in enumerate(gltf["nodes"]) if n.get("name") == name)
+    if kind == "uncovers":                   # the box is .6 m wide and .7 high, the lamp 1 m x .8 m at a height of 2 m
+        gltf["nodes"][node] |= {"translation": [0, 1.9, 0.1], "scale": [1.8, 0.1, 1.5]}
     here, size = gltf["nodes"][node].get("translation", [0, 0, 0]), gltf["nodes"][node].get("scale", [1, 1, 1])
     none = [0, 0, 0]
     path, before, at, after = {"teleports": ("translation", here, [here[0] + 0.6, *here[1:]], here), "grows": ("scale", size, [1.5 * x for x in size], size),
-                               "born": ("scale", none, size, size), "gone": ("scale", size, none, none), "lamp-off": ("scale", size, none, size)}[kind]
+                               "born": ("scale", none, size, size), "gone": ("scale", size, none, none),
+                               "uncovers": ("scale", size, none, none), "lamp-off": ("scale", size, none, size)}[kind]
     animate(gltf, binary, node, {f: before if f < 4 else at if f == 4 else after for f in range(9)}, path, "STEP")
 
 

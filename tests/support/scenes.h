@@ -50,7 +50,7 @@ class HandMadeScene {
     add_sphere(centre, radius, subdivisions, material, true, false);
   }
   /// The same, fronts inwards or outwards, shaded flat or smoothly.
-  void add_sphere(Vec3 centre, float radius, int subdivisions, const Material& material, bool inwards, bool smooth) {
+  void add_sphere(Vec3 centre, float radius, int subdivisions, const Material& material, bool inwards, bool smooth, bool moving = false) {
     std::vector<Vec3> p;
     std::vector<std::array<std::uint32_t, 3>> t;
     for (int face = 0; face < 8; ++face) {
@@ -74,7 +74,7 @@ class HandMadeScene {
     std::vector<Vec3> normals;
     if (smooth)
       for (Vec3 at : p) normals.push_back(normalize(inwards ? centre - at : at - centre));
-    add(p, t, material, false, normals);
+    add(p, t, material, moving, normals);
   }
   void set_media(std::shared_ptr<const Media> media) { frame_.media = std::move(media); }
   /// Texture coordinates of the surface added last, by vertex.

@@ -45,13 +45,13 @@ void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& opt
   tool.stats().phase("read points");
   GatherPoints points = read_points(tool, frame_name(options.update, number), standing);
   tool.stats().phase("read photons");
-  const formats::PhotonMap moved = read_photons(tool, frame_name(options.dynamic.front(), number), frame,
-                                                       LightNeeded::all, "dynamic");
+  const std::string dynamic = frame_name(options.dynamic.front(), number);
+  const formats::PhotonMap moved = read_photons(tool, dynamic, frame, LightNeeded::all, "dynamic");
   const formats::PhotonMap fixed =
       read_photons(tool, frame_name(options.photons, number), standing, LightNeeded::all, "static",
                           static_photons_read(frame, options.point, points.points, moved.photons));
   if (moved.header.emitted_count != fixed.header.emitted_count || moved.header.group_count != fixed.header.group_count)
-    throw InputError(options.dynamic.front() + ": of " + std::to_string(moved.header.emitted_count) + " paths, and the static map of " +
+    throw InputError(dynamic + ": of " + std::to_string(moved.header.emitted_count) + " paths, and the static map of " +
                      std::to_string(fixed.header.emitted_count) + "; trace it with the .paths file of that map");
   tool.stats().phase("points", true);
   PointUpdateCounts counts;

@@ -297,6 +297,10 @@ TEST(CellEdge, SixteenMeanDistancesOnASurface) {
   CellEdge one;
   for (int i = 0; i < 100000; ++i) one.add({1, 2, 3});
   EXPECT_EQ(one.edge(), 1);
+  CellEdge zeros;   // one place under two names
+  zeros.add({0, 0, 0});
+  zeros.add({-0.0f, 0, 0});
+  EXPECT_EQ(zeros.edge(), 1);
 }
 
 TEST(SplitLight, KindsGoTheirWays) {

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "formats/exact_sum.h"
+#include "lib/core/frame.h"
 #include "lib/core/random.h"
+#include "lib/core/sampling.h"
 #include "lib/photon/photon_map.h"
 #include "tests/support/photons.h"
 #include "tests/support/scenes.h"
@@ -222,6 +224,43 @@ TEST(MoverWatch, BitsAreTheIntervalsWhoseBoxesAreMet) {
   EXPECT_EQ(watch.touching(between, INFINITY), 0u);   // the interval's box of all is met, none of its surfaces'
   EXPECT_EQ(watch.touching(up, 4.9f), 0u);
   EXPECT_NE(watch.touching(up, 5.1f), 0u);
+}
+
+/// Rays from all sides, from a metre to 10 km away, past a ball of 512 triangles. Of random lines that meet its box, by the mean areas of the
+/// shadows of convex bodies (Cauchy: a quarter of their surface), pi r^2 : 6 r^2 meet the ball, so its box is met 1.91 times as often.
+TEST(MoverWatch, PiecesOfABallAreMetWhereItIsAndHardlyElsewhere) {
+  test::HandMadeScene scene;
+  const Vec3 centre{0.3f, 1.2f, -0.7f};
+  const float radius = 0.25f;
+  scene.add_sphere(centre, radius, 8, test::matte(Rgb(0.5f)), false, false, true);
+  const SceneFrame frame = scene.frame();
+  const Tracer tracer(frame);
+  MovingBoxes pieces = moving_boxes(frame), box = pieces;
+  ASSERT_EQ(pieces.pieces_of(0).size(), 64u);
+  box.pieces.clear();
+  const MoverWatch by_pieces({pieces}), by_box({box});
+  const PathRandom random{2, 1};
+  int met = 0, touched = 0, near_box = 0;
+  for (std::uint32_t i = 0; i < 60000; ++i) {
+    // Uniform lines: a direction, and a place on the disc across it that holds the box.
+    const Vec3 direction = sample_sphere(random.get2(i, Purpose::test));
+    const Vec2 u = random.get2(i, Purpose::test, 1);
+    const Frame across(direction);
+    const float r = 1.8f * radius * std::sqrt(u.x), turn = float(2 * M_PI) * u.y, far = std::pow(10.0f, float(i % 5));
+    const Vec3 origin = centre + across.to_world({r * std::cos(turn), r * std::sin(turn), 0}) - direction * far;
+    Hit hit;
+    const Ray ray{origin, direction, 0, INFINITY};
+    const bool hits = tracer.intersect(ray, hit), meets = by_pieces.touching(ray, INFINITY) != 0;
+    if (hits) {
+      ASSERT_NE(by_pieces.touching(ray, hit.t), 0u) << "from " << far << " m";
+    }
+    met += hits;
+    touched += meets;
+    near_box += by_box.touching(ray, INFINITY) != 0;
+  }
+  EXPECT_NEAR(double(near_box) / met, 1.91, 0.06);   // 18 000 hits: 1 %; the ball's flat triangles lie 1 % inside it
+  EXPECT_LT(double(touched) / met, 1.55);
+  EXPECT_GE(touched, met);
 }
 
 TEST(MoverWatch, WhatLiesBetweenAPointAndABoxOfLightsIsNotMissed) {

@@ -1,8 +1,12 @@
 // The scene without what moves: hashes of the file with the mover taken out, surfaces that no ray meets, lights that are off.
 #include "lib/scene/standing.h"
 
+#include <algorithm>
+#include <tuple>
+
 #include "lib/scene/scene_hash.h"
 #include "tests/lib/scene/gltf_maker.h"
+#include "tests/support/scenes.h"
 
 namespace tempolux {
 namespace {
@@ -94,6 +98,41 @@ TEST(Standing, BoxesHoldWhatMoves) {
   boxes.add(moving_boxes(frame_of(scene, 12)));
   EXPECT_NEAR(boxes.all.upper.x, first + 0.5f, 1e-4f);
   EXPECT_TRUE(moving_boxes(frame_of(scene_with(false), 0)).all.empty());
+}
+
+/// Pieces of a ball, and of the same ball in two frames: every triangle lies in one of them, and they are a good deal smaller than the ball's box.
+TEST(Standing, PiecesHoldAllTriangles) {
+  const auto ball_at = [](float x) {
+    test::HandMadeScene scene;
+    scene.add_sphere({x, 2, -3}, 0.5f, 8, test::matte(Rgb(0.5f)), false, false, true);
+    MovingBoxes boxes = moving_boxes(scene.frame());
+    const auto inside = [](const Box3& a, const Box3& b) {
+      return a.lower.x >= b.lower.x && a.lower.y >= b.lower.y && a.lower.z >= b.lower.z && a.upper.x <= b.upper.x && a.upper.y <= b.upper.y && a.upper.z <= b.upper.z;
+    };
+    return std::tuple(boxes, [positions = scene.last_positions(), triangles = scene.frame().surfaces[0].primitive->triangles, inside](const MovingBoxes& of) {
+      for (const auto& corners : triangles) {
+        Box3 triangle;
+        for (const std::uint32_t corner : corners) triangle.add(positions[corner]);
+        if (std::ranges::none_of(of.pieces_of(0), [&](const Box3& piece) { return inside(triangle, piece); })) return false;
+      }
+      return true;
+    });
+  };
+  auto [first, holds_first] = ball_at(0);
+  const auto [second, holds_second] = ball_at(0.25f);
+  ASSERT_EQ(first.pieces_of(0).size(), 64u);
+  EXPECT_TRUE(holds_first(first));
+  EXPECT_FALSE(holds_second(first));
+  for (const Box3& piece : first.pieces_of(0)) EXPECT_TRUE(piece.empty() || piece.diagonal() < 0.5f * first.surfaces[0].diagonal());
+  first.add(second);
+  EXPECT_TRUE(holds_first(first));
+  EXPECT_TRUE(holds_second(first));
+  MovingBoxes none;
+  none.add(second);
+  EXPECT_EQ(none.pieces_of(0).size(), 64u);
+  none.surfaces.assign(1, Box3{{0, 0, 0}, {1, 1, 1}}), none.pieces.clear();
+  none.add(second);
+  EXPECT_TRUE(none.pieces_of(0).empty());   // of one of them the box is all that is known
 }
 
 }  // namespace
