@@ -108,10 +108,12 @@ Rgb Bsdf::specular_albedo(float cos_o) const {
   return r.single + r.multiple;
 }
 
-float Bsdf::diffuse_coupling(float cos_theta) const {
-  if (!specular_) return 1;
-  return std::max(0.0f, 1 - max_component(specular_albedo(cos_theta))) * coupling_scale_;
+/// c(w), 1 without a reflection above the Lambert lobe.
+float Bsdf::coupling(const Reflection& r) const {
+  return specular_ ? std::max(0.0f, 1 - max_component(r.single + r.multiple)) * coupling_scale_ : 1;
 }
+
+float Bsdf::diffuse_coupling(float cos_theta) const { return specular_ ? coupling(reflection(cos_theta)) : 1; }
 
 Rgb Bsdf::diffuse_reflectance(float cos_o) const {
   return (specular_ ? rho_ * (diffuse_coupling(cos_o) / coupling_scale_) : rho_) * (1 - transmission_);
@@ -128,10 +130,10 @@ float Bsdf::diffuse_probability(const Reflection& r) const {
   return total > 0 ? d / total : 0;
 }
 
-Rgb Bsdf::eval_diffuse(Vec3 wi, Vec3 wo) const {
-  if (!diffuse_ || !(wi.z > 0) || !(wo.z > 0)) return Rgb(0.0f);
+Rgb Bsdf::eval_diffuse(const Direction& wi, const Direction& wo) const {
+  if (!diffuse_ || !(wi.w.z > 0) || !(wo.w.z > 0)) return Rgb(0.0f);
   if (!specular_) return rho_ * (kInvPi * (1 - transmission_));
-  return rho_ * (kInvPi * diffuse_coupling(wi.z) * diffuse_coupling(wo.z) * (1 - transmission_));
+  return rho_ * (kInvPi * coupling(wi.reflected) * coupling(wo.reflected) * (1 - transmission_));
 }
 
 Rgb Bsdf::specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const {
@@ -140,9 +142,9 @@ Rgb Bsdf::specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const {
   return fresnel(f0_, f90_, dot(wo, h)) * d + multiple_ * (kInvPi * lost_i * lost_o);
 }
 
-Rgb Bsdf::eval_opaque(Vec3 wi, Vec3 wo) const {
-  if (!specular_ || delta_ || !(wi.z > 0) || !(wo.z > 0)) return Rgb(0.0f);
-  return specular(wi, wo, reflection(wi.z).lost, reflection(wo.z).lost) * (1 - transmission_);
+Rgb Bsdf::eval_opaque(const Direction& wi, const Direction& wo) const {
+  if (!specular_ || delta_ || !(wi.w.z > 0) || !(wo.w.z > 0)) return Rgb(0.0f);
+  return specular(wi.w, wo.w, wi.reflected.lost, wo.reflected.lost) * (1 - transmission_);
 }
 
 Rgb Bsdf::eval_rough(Vec3 wi, Vec3 wo) const {
@@ -151,25 +153,22 @@ Rgb Bsdf::eval_rough(Vec3 wi, Vec3 wo) const {
   return wi.z < 0 ? transmission_tint_ * f : Rgb(f);
 }
 
-Rgb Bsdf::eval_specular(Vec3 wi, Vec3 wo) const {
-  return rough_ ? eval_opaque(wi, wo) + eval_rough(wi, wo) : eval_opaque(wi, wo);
+Rgb Bsdf::eval_specular(const Direction& wi, const Direction& wo) const {
+  return rough_ ? eval_opaque(wi, wo) + eval_rough(wi.w, wo.w) : eval_opaque(wi, wo);
 }
 
-float Bsdf::diffuse_probability(Vec3 wo) const { return wo.z > 0 ? diffuse_probability(reflection(wo.z)) : 1; }
-
-bool Bsdf::draws_diffuse(Vec3 wo, float u_lobe) const {
-  if (!diffuse_ || !(wo.z > 0)) return false;
+bool Bsdf::draws_diffuse(const Direction& wo, float u_lobe) const {
+  if (!diffuse_ || !(wo.w.z > 0)) return false;
   if (transmission_ > 0) {
     if (u_lobe < transmission_) return false;
     u_lobe = std::min(kOneMinusEpsilon, (u_lobe - transmission_) / (1 - transmission_));
   }
-  return u_lobe < diffuse_probability(reflection(wo.z));
+  return u_lobe < diffuse_probability(wo.reflected);
 }
 
-float Bsdf::pdf_diffuse(Vec3 wi, Vec3 wo) const {
-  if (!diffuse_ || !(wi.z > 0) || !(wo.z > 0)) return 0;
-  return (specular_ ? diffuse_probability(reflection(wo.z)) : 1) * pdf_hemisphere_cos(wi.z) *
-         (1 - transmission_);
+float Bsdf::pdf_diffuse(Vec3 wi, const Direction& wo) const {
+  if (!diffuse_ || !(wi.z > 0) || !(wo.w.z > 0)) return 0;
+  return diffuse_probability(wo.reflected) * pdf_hemisphere_cos(wi.z) * (1 - transmission_);
 }
 
 /// What is reflected more than once, as a share of event S.
@@ -185,11 +184,10 @@ float Bsdf::specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const {
          share * pdf_hemisphere_cos(wi.z);
 }
 
-float Bsdf::pdf_specular(Vec3 wi, Vec3 wo) const {
-  float density = rough_ && wi.z != 0 && wo.z > 0 ? transmission_ * rough_->pdf(wi, wo) : 0;
-  if (!specular_ || delta_ || !(wi.z > 0) || !(wo.z > 0)) return density;
-  const Reflection r = reflection(wo.z);
-  return density + (1 - diffuse_probability(r)) * specular_density(wi, wo, r) * (1 - transmission_);
+float Bsdf::pdf_specular(Vec3 wi, const Direction& wo) const {
+  float density = rough_ && wi.z != 0 && wo.w.z > 0 ? transmission_ * rough_->pdf(wi, wo.w) : 0;
+  if (!specular_ || delta_ || !(wi.z > 0) || !(wo.w.z > 0)) return density;
+  return density + (1 - diffuse_probability(wo.reflected)) * specular_density(wi, wo.w, wo.reflected) * (1 - transmission_);
 }
 
 void Bsdf::sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const {
@@ -199,7 +197,7 @@ void Bsdf::sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const
   s.pdf_solid_angle = p * pdf_hemisphere_cos(s.wi.z);
   s.weight = rho_;  // f_D cos / pdf_D; c = 1
   if (!specular_) return;
-  s.weight *= diffuse_coupling(s.wi.z) * diffuse_coupling(wo.z) / p;
+  s.weight *= diffuse_coupling(s.wi.z) * coupling(r) / p;
   if (!delta_) s.pdf_solid_angle += (1 - p) * specular_density(s.wi, wo, r);
 }
 
@@ -241,49 +239,49 @@ void Bsdf::sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const {
   s.pdf_solid_angle = transmission_ * (1 - reflectance);
 }
 
-void Bsdf::sample_rough(Vec3 wo, float u_lobe, Vec2 u, Sample& s) const {
-  s.wi = rough_->sample(wo, u_lobe, u);
+void Bsdf::sample_rough(const Direction& wo, float u_lobe, Vec2 u, Sample& s) const {
+  s.wi = rough_->sample(wo.w, u_lobe, u);
   if (s.wi.z == 0) return;   // lost at the wrong side of the surface
   s.transmitted = s.wi.z < 0;
   const float density = pdf_specular(s.wi, wo);
   if (!(density > 0)) return;
-  s.weight = eval_specular(s.wi, wo) * (std::abs(s.wi.z) / density);
+  s.weight = eval_specular(along(s.wi), wo) * (std::abs(s.wi.z) / density);
   s.pdf_solid_angle = density + pdf_diffuse(s.wi, wo);
 }
 
-Bsdf::Sample Bsdf::sample(Vec3 wo, float u_lobe, Vec2 u) const {
+Bsdf::Sample Bsdf::sample(const Direction& wo, float u_lobe, Vec2 u) const {
   if (!(transmission_ > 0)) return sample_opaque(wo, u_lobe, u);
   Sample s;
-  if (!(wo.z > 0)) return s;
+  if (!(wo.w.z > 0)) return s;
   if (u_lobe < transmission_) {
     if (rough_) {
       sample_rough(wo, u_lobe / transmission_, u, s);
       return s;
     }
-    sample_dielectric(wo, u_lobe / transmission_, s);
+    sample_dielectric(wo.w, u_lobe / transmission_, s);
     return s;
   }
   s = sample_opaque(wo, std::min(kOneMinusEpsilon, (u_lobe - transmission_) / (1 - transmission_)), u);
   s.pdf_solid_angle *= 1 - transmission_;
   if (rough_ && !s.diffuse && s.pdf_solid_angle > 0) {   // the lobes of event S overlap
     const float density = pdf_specular(s.wi, wo);
-    s.weight = density > 0 ? eval_specular(s.wi, wo) * (s.wi.z / density) : Rgb(0.0f);
+    s.weight = density > 0 ? eval_specular(along(s.wi), wo) * (s.wi.z / density) : Rgb(0.0f);
     s.pdf_solid_angle = density + pdf_diffuse(s.wi, wo);
   } else if (rough_ && s.diffuse) {
-    s.pdf_solid_angle += transmission_ * rough_->pdf(s.wi, wo);
+    s.pdf_solid_angle += transmission_ * rough_->pdf(s.wi, wo.w);
   }
   return s;
 }
 
-Bsdf::Sample Bsdf::sample_opaque(Vec3 wo, float u_lobe, Vec2 u) const {
+Bsdf::Sample Bsdf::sample_opaque(const Direction& wo, float u_lobe, Vec2 u) const {
   Sample s;
-  if (!(wo.z > 0)) return s;
-  const Reflection r = reflection(wo.z);
+  if (!(wo.w.z > 0)) return s;
+  const Reflection& r = wo.reflected;
   const float p = diffuse_probability(r);
   if (u_lobe < p)
-    sample_diffuse(wo, u, r, s);
+    sample_diffuse(wo.w, u, r, s);
   else if (specular_ && max_component(r.single) > 0)
-    sample_specular(wo, (u_lobe - p) / (1 - p), u, r, s);
+    sample_specular(wo.w, (u_lobe - p) / (1 - p), u, r, s);
   return s;
 }
 

@@ -69,9 +69,21 @@ class Bsdf {
   /// diffuse_reflectance(cos_o) E / pi exactly: (1 - A_S(wi)) / (1 - A_S,mean), 1 for a matte material.
   float arrival_weight(float cos_i) const;
 
+  /// A direction and what of uniform light is reflected towards it: a look-up in a table, made once for many questions.
+  struct Direction {
+    Vec3 w{};
+    struct Reflection {
+      Rgb single{0.0f}, multiple{0.0f};   ///< by one and by several microfacet reflections
+      float lost = 0;                     ///< 1 - E: what GGX alone would lose at F = 1
+    } reflected;                          ///< none below the surface
+  };
+  Direction along(Vec3 w) const { return {w, w.z > 0 ? reflection(w.z) : Reflection{}}; }
+
   /// f_D and f_S apart [1/sr]; without the cosine. Delta lobes evaluate to 0.
-  Rgb eval_diffuse(Vec3 wi, Vec3 wo) const;
-  Rgb eval_specular(Vec3 wi, Vec3 wo) const;
+  Rgb eval_diffuse(const Direction& wi, const Direction& wo) const;
+  Rgb eval_specular(const Direction& wi, const Direction& wo) const;
+  Rgb eval_diffuse(Vec3 wi, Vec3 wo) const { return eval_diffuse(along(wi), along(wo)); }
+  Rgb eval_specular(Vec3 wi, Vec3 wo) const { return eval_specular(along(wi), along(wo)); }
 
   struct Sample {
     Vec3 wi{};         ///< unit, away from the surface
@@ -85,7 +97,8 @@ class Bsdf {
   /// Draws wi given wo: lobe by u_lobe, direction by u. weight is for the chosen event alone: the event D
   /// carries f_D cos / (P(D) pdf_D), the event S carries f_S cos / (P(S) pdf_S), so that light paths can be
   /// told apart. Zero weight if wo is below the surface or nothing is reflected.
-  Sample sample(Vec3 wo, float u_lobe, Vec2 u) const;
+  Sample sample(const Direction& wo, float u_lobe, Vec2 u) const;
+  Sample sample(Vec3 wo, float u_lobe, Vec2 u) const { return sample(along(wo), u_lobe, u); }
   /// A Lambert lobe that reflects, and nothing else: sample() is sample_matte(wo, sample_hemisphere_cos(u)).
   bool is_matte() const { return diffuse_ && !specular_ && !(transmission_ > 0); }
   Sample sample_matte(Vec3 wo, Vec3 cosine_direction) const {
@@ -96,30 +109,30 @@ class Bsdf {
             .diffuse = true};
   }
   /// Density of sample() choosing wi by event D, by event S [1/sr], choice probability included.
-  float pdf_diffuse(Vec3 wi, Vec3 wo) const;
-  float pdf_specular(Vec3 wi, Vec3 wo) const;
+  float pdf_diffuse(Vec3 wi, const Direction& wo) const;
+  float pdf_specular(Vec3 wi, const Direction& wo) const;
+  float pdf_diffuse(Vec3 wi, Vec3 wo) const { return pdf_diffuse(wi, along(wo)); }
+  float pdf_specular(Vec3 wi, Vec3 wo) const { return pdf_specular(wi, along(wo)); }
   /// Can events D and S be drawn apart: a Lambert lobe under a reflection, no glass?
   bool forks() const { return diffuse_ && specular_ && !(transmission_ > 0); }
   /// P(D), if it forks: sample() draws event D for u_lobe below it, else event S. wo above the surface.
-  float diffuse_probability(Vec3 wo) const;
+  float diffuse_probability(const Direction& wo) const { return wo.w.z > 0 ? diffuse_probability(wo.reflected) : 1; }
   /// Does sample() draw event D for this u_lobe, whatever its other numbers?
-  bool draws_diffuse(Vec3 wo, float u_lobe) const;
+  bool draws_diffuse(const Direction& wo, float u_lobe) const;
 
  private:
-  struct Reflection {  ///< of uniform light towards a direction: by one and by several microfacet reflections
-    Rgb single{0.0f}, multiple{0.0f};
-    float lost = 0;  ///< 1 - E: what GGX alone would lose at F = 1
-  };
+  using Reflection = Direction::Reflection;
   Reflection reflection(float cos_theta) const;
+  float coupling(const Reflection& r) const;
   float diffuse_probability(const Reflection& r) const;
   static float multiple_share(const Reflection& r);
   Rgb specular(Vec3 wi, Vec3 wo, float lost_i, float lost_o) const;
   float specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const;
   void sample_dielectric(Vec3 wo, float u_lobe, Sample& s) const;
-  void sample_rough(Vec3 wo, float u_lobe, Vec2 u, Sample& s) const;
-  Rgb eval_opaque(Vec3 wi, Vec3 wo) const;
+  void sample_rough(const Direction& wo, float u_lobe, Vec2 u, Sample& s) const;
+  Rgb eval_opaque(const Direction& wi, const Direction& wo) const;
   Rgb eval_rough(Vec3 wi, Vec3 wo) const;
-  Sample sample_opaque(Vec3 wo, float u_lobe, Vec2 u) const;
+  Sample sample_opaque(const Direction& wo, float u_lobe, Vec2 u) const;
   void sample_diffuse(Vec3 wo, Vec2 u, const Reflection& r, Sample& s) const;
   void sample_specular(Vec3 wo, float u_lobe, Vec2 u, const Reflection& r, Sample& s) const;
 

@@ -74,13 +74,14 @@ struct LightAdder {
 void LightAdder::add(const LightSample& light, bool beyond, float share, Layers& result, std::uint64_t& shadow_rays) const {
   const bool has_diffuse = lobes.diffuse && x.bsdf.has_diffuse(), has_specular = specular();
   if (beyond ? !x.sees_beyond(light.wi) : !x.sees(light.wi)) return;
-  const Vec3 wi = x.frame.to_local(light.wi);
-  Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(wi, x.wo_local) * lobes.left : Rgb(0.0f);
-  Rgb glossy = has_specular ? x.bsdf.eval_specular(wi, x.wo_local) : Rgb(0.0f);
+  const Bsdf::Direction from = x.bsdf.along(x.frame.to_local(light.wi));
+  const Vec3 wi = from.w;
+  Rgb diffuse = has_diffuse ? x.bsdf.eval_diffuse(from, x.eye) * lobes.left : Rgb(0.0f);
+  Rgb glossy = has_specular ? x.bsdf.eval_specular(from, x.eye) : Rgb(0.0f);
   if (!light.delta) {
     const float pdf = light.pdf_solid_angle * share;
-    if (has_diffuse) diffuse *= mis_power(pdf, lobes.times_diffuse * x.bsdf.pdf_diffuse(wi, x.wo_local));
-    if (has_specular) glossy *= mis_power(pdf, lobes.times_specular * x.bsdf.pdf_specular(wi, x.wo_local));
+    if (has_diffuse) diffuse *= mis_power(pdf, lobes.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));
+    if (has_specular) glossy *= mis_power(pdf, lobes.times_specular * x.bsdf.pdf_specular(wi, x.eye));
   }
   if (is_black(diffuse) && is_black(glossy)) return;
   ++shadow_rays;
@@ -244,7 +245,7 @@ void EyeTracer::go_on(const Ray& ray, Walk& walk) const {
 /// The next ray, by event D or S as u_lobe says; times: by how much likelier than the Bsdf has it. False if the path ends.
 bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times,
                         Walk& walk) const {
-  const Bsdf::Sample next = x.bsdf.sample(x.wo_local, u_lobe, walk.random.get2(walk.bounce, Purpose::scatter));
+  const Bsdf::Sample next = x.bsdf.sample(x.eye, u_lobe, walk.random.get2(walk.bounce, Purpose::scatter));
   if (is_black(next.weight) || (here.direct && next.diffuse)) return false;
   const Vec3 wi = x.frame.to_world(next.wi);
   if (next.transmitted ? !x.sees_beyond(wi) : !x.sees(wi)) return false;
@@ -265,7 +266,7 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
   last.light_share = next.transmitted ? x.bsdf.light_share_beyond() : 1 - x.bsdf.light_share_beyond();
   last.from = scene_.suns_apart ? Lights::From::not_suns : Lights::From::all;
   last.pdf_solid_angle =
-      times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.wo_local) : x.bsdf.pdf_specular(next.wi, x.wo_local));
+      times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye) : x.bsdf.pdf_specular(next.wi, x.eye));
   go_on(spawn_ray(x.surface, wi), walk);
   return true;
 }
@@ -385,7 +386,7 @@ void EyeTracer::follow(Walk walk) const {
     float diffuse = 0;
     const bool forks = known_ && known_->forks() && !forked && path.sharp() && x.bsdf.forks();
     if (forks) {
-      diffuse = std::clamp(x.bsdf.diffuse_probability(x.wo_local), 0x1p-20f, 1 - 0x1p-20f);
+      diffuse = std::clamp(x.bsdf.diffuse_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f);
       lobes.times_diffuse = 1 / diffuse;
       lobes.times_specular = 1 / (1 - diffuse);
     }
@@ -400,7 +401,7 @@ void EyeTracer::follow(Walk walk) const {
       u_lobe *= diffuse;
       times = lobes.times_diffuse;
     }
-    if (first_matte && x.bsdf.draws_diffuse(x.wo_local, u_lobe)) {
+    if (first_matte && x.bsdf.draws_diffuse(x.eye, u_lobe)) {
       go_onward(x, material, here, u_lobe, times, walk);
       return;
     }

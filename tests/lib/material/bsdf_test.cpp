@@ -81,14 +81,14 @@ TEST(Matte, IsLambertToTheBit) {
 
 TEST(Bsdf, HasTheFresnelTermOfGltf) {
   // ior 1.5: F0 = 0.04, read off a mirror at normal incidence; metal: the base color.
-  EXPECT_NEAR(Bsdf(dielectric(Rgb(0.0f), 0)).sample({0, 0, 1}, 0.5f, {}).weight.r, 0.04f, 1e-6);
-  EXPECT_NEAR(Bsdf(dielectric(Rgb(0.0f), 0, 0.5f)).sample({0, 0, 1}, 0.5f, {}).weight.r, 0.02f, 1e-6);
-  const Rgb gold = Bsdf(metal({1, 0.8f, 0.3f}, 0)).sample({0, 0, 1}, 0.5f, {}).weight;
+  EXPECT_NEAR(Bsdf(dielectric(Rgb(0.0f), 0)).sample(Vec3{0, 0, 1}, 0.5f, {}).weight.r, 0.04f, 1e-6);
+  EXPECT_NEAR(Bsdf(dielectric(Rgb(0.0f), 0, 0.5f)).sample(Vec3{0, 0, 1}, 0.5f, {}).weight.r, 0.02f, 1e-6);
+  const Rgb gold = Bsdf(metal({1, 0.8f, 0.3f}, 0)).sample(Vec3{0, 0, 1}, 0.5f, {}).weight;
   EXPECT_NEAR(gold.g, 0.8f, 1e-6);
   EXPECT_NEAR(gold.b, 0.3f, 1e-6);
   Material ior_zero = dielectric(Rgb(0.5f), 0);
   ior_zero.ior = 0;  // KHR_materials_ior: F = 1
-  EXPECT_NEAR(Bsdf(ior_zero).sample({0, 0, 1}, 0.5f, {}).weight.r, 1, 1e-6);
+  EXPECT_NEAR(Bsdf(ior_zero).sample(Vec3{0, 0, 1}, 0.5f, {}).weight.r, 1, 1e-6);
   EXPECT_FALSE(Bsdf(ior_zero).has_diffuse());
 }
 
