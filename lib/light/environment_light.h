@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lib/core/guide.h"
 #include "lib/core/vec.h"
 #include "lib/scene/environment.h"
 
@@ -16,7 +17,7 @@ namespace tempolux {
 /// the polar angle, which the cell's mean stands for.
 class EnvironmentLight {
  public:
-  /// The environment must outlive it. Memory: 4 bytes per pixel. `even`: directions are drawn as if so many times the mean
+  /// The environment must outlive it. Memory: 4 bytes per pixel and 260 per row. `even`: directions are drawn as if so many times the mean
   /// luminance were added everywhere: with 1, half of them fall evenly over the sphere.
   explicit EnvironmentLight(const Environment& environment, double even = 0);
 
@@ -63,6 +64,8 @@ class EnvironmentLight {
   bool polar_cap(std::uint32_t row) const { return row == 0 || row == height_; }
   double probability(std::uint32_t row, std::uint32_t column) const;
   double pdf(const Place& place, const Luminances& at, double sin_polar) const;
+  std::uint32_t row_for(double u1, Guide<64>::Range rows) const;
+  std::uint32_t column_for(std::uint32_t row, double u2, Guide<64>::Range columns) const;
   void integrate();
   void build_distribution();
 
@@ -72,6 +75,8 @@ class EnvironmentLight {
   Rgbd integral_{0.0};
   std::vector<double> row_end_;           ///< cumulative probability of the height + 1 rows of cells
   std::vector<std::uint32_t> cell_end_;   ///< cumulative within each row; what emits has 1 at least
+  Guide<64> row_guide_;                   ///< of row_end_
+  std::vector<Guide<64>> cell_guides_;    ///< of cell_end_, by row
 };
 
 }  // namespace tempolux

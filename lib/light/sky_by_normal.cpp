@@ -65,16 +65,23 @@ SkyByNormal::SkyByNormal(const EnvironmentLight& environment) : environment_(env
       const double least = sum > 0 ? kLeast * sum / kParts : 1;
       double all = 0, end = 0;
       for (double& w : weight) all += w += least;
-      for (std::uint32_t part = 0; part < kParts; ++part) ends_[bin][part] = float((end += weight[part]) / all);
-      ends_[bin][kParts - 1] = 1;
+      Ends& ends = ends_[bin];
+      for (std::uint32_t part = 0; part < kParts; ++part) ends.end[part] = float((end += weight[part]) / all);
+      ends.end[kParts - 1] = 1;
+      ends.guide = Guide<32>([&](double u) { return ends.part_for(float(u), {0, kParts - 1}); }, kParts - 1);
     }
   });
 }
 
+/// The part, among those given, that a number falls in.
+std::uint32_t SkyByNormal::Ends::part_for(float u1, Guide<32>::Range parts) const {
+  return std::uint32_t(std::upper_bound(end.begin() + parts.first, end.begin() + parts.last, u1) - end.begin());
+}
+
 bool SkyByNormal::sample(Vec3 normal, double u1, double u2, EnvironmentLight::Sample& sample) const {
   const Ends& ends = ends_[bin_of(normal)];
-  const auto part = std::uint32_t(std::min<std::ptrdiff_t>(std::upper_bound(ends.begin(), ends.end(), float(u1)) - ends.begin(), kParts - 1));
-  const double first = part > 0 ? double(ends[part - 1]) : 0, share = double(ends[part]) - first;
+  const std::uint32_t part = ends.part_for(float(u1), ends.guide.range(u1));
+  const double first = part > 0 ? double(ends.end[part - 1]) : 0, share = double(ends.end[part]) - first;
   if (!(share > 0)) return false;
   const double across = std::clamp((u1 - first) / share, 0.0, 1 - 0x1p-53);
   if (!environment_.sample((part / kAcross + across) / kDown, std::min((part % kAcross + u2) / kAcross, 1 - 0x1p-53), sample)) return false;
@@ -86,7 +93,7 @@ double SkyByNormal::pdf_solid_angle(Vec3 normal, const EnvironmentLight::Place& 
   const Vec2 u = environment_.numbers_of(place, direction);
   const std::uint32_t part = std::min(std::uint32_t(u.x * kDown), kDown - 1) * kAcross + std::min(std::uint32_t(u.y * kAcross), kAcross - 1);
   const Ends& ends = ends_[bin_of(normal)];
-  const double share = double(ends[part]) - (part > 0 ? double(ends[part - 1]) : 0);
+  const double share = double(ends.end[part]) - (part > 0 ? double(ends.end[part - 1]) : 0);
   return share * kParts * environment_.pdf_solid_angle(place, direction);
 }
 

@@ -26,7 +26,11 @@ class SkyByNormal {
   static constexpr std::uint32_t kAcross = 32, kDown = 16, kParts = kAcross * kDown, kSide = 16, kNormals = kSide * kSide;
 
  private:
-  using Ends = std::array<float, kParts>;   ///< cumulative; the last is 1
+  struct Ends {
+    std::array<float, kParts> end;   ///< cumulative; the last is 1
+    Guide<32> guide;
+    std::uint32_t part_for(float u1, Guide<32>::Range parts) const;
+  };
   const EnvironmentLight& environment_;
   std::vector<Ends> ends_;                  ///< by normal
 };
