@@ -120,6 +120,9 @@ std::uint32_t filter_code(const formats::Photon& photon) {
   return code;
 }
 
+/// A component of the normal in a filter_code, in 1/511.
+float coded(std::uint32_t code, int axis) { return float(std::int32_t(code << (22 - 10 * axis)) >> 22); }
+
 }  // namespace
 
 PhotonIndex::PhotonIndex(std::span<const formats::Photon> photons, std::uint8_t kinds, Vec3d shift) {
@@ -180,13 +183,17 @@ void PhotonIndex::build_leaves(std::span<const formats::Photon> photons, std::sp
 }
 
 void PhotonIndex::build_tree() {
-  std::vector<Box3> boxes(leaf_count_);
+  std::vector<Box3> places(leaf_count_), normals(leaf_count_);
   parallel_chunks(leaf_count_, kChunk / kLeafSize, [&](std::size_t first, std::size_t last) {
     for (std::size_t j = first; j < last; ++j)
-      for (std::size_t i = j * kLeafSize; i < std::min((j + 1) * kLeafSize, size_); ++i)
-        boxes[j].add(position(i));
+      for (std::size_t i = j * kLeafSize; i < std::min((j + 1) * kLeafSize, size_); ++i) {
+        places[j].add(position(i));
+        const std::uint32_t code = filters_[j].code[i % kLeafSize];
+        normals[j].add(Vec3{coded(code, 0), coded(code, 1), coded(code, 2)});
+      }
   });
-  tree_ = BoxTree(std::move(boxes));
+  tree_ = BoxTree(std::move(places));
+  normals_ = BoxTree(std::move(normals));
 }
 
 formats::PathKind PhotonIndex::kind(std::size_t i) const {
@@ -195,10 +202,7 @@ formats::PathKind PhotonIndex::kind(std::size_t i) const {
 
 Vec3 PhotonIndex::normal(std::size_t i) const {
   const std::uint32_t code = filters_[i / kLeafSize].code[i % kLeafSize];
-  const auto component = [code](int axis) {
-    return float(std::int32_t(code << (22 - 10 * axis)) >> 22) * (1.0f / 511);
-  };
-  return {component(0), component(1), component(2)};
+  return Vec3{coded(code, 0), coded(code, 1), coded(code, 2)} * (1.0f / 511);
 }
 
 }  // namespace tempolux

@@ -128,6 +128,7 @@ class PhotonIndex {
   std::unique_ptr<std::uint32_t[]> source_;
   std::unique_ptr<std::uint16_t[]> object_;
   BoxTree tree_;
+  BoxTree normals_;   ///< boxes of the normals [1/511] in the same subtrees: where few face the query's way most are passed by
   float resolution_ = 0;
 };
 

@@ -91,6 +91,16 @@ struct PhotonSearch {
                          along(node.lower[2], node.upper[2], pz));
   }
 
+  /// The children in which a photon may pass the test of normals: a bound of the cosine, with the roundings of filter().
+  __m256 may_face(const BoxTree::Node& node) const {
+    const auto most = [](const float* lower, const float* upper, __m256 n) {
+      return _mm256_max_ps(_mm256_mul_ps(_mm256_load_ps(lower), n), _mm256_mul_ps(_mm256_load_ps(upper), n));
+    };
+    const __m256 cosine = _mm256_add_ps(
+        _mm256_add_ps(most(node.lower[0], node.upper[0], nx), most(node.lower[1], node.upper[1], ny)), most(node.lower[2], node.upper[2], nz));
+    return _mm256_cmp_ps(cosine, min_dot, _CMP_GT_OQ);
+  }
+
   /// The lanes of eight photons that pass the tests of normal and kind.
   __m256 filter(const std::uint32_t* codes) const {
     const __m256i code = _mm256_load_si256(reinterpret_cast<const __m256i*>(codes));
@@ -129,14 +139,17 @@ struct PhotonSearch {
     }
   }
 
-  /// The children of a node within the bound, nearest first (kSorted) or in tree order.
-  template <bool kSorted>
+  /// The children of a node within the bound, nearest first (kSorted) or in tree order; of a query that asks for normals (kFilter)
+  /// not those that face elsewhere.
+  template <bool kSorted, bool kFilter>
   unsigned children_within(Entry entry, std::array<std::uint64_t, 8>& keys) const {
     const std::uint32_t first = std::uint32_t(entry.key);
     const unsigned child_bits = kLeafBits + 3 * entry.level;
-    const BoxTree::Node& node = index.tree_.node(entry.level, std::uint64_t(first) >> (child_bits + 3));
-    const __m256 d2 = box_distance2(node);
-    unsigned mask = unsigned(_mm256_movemask_ps(_mm256_cmp_ps(d2, bound, _CMP_LE_OQ)));
+    const std::uint64_t number = std::uint64_t(first) >> (child_bits + 3);
+    const __m256 d2 = box_distance2(index.tree_.node(entry.level, number));
+    __m256 wanted = _mm256_cmp_ps(d2, bound, _CMP_LE_OQ);
+    if constexpr (kFilter) wanted = _mm256_and_ps(wanted, may_face(index.normals_.node(entry.level, number)));
+    unsigned mask = unsigned(_mm256_movemask_ps(wanted));
     alignas(32) std::array<std::uint32_t, 8> bits;
     _mm256_store_si256(reinterpret_cast<__m256i*>(bits.data()), _mm256_castps_si256(d2));
     unsigned count = 0;
@@ -165,7 +178,7 @@ struct PhotonSearch {
     std::array<std::uint64_t, 8> keys;
     while (!stack.empty()) {
       const Entry entry = stack.pop();
-      const unsigned children = children_within<true>(entry, keys);
+      const unsigned children = children_within<true, kFilter>(entry, keys);
       if (entry.level > 0) {
         stack.push(keys, children, entry.level - 1);
         continue;
@@ -188,7 +201,7 @@ struct PhotonSearch {
     while (!stack.empty()) {
       const Entry entry = stack.pop();
       if (entry.key > last_key) continue;
-      const unsigned children = children_within<false>(entry, keys);
+      const unsigned children = children_within<false, kFilter>(entry, keys);
       if (entry.level > 0) {
         stack.push(keys, children, entry.level - 1);
         continue;
@@ -222,7 +235,7 @@ struct PhotonSearch {
     std::array<std::uint64_t, 8> keys;
     while (!stack.empty()) {
       const Entry entry = stack.pop();
-      const unsigned children = children_within<false>(entry, keys);
+      const unsigned children = children_within<false, kFilter>(entry, keys);
       if (entry.level > 0) {
         stack.push(keys, children, entry.level - 1);
         continue;
