@@ -2,6 +2,7 @@
 #include "lib/light/aim.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lib/core/check.h"
 #include "lib/core/frame.h"
@@ -19,17 +20,31 @@ Vec2 disc_point(double u, double v) {
 
 Aim::Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_radius)
     : scene_centre_(scene_centre), scene_radius_(scene_radius) {
-  if (!(scene_radius > 0)) return;
-  double sum = 0, below = kUniform;
+  if (spheres.empty() || !(scene_radius > 0)) return;
+  double sum = 0, squares = 0;
+  Vec3d middle;
   for (const AimSphere& sphere : spheres) {
     TEMPOLUX_CHECK(sphere.radius > 0 && sphere.weight > 0);
     sum += sphere.weight;
+    middle = middle + sphere.centre * sphere.weight;
   }
+  middle = middle / sum;
   for (const AimSphere& sphere : spheres) {
-    const double share = (1 - kUniform) * sphere.weight / sum, ratio = scene_radius / sphere.radius;
-    discs_.push_back({sphere.centre - Vec3d(scene_centre), sphere.radius, below, share, share * ratio * ratio});
-    below += share;
+    const Vec3d off = sphere.centre - middle;
+    squares += sphere.weight / sum * (dot(off, off) + sphere.radius * sphere.radius);
   }
+  std::vector<double> around;   // radii
+  for (double radius = 2 * std::sqrt(squares); radius <= scene_radius; radius *= 2) around.push_back(radius);
+  const double aimed = 1 - kUniform - (around.empty() ? 0 : kAround);
+  for (const AimSphere& sphere : spheres) add(sphere.centre, sphere.radius, aimed * sphere.weight / sum);
+  given_ = discs_.size();
+  for (const double radius : around) add(middle, radius, kAround / double(around.size()));
+}
+
+/// One more disc, chosen with probability `share`.
+void Aim::add(Vec3d centre, double radius, double share) {
+  const double ratio = scene_radius_ / radius, below = discs_.empty() ? kUniform : discs_.back().below + discs_.back().share;
+  discs_.push_back({centre - Vec3d(scene_centre_), radius, below, share, share * ratio * ratio});
 }
 
 Aim::Start Aim::start(Vec3 travel, double u, double v) const {
@@ -64,7 +79,7 @@ Aim::Start Aim::start(Vec3 travel, double u, double v) const {
 
 bool Aim::holds(Vec3 point) const {
   const Vec3d from = Vec3d(point) - Vec3d(scene_centre_);
-  return std::ranges::any_of(discs_, [&](const Disc& d) {
+  return std::ranges::any_of(std::span(discs_).first(given_), [&](const Disc& d) {
     const Vec3d to = from - d.centre;
     return dot(to, to) < d.radius * d.radius;
   });

@@ -19,6 +19,7 @@ struct AimSphere {
 /// Where parallel light enters the scene. Without spheres its photons start uniformly on a disc of the scene sphere's
 /// radius R, in front of the scene. With them a photon does so with probability kUniform only; else it chooses sphere k
 /// with probability w_k and starts uniformly on the disc of radius r_k that the sphere covers in the light's direction.
+/// To the given spheres come those around all of them, each twice as wide as the one before, up to the scene's; they share kAround.
 ///
 /// The density [1/m^2] of starting at a place is the sum over all ways to get there:
 ///     p = kUniform / (pi R^2) + (1 - kUniform) sum_k w_k [disc k holds it] / (pi r_k^2)
@@ -26,13 +27,13 @@ struct AimSphere {
 /// 1 / kUniform times what it is without spheres: wrong spheres do little harm.
 class Aim {
  public:
-  static constexpr double kUniform = 0.25;   ///< docs/methods/aim.md
+  static constexpr double kUniform = 0.25, kAround = 0.25;   ///< docs/methods/aim.md
 
   Aim() = default;
   Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_radius);
 
   bool empty() const { return discs_.empty(); }
-  std::size_t size() const { return discs_.size(); }
+  std::size_t size() const { return given_; }   ///< spheres that were given
 
   struct Start {
     Vec3 origin{};     ///< scene space, in front of the scene sphere
@@ -43,7 +44,7 @@ class Aim {
   /// beyond the scene sphere. Only if not empty().
   Start start(Vec3 travel, double u, double v) const;
 
-  /// Does some sphere hold the point (scene space)?
+  /// Does some of the given spheres hold the point (scene space)?
   bool holds(Vec3 point) const;
 
  private:
@@ -51,7 +52,9 @@ class Aim {
     Vec3d centre;         // from the scene sphere's centre
     double radius, below, share, gain;   // shares of those before; share; share R^2 / r^2, (1 - kUniform) included in all
   };
-  std::vector<Disc> discs_;
+  void add(Vec3d centre, double radius, double share);
+  std::vector<Disc> discs_;   ///< those of the given spheres first
+  std::size_t given_ = 0;
   Vec3 scene_centre_{};
   double scene_radius_ = 0;
 };
