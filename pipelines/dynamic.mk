@@ -17,8 +17,8 @@ $(if $(segments),$(shell mkdir -p $(OUT)/stands))
 $(segments:%=$(OUT)/stands/%.photons): $(OUT)/stands/%.photons: $$(state_$$*) $$(call aimed,$$*) $(OUT)/options/photons $(BIN)/photon-trace
 	$(RUN) $(BIN)/photon-trace $(SCENE) --frame $* --map static $(addprefix --importance ,$(call aimed,$*)) $(options_photons) -o $@ \
 	  --paths $(@:.photons=.paths) --stats $(@:.photons=.json)
-$(segments:%=$(OUT)/stands/%.irradpoints): $(OUT)/stands/%.irradpoints: $(OUT)/stands/%.photons $(OUT)/options/points $(BIN)/irradcache-build
-	$(RUN) $(BIN)/irradcache-build points $(SCENE) --frame $* --map static --photons $< $(options_points) -o $@ --stats $(@:.irradpoints=_points.json)
+$(segments:%=$(OUT)/stands/%.irradpoints): $(OUT)/stands/%.irradpoints: $(OUT)/stands/%.photons $$(call aimed,$$*) $(OUT)/options/points $(BIN)/irradcache-build
+	$(RUN) $(BIN)/irradcache-build points $(SCENE) --frame $* --map static --photons $< $(addprefix --importance ,$(call aimed,$*)) $(options_points) -o $@ --stats $(@:.irradpoints=_points.json)
 $(segments:%=$(OUT)/stands/%.irradcache): $(OUT)/stands/%.irradcache: $(OUT)/stands/%.irradpoints $(OUT)/options/cache \
   $$(foreach f,$$(call looked,$$*),$$(camera_$$f))
 	$(RUN) $(BIN)/irradcache-build records $(SCENE) --frames $(call frames_of,$(call looked,$*)) --map static --points $< $(options_cache) -o $@ \
@@ -30,7 +30,7 @@ $(updated:%=$(OUT)/photons/%.photons): $(OUT)/photons/%.photons: $$(light_$$*) $
 	  $(addprefix --importance ,$(view_$*)) $(shared) -o $@ --stats $(@:.photons=.json)
 $(updated:%=$(OUT)/points/%.irradpoints): $(OUT)/points/%.irradpoints: $(OUT)/photons/%.photons $(OUT)/stands/$$(stands_$$*).irradpoints
 	$(RUN) $(BIN)/irradcache-build points $(SCENE) --frame $* --update $(OUT)/stands/$(stands_$*).irradpoints \
-	  --photons $(OUT)/stands/$(stands_$*).photons --dynamic $< $(options_points) -o $@ --stats $(@:.irradpoints=.json)
+	  --photons $(OUT)/stands/$(stands_$*).photons --dynamic $< $(addprefix --importance ,$(view_$*)) $(options_points) -o $@ --stats $(@:.irradpoints=.json)
 ifeq ($(plan_moving),records)
 updated_records = $(updated:%=$(OUT)/cache/%.irradcache)
 $(updated_records): $(OUT)/cache/%.irradcache: $(OUT)/points/%.irradpoints $(OUT)/stands/$$(stands_$$*).irradcache \

@@ -58,7 +58,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
                                   "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points",
-                  {"--photons", "--point-count", "--neighbours", "--light-samples", "--keep-points"});
+                  {"--photons", "--importance", "--point-count", "--neighbours", "--light-samples", "--keep-points"});
   if (options.point_count < 1 || options.point_count > kMaxPoints)
     throw InputError("--point-count: " + std::to_string(options.point_count) + " is not from 1 to " +
                      std::to_string(kMaxPoints));
@@ -81,6 +81,9 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
   app.add_option("--records", options.records, ".irradcache file to extend: its records are kept")->type_name("FILE");
   tool.count_option("--point-count", options.point_count, "irradiance points per side of all surfaces that stand; what moves gets as many per area");
+  app.add_option("--importance", options.importance,
+                 "view file of scene-plan, state/view.SSSS: points lie where the cameras look, closer together; elsewhere gather rays go on")
+      ->type_name("FILE");
   app.add_option("--map", options.map,
                  "global, or static: points and records of the scene without what moves in the frame's segment, from its static "
                  "map and points")
@@ -143,6 +146,7 @@ int main(int argc, char** argv) {
     const std::vector<int>& frames = tool.common().frames;
     check(tool.app(), options, frames);
     options.point.count = std::uint32_t(options.point_count);
+    options.view = tools::read_importance(tool, options.importance);
     options.placement.clamp_neighbours = !options.free_radii;
     options.gather.curvature = options.placement.by_curvature = options.radii == "hessian";
     const auto seeded = [&](int frame) -> const Options& {   // for a file of this frame, alone or of a range

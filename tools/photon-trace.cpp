@@ -19,7 +19,6 @@
 #include "formats/hash.h"
 #include "formats/paths/paths.h"
 #include "formats/photons/layout.h"
-#include "formats/plan/view.h"
 #include "lib/photon/dynamic_map.h"
 #include "lib/photon/photon_map.h"
 #include "lib/scene/standing.h"
@@ -46,14 +45,6 @@ std::uint32_t group_count(const std::string& text) {
   if (count < 1 || count > formats::photons::kMaxGroupCount)
     throw InputError("--groups: " + text + " is not in 1 .. " + std::to_string(formats::photons::kMaxGroupCount));
   return std::uint32_t(count);
-}
-
-/// The spheres of a view file in scene space.
-std::vector<AimSphere> aims_of(std::span<const formats::ViewSphere> view, Vec3d origin) {
-  std::vector<AimSphere> aims;
-  for (const formats::ViewSphere& sphere : view)
-    aims.push_back({Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
-  return aims;
 }
 
 /// An estimate of density by so many photons has a standard error of 14 %; fewer in each sphere and it reads light from
@@ -116,7 +107,7 @@ std::shared_ptr<const PhotonTracer> tracer_at(tools::SceneInput& input, const st
                                               const PhotonOptions& options, int frame_number) {
   SceneFrame frame = input.at(frame_number);
   EmissionTable emission = input.emission(frame.frame);
-  emission.aim = aims_of(view, frame.origin);
+  emission.aim = tools::spheres_in_scene(view, frame.origin);
   const auto traced = std::make_shared<TracedFrame>(std::move(frame), std::move(emission), options);
   return {traced, &traced->photons};
 }
@@ -128,7 +119,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(frame_number);
   EmissionTable emission = input.emission(frame.frame);
-  emission.aim = aims_of(view, frame.origin);
+  emission.aim = tools::spheres_in_scene(view, frame.origin);
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   const Lights lights(frame, emission);
@@ -193,7 +184,7 @@ void trace_standing(tools::Tool& tool, tools::SceneInput& input, const Options& 
     hashes.push_back(movers.hash);
   }
   EmissionTable emission = input.emission(frame.frame);
-  emission.aim = aims_of(view, frame.origin);
+  emission.aim = tools::spheres_in_scene(view, frame.origin);
   tool.stats().phase("build");
   const Tracer tracer(frame);
   const Lights lights(frame, emission);
@@ -264,7 +255,7 @@ void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options
   const SceneFrame frame = input.at(frame_number);
   const SceneFrame standing = standing_scene(frame);
   EmissionTable emission = input.emission(frame.frame);
-  emission.aim = aims_of(view, frame.origin);
+  emission.aim = tools::spheres_in_scene(view, frame.origin);
   check_paths(tool, input, file, paths.header, standing, emission_hash(emission, frame.segment), frame.frame);
   const Segment& segment = frame.segment;
   const std::uint64_t bit = std::uint64_t(1) << formats::interval_of(frame.frame, segment.first, segment.last, paths.header.movers.size());
@@ -347,11 +338,7 @@ int main(int argc, char** argv) {
     if (options.map != "global" && input.has_media())
       throw InputError(options.scene + ": has media, which all light meets: --map " + options.map + " cannot be told from the rest; trace the global map");
     StandingTree standing;
-    std::vector<formats::ViewSphere> view;
-    if (!options.importance.empty()) {
-      view = formats::read_view(options.importance);
-      tool.depends_on(options.importance);
-    }
+    const std::vector<formats::ViewSphere> view = tools::read_importance(tool, options.importance);
     tools::KeptMap kept;
     for (int frame : frames) {
       kept.wanted = frame != frames.back();

@@ -12,12 +12,16 @@ constexpr std::size_t kStray = 20;   ///< one photon in so many is farther from 
 
 }  // namespace
 
-float photon_reach(const PhotonIndex& index, int neighbours, float min_cos, float flattening) {
+float photon_reach(const PhotonIndex& index, int neighbours, float min_cos, float flattening, const std::function<bool(Vec3)>& where) {
   if (index.size() == 0) return 0;
-  const std::size_t step = std::max<std::size_t>(1, index.size() / kAsked);
+  std::vector<std::size_t> meant;
+  for (std::size_t i = 0; where && i < index.size(); ++i)
+    if (where(index.position(i))) meant.push_back(i);
+  const std::size_t count = meant.empty() ? index.size() : meant.size(), step = std::max<std::size_t>(1, count / kAsked);
   NeighbourList found;
   std::vector<float> distance2;
-  for (std::size_t i = 0; i < index.size(); i += step) {
+  for (std::size_t j = 0; j < count; j += step) {
+    const std::size_t i = meant.empty() ? j : meant[j];
     PhotonQuery query;
     query.point = index.position(i);
     query.normal = index.normal(i);

@@ -58,15 +58,19 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
   // A point stands for places up to PointLookup::kReach spacings away.
   NearPoints near(PointLookup::kReach * points.spacing());
   std::vector<std::uint32_t> objects;
+  Box3 box;
   for (std::uint32_t i = 0; i < high_.size(); ++i) {
     if (!(high_[i] > 0)) continue;
     near.add(points.points()[i].position);
+    box.add(points.points()[i].position);
     objects.push_back(points.points()[i].object);
   }
   std::sort(objects.begin(), objects.end());
   objects.erase(std::unique(objects.begin(), objects.end()), objects.end());
   const double spacing = double(points.spacing());
-  const std::vector<PlacedSite> placed = place_sites(tracer.frame(), objects, spacing * spacing / kSitesPerPoint, options.seed,
+  // May be asked for: up to a cube of `near` beyond them. The pieces of a sphere cover all within 3/4 of its radius.
+  const AimSphere around{Vec3d(box.lower + box.upper) * 0.5, (0.5 * double(length(box.upper - box.lower)) + 4 * double(PointLookup::kReach) * spacing) / 0.75, 1};
+  const std::vector<PlacedSite> placed = place_sites(tracer.frame(), objects, around, spacing * spacing / kSitesPerPoint, options.seed,
                                                      [&](Vec3 position) { return near.may_hold(position); });
   std::vector<std::optional<Site>> found(placed.size());
   parallel_chunks(placed.size(), 256, [&](std::size_t first, std::size_t last) {

@@ -44,16 +44,34 @@ Areas triangle_areas(const Surface& surface) {
   return areas;
 }
 
-/// The point at u.x of the way along the line of a surface's triangles' areas, of which `cumulative` is the running sum.
-/// Normal 0 if its triangle has no area.
-IrradiancePoint point_on(const Surface& surface, std::span<const double> cumulative, Vec2 u, bool back) {
+/// A surface's triangles, or those pieces of them that points are spread over.
+struct Ground {
+  std::vector<TrianglePiece> pieces;   ///< none: all triangles
+  Areas areas;                         ///< m^2 of each
+};
+
+Ground ground_of(const Surface& surface, std::span<const AimSphere> region) {
+  if (region.empty()) return {{}, triangle_areas(surface)};
+  std::vector<TrianglePiece> pieces = pieces_in(surface, region);
+  Areas areas(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) areas[i] = pieces[i].area;
+  return {std::move(pieces), std::move(areas)};
+}
+
+/// The point at u.x of the way along the line of a surface's triangles' (or pieces') areas, of which `cumulative` is the running
+/// sum. Normal 0 if its triangle has no area.
+IrradiancePoint point_on(const Surface& surface, std::span<const TrianglePiece> pieces, std::span<const double> cumulative, Vec2 u, bool back) {
   const double along = double(u.x) * cumulative.back();
   const auto at = std::size_t(std::upper_bound(cumulative.begin(), cumulative.end() - 1, along) - cumulative.begin());
   const double first = at ? cumulative[at - 1] : 0, width = cumulative[at] - first;
   const float within = width > 0 ? float(std::clamp((along - first) / width, 0.0, 0.999999)) : 0.5f;
-  const auto& t = surface.primitive->triangles[at];
+  const auto& t = surface.primitive->triangles[pieces.empty() ? at : pieces[at].triangle];
   const Vec3 a = surface.position(t[0]), b = surface.position(t[1]), c = surface.position(t[2]);
-  const Vec2 bary = sample_triangle({within, u.y});
+  Vec2 bary = sample_triangle({within, u.y});
+  if (!pieces.empty()) {
+    const auto& [p, q, r] = pieces[at].corners;
+    bary = {p.x + bary.x * (q.x - p.x) + bary.y * (r.x - p.x), p.y + bary.x * (q.y - p.y) + bary.y * (r.y - p.y)};
+  }
   IrradiancePoint point;
   point.position = a * (1 - bary.x - bary.y) + b * bary.x + c * bary.y;
   point.normal = normalize(cross(b - a, c - a)) * (back ? -1.0f : 1.0f);
@@ -61,10 +79,11 @@ IrradiancePoint point_on(const Surface& surface, std::span<const double> cumulat
   return point;
 }
 
-/// Adds one surface's points, both sides: a scrambled Sobol sequence each, by area. `areas` become their running sum.
+/// Adds one surface's points, both sides: a scrambled Sobol sequence each, by area. The ground's areas become their running sum.
 /// `rank` tells surfaces of one object apart.
-void place_on(const Surface& surface, std::uint32_t rank, std::span<double> areas, double area_per_point, std::uint64_t seed,
+void place_on(const Surface& surface, std::uint32_t rank, Ground& ground, double area_per_point, std::uint64_t seed,
               std::vector<IrradiancePoint>& points) {
+  const std::span<double> areas = ground.areas;
   std::partial_sum(areas.begin(), areas.end(), areas.begin());
   if (areas.empty() || !(areas.back() > 0)) return;
   const std::size_t count = std::uint32_t(std::max(1.0, std::ceil(areas.back() / area_per_point)));
@@ -75,11 +94,27 @@ void place_on(const Surface& surface, std::uint32_t rank, std::span<double> area
     const std::uint64_t key = PathRandom(seed, surface.object).bits(rank, Purpose::points, side);
     parallel_chunks(count, 256, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i)
-        made[side * count + i] = point_on(surface, areas, sobol_owen_2d(std::uint32_t(i), key), side == 1);
+        made[side * count + i] = point_on(surface, ground.pieces, areas, sobol_owen_2d(std::uint32_t(i), key), side == 1);
     });
   }
   points.erase(std::remove_if(points.begin() + before, points.end(), [](const auto& p) { return !(length2(p.normal) > 0); }),
                points.end());
+}
+
+/// Of the spheres that hold what cameras see, those that points are spread in; none: everywhere. By the area of what stands or, where
+/// nothing of it lies in them, of what moves.
+std::vector<AimSphere> region_of_points(const SceneFrame& frame, std::span<const AimSphere> seen) {
+  if (seen.empty()) return {};
+  std::vector<double> standing(seen.size()), moving(seen.size());
+  for (std::size_t i = 0; i < frame.surfaces.size(); ++i) {
+    if (!stores_light(frame, frame.surfaces[i])) continue;
+    std::vector<double>& areas = i < frame.static_count ? standing : moving;
+    for (const TrianglePiece& piece : pieces_in(frame.surfaces[i], seen))
+      for (std::size_t k = 0; k < seen.size(); ++k)
+        if (piece.spheres >> k & 1) areas[k] += piece.area;
+  }
+  const bool stands = std::ranges::any_of(standing, [](double area) { return area > 0; });
+  return spheres_with_points(seen, stands ? standing : moving);
 }
 
 /// Are there Lambert lobes under a coat that reflects? Then light counts by the angle it arrives at.
@@ -187,34 +222,35 @@ PathRandom point_random(const PointOptions& options, std::uint32_t point) {
 }
 
 PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options) {
-  std::vector<std::optional<Areas>> areas(frame.surfaces.size());  // of those that store light
+  const std::vector<AimSphere> region = region_of_points(frame, options.seen);
+  std::vector<std::optional<Ground>> grounds(frame.surfaces.size());  // of those that store light
   double standing = 0, moving = 0;
-  for (std::size_t i = 0; i < areas.size(); ++i) {
+  for (std::size_t i = 0; i < grounds.size(); ++i) {
     if (!stores_light(frame, frame.surfaces[i])) continue;
     double& sum = i < frame.static_count ? standing : moving;
-    for (const double area : std::span<double>(areas[i].emplace(triangle_areas(frame.surfaces[i])))) sum += area;
+    for (const double area : std::span<double>(grounds[i].emplace(ground_of(frame.surfaces[i], region)).areas)) sum += area;
   }
   const double whole = standing > 0 ? standing : moving;
   PlacedPoints placed;
   if (whole > 0) placed.spacing = float(std::sqrt(whole / std::max(1u, options.count)));
   const double area_per_point = double(placed.spacing) * double(placed.spacing);
   std::map<std::uint32_t, std::uint32_t> rank;
-  for (std::size_t i = 0; i < areas.size(); ++i) {
+  for (std::size_t i = 0; i < grounds.size(); ++i) {
     const std::uint32_t r = rank[frame.surfaces[i].object]++;
-    if (areas[i]) place_on(frame.surfaces[i], r, *areas[i], area_per_point, options.seed, placed.points);
+    if (grounds[i]) place_on(frame.surfaces[i], r, *grounds[i], area_per_point, options.seed, placed.points);
   }
   return placed;
 }
 
-std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects, double area, std::uint64_t seed,
-                                    const std::function<bool(Vec3)>& wanted) {
+std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects, const AimSphere& around, double area,
+                                    std::uint64_t seed, const std::function<bool(Vec3)>& wanted) {
   std::vector<PlacedSite> sites;
   for (std::size_t s = 0; s < frame.surfaces.size(); ++s) {
     const Surface& surface = frame.surfaces[s];
     if (!stores_light(frame, surface) || !std::binary_search(objects.begin(), objects.end(), surface.object)) continue;
-    Areas areas = triangle_areas(surface);
-    std::partial_sum(areas.begin(), areas.end(), areas.begin());
-    const std::span<const double> cumulative(areas.begin(), areas.end());
+    Ground ground = ground_of(surface, {&around, 1});
+    std::partial_sum(ground.areas.begin(), ground.areas.end(), ground.areas.begin());
+    const std::span<const double> cumulative(ground.areas.begin(), ground.areas.end());
     if (cumulative.empty() || !(cumulative.back() > 0)) continue;
     const auto count = std::uint32_t(std::clamp(std::ceil(cumulative.back() / area), 1.0, double(kMostSites)));
     constexpr std::size_t kChunk = 4096;
@@ -223,7 +259,7 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
       std::vector<std::vector<PlacedSite>> found((count + kChunk - 1) / kChunk);
       parallel_chunks(count, kChunk, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
-          const IrradiancePoint place = point_on(surface, cumulative, sobol_owen_2d(std::uint32_t(i), key), back);
+          const IrradiancePoint place = point_on(surface, ground.pieces, cumulative, sobol_owen_2d(std::uint32_t(i), key), back);
           if (length2(place.normal) > 0 && wanted(place.position)) found[first / kChunk].push_back({place, float(cumulative.back() / count)});
         }
       });
@@ -242,7 +278,13 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
 
 void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons, Vec3d photon_shift,
                      const PointOptions& options, std::span<const std::uint32_t> which, std::vector<IrradiancePoint>& points) {
-  const DensityOptions density{options.neighbours, options.max_radius, options.area_probes};
+  // Where photons were not aimed they are far apart: that says nothing of the places that points lie at.
+  std::function<bool(Vec3)> where;
+  if (const std::vector<AimSphere> region = region_of_points(tracer.frame(), options.seen); !region.empty())
+    where = [region](Vec3 place) {
+      return std::ranges::any_of(region, [&](const AimSphere& sphere) { return length(Vec3d(place) - sphere.centre) <= sphere.radius; });
+    };
+  const DensityOptions density{options.neighbours, options.max_radius, options.area_probes, where};
   const FootprintDensity caustic(tracer, photons, {density.neighbours, density.max_radius, 0}, kind_bit(formats::PathKind::caustic), photon_shift);
   const PointDensity indirect(tracer, photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
   const float offset = Reach(tracer).offset();

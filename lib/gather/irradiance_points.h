@@ -9,6 +9,7 @@
 #include "formats/photons/photons.h"
 #include "lib/gather/footprint_density.h"
 #include "lib/gather/point_density.h"
+#include "lib/gather/point_region.h"
 #include "lib/irradcache/points.h"
 #include "lib/light/lights.h"
 #include "lib/trace/mover_watch.h"
@@ -20,6 +21,7 @@ struct PointOptions {
   std::uint64_t seed = 0;
   std::uint32_t count = 20000;  ///< per side of all static surfaces together (if there are none, of all); what moves gets as
                                 ///< many per area, and every surface at least one
+  std::vector<AimSphere> seen;  ///< scene space; what cameras see: points lie there alone. None: on all surfaces
   int neighbours = 50;          ///< k of the density estimates
   float max_radius = 0;         ///< m; 0: from the photons' spacing
   int light_samples = 4;        ///< shadow rays per point for direct light
@@ -32,8 +34,9 @@ struct PlacedPoints {
   float spacing = 1;
 };
 
-/// Points uniform by area on both sides of every surface that has a Lambert lobe, without irradiance yet. The
-/// points of a surface depend on that surface, the seed and the spacing alone, and the spacing on the static area. Those of
+/// Points uniform by area on both sides of every surface that has a Lambert lobe, without irradiance yet; with options.seen on what
+/// lies in those spheres (spheres_with_points) alone. The points of a surface depend on that surface, the seed, the spheres and the
+/// spacing alone, and the spacing on the static area. Those of
 /// static surfaces come first: they have the same places and numbers at every frame of a segment; those of
 /// moving ones ride on their triangles.
 PlacedPoints place_points(const SceneFrame& frame, const PointOptions& options);
@@ -44,10 +47,11 @@ struct PlacedSite {
   float area = 0;
 };
 
-/// Places uniform by area on both sides of the surfaces of these objects (id.object, ascending) that have a Lambert lobe, each for
-/// `area` [m^2] or a little less: areas of a side add up to the surface's. Only those that `wanted` takes; it is asked from many threads.
-std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects, double area, std::uint64_t seed,
-                                    const std::function<bool(Vec3)>& wanted);
+/// Places uniform by area on both sides of the surfaces of these objects (id.object, ascending) that have a Lambert lobe, as far as
+/// they lie in the sphere `around` and a little beyond (pieces_in), each for `area` [m^2] or a little less: areas of a side add up to
+/// the surface's. Only those that `wanted` takes, nothing outside of the sphere; it is asked from many threads.
+std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std::uint32_t> objects, const AimSphere& around, double area,
+                                    std::uint64_t seed, const std::function<bool(Vec3)>& wanted);
 
 /// Fills in the irradiance of all points:
 /// - direct by light sampling, stratified shadow rays, as photons are stored: by the shading normal, under a coat times

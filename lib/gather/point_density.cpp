@@ -18,7 +18,7 @@ PointDensity::PointDensity(const Tracer& tracer, std::span<const formats::Photon
 
 /// The options, their radius set.
 const DensityOptions& PointDensity::limited() {
-  if (!(options_.max_radius > 0)) options_.max_radius = kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening);
+  if (!(options_.max_radius > 0)) options_.max_radius = kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening, options_.where);
   return options_;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "lib/core/random.h"
@@ -17,6 +18,7 @@ struct DensityOptions {
   int neighbours = 50;   ///< k
   float max_radius = 0;  ///< m; 0: kSparser times the photons' own (photon_reach)
   int area_probes = 32;  ///< that must arrive where the disc is not whole
+  std::function<bool(Vec3)> where = {};   ///< places whose photons say what their own radius is; none: all
 };
 
 /// Density estimates over one set of photons. Thread-safe.

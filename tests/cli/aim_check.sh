@@ -50,6 +50,21 @@ assert [x.records for x in a.blocks] == [x.records for x in b.blocks]
 EOF
 PYTHONPATH=$HERE/../formats python3 -B same.py || bad 'a view without spheres changes photons'
 
+# Points lie where the camera looks, closer together; the same bytes for any number of threads; a view without spheres changes nothing.
+points() { irradcache-build points "$@" -q || bad "irradcache-build points $*"; }
+points wide.glb --frame 0 --photons 1.photons --point-count 2k -o everywhere.irradpoints
+for threads in 1 2 7; do
+  points wide.glb --frame 0 --photons 1.photons --point-count 2k --importance wide/state/view.0000 --threads $threads -o $threads.irradpoints
+done
+cmp 1.irradpoints 2.irradpoints && cmp 1.irradpoints 7.irradpoints || bad 'points: other bytes with other threads'
+spacing() { tempolux-info "$1" --json | sed -n 's/.*"spacing_m": *\([0-9.e+-]*\).*/\1/p'; }
+awk -v a="$(spacing everywhere.irradpoints)" -v b="$(spacing 1.irradpoints)" 'BEGIN { exit !(b > 0 && 30 * b < a) }' ||
+  bad 'points are not closer where the camera looks'
+points small.glb --frame 0 --photons none.photons --point-count 2k -o none.irradpoints
+points small.glb --frame 0 --photons none.photons --point-count 2k --importance small/state/view.0000 -o empty.irradpoints
+tempolux-info --diff none.irradpoints empty.irradpoints >out.txt || bad "a view without spheres changes points: $(cat out.txt)"
+expect 2 'does not read it' irradcache-build records wide.glb --frame 0 --points 1.irradpoints --importance wide/state/view.0000 -o refused
+
 # What is refused, and what is said.
 aim() { photon-trace wide.glb --frame 0 --photons 1k -o made.photons --importance "$@"; }
 expect 2 'absent: cannot read' aim absent

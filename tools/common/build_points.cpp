@@ -27,7 +27,7 @@ void build_standing_points(Tool& tool, SceneInput& input, const CacheOptions& op
   const formats::PhotonMap map = read_photons(tool, frame_name(options.photons, number), frame,
                                                      LightNeeded::all, "static");
   tool.stats().phase("points", true);
-  const GatherPoints points = make_points(tool, map, tracer, lights, options.point);
+  const GatherPoints points = make_points(tool, map, tracer, lights, options.points_of(frame));
   tool.stats().phase("write");
   write_points(tool, points, frame, output, std::array{frame.segment.first, frame.segment.last});
 }
@@ -55,7 +55,7 @@ void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& opt
                      std::to_string(fixed.header.emitted_count) + "; trace it with the .paths file of that map");
   tool.stats().phase("points", true);
   PointUpdateCounts counts;
-  update_points(tool, fixed, moved, whole, without, lights, options.point, points, counts);
+  update_points(tool, fixed, moved, whole, without, lights, options.points_of(frame), points, counts);
   tool.stats().phase("write");
   points.history = points.history + moved.header.history;
   write_points(tool, points, frame, output);
@@ -74,7 +74,7 @@ void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, in
   Lights lights(frame, input.emission(frame.frame));
   lights.weigh_sky_by_cosine();
   const GatherPoints points =
-      points_of_photons(tool, frame_name(options.photons, number), tracer, lights, options.point);
+      points_of_photons(tool, frame_name(options.photons, number), tracer, lights, options.points_of(frame));
   tool.stats().phase("write");
   write_points(tool, points, frame, output);
 }

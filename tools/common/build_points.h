@@ -14,9 +14,10 @@ namespace tempolux::tools {
 /// What irradcache-build was asked for.
 struct CacheOptions {
   std::vector<std::string> inputs;  // [points|records] SCENE
-  std::string photons, points, high, records, mask, output, keep_points, radii = "ward", map = "global", update;
+  std::string photons, points, importance, high, records, mask, output, keep_points, radii = "ward", map = "global", update;
   std::vector<std::string> dynamic;   // the frame's own first
   std::uint64_t point_count = PointOptions{}.count;
+  std::vector<formats::ViewSphere> view;   // of importance
   int width = 640, height = 360;
   PointOptions point;
   GatherOptions gather;
@@ -26,6 +27,12 @@ struct CacheOptions {
 
   std::string mode() const { return inputs.size() == 2 ? inputs[0] : "both"; }
   const std::string& scene() const { return inputs.back(); }
+  /// Options of the points of a frame.
+  PointOptions points_of(const SceneFrame& frame) const {
+    PointOptions options = point;
+    options.seen = spheres_in_scene(view, frame.origin);
+    return options;
+  }
 };
 
 /// Points from a file of photons, in two phases: only the second works with all threads.

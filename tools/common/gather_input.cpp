@@ -155,7 +155,7 @@ void update_points(Tool& tool, const formats::PhotonMap& fixed, const formats::P
   if (standing_count != points.points.size() || placed.spacing != points.spacing)
     throw InputError("--update: its points are not those of --point-count " + std::to_string(options.count) + " (" +
                      std::to_string(points.points.size()) + ", not " + std::to_string(standing_count) +
-                     "); give the options they were made with");
+                     "); give the options they were made with, --importance included");
   // As placed: a file rounds normals, and light sampled by a rounded one is another.
   for (std::size_t i = 0; i < standing_count; ++i) {
     points.points[i].position = placed.points[i].position;
