@@ -21,7 +21,7 @@ struct PointOptions {
   std::uint64_t seed = 0;
   std::uint32_t count = 20000;  ///< per side of all static surfaces together (if there are none, of all); what moves gets as
                                 ///< many per area, and every surface at least one
-  std::vector<AimSphere> seen;  ///< scene space; what cameras see: points lie there alone. None: on all surfaces
+  std::vector<AimSphere> seen = {};  ///< scene space; what cameras see: points lie there alone. None: on all surfaces
   int neighbours = 50;          ///< k of the density estimates
   float max_radius = 0;         ///< m; 0: from the photons' spacing
   int light_samples = 4;        ///< shadow rays per point for direct light
