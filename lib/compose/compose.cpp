@@ -16,12 +16,22 @@ namespace {
 
 constexpr std::size_t kChunk = 256;          ///< pixels
 constexpr float kMostSlices = 4096;          ///< along a ray
+constexpr float kMostAbove = 8;              ///< times the linear one at most counts the extinction: where a corner of it leaves that nearly 0
 constexpr float kNothingLeft = 1e-30f;       ///< light from behind adds nothing to a float; slices there would be divided by 0
 
+/// A piece of a ray in which the extinction is taken as linear.
 struct Slice {
   float begin, length;                       ///< m
   float tau;
   float left;                                ///< of light from its begin to the eye
+  float slope;                               ///< extinction at its end less that at its begin, 1/m
+  float extinction(float t) const { return tau / length + slope * (t - 0.5f); }
+  /// Where in it, 0 to 1, the depth from its begin on is `depth`: depth = length (extinction(0) t + slope t^2 / 2).
+  float place_of(float depth) const {
+    const float first = std::max(0.0f, extinction(0)), wanted = depth / length;
+    const float root = first + std::sqrt(std::max(0.0f, first * first + 2 * slope * wanted));
+    return root > 0 ? std::min(1.0f, 2 * wanted / root) : 1;
+  }
 };
 
 double finest_voxel(const Media& media) {
@@ -51,7 +61,7 @@ void cut(const Media& media, const Ray& ray, float end, float step, std::vector<
       const float depth = 0.5f * each * (a + b);
       const auto left = float(std::exp(-tau));
       if (left < kNothingLeft) return;
-      if (depth > 0) slices.push_back({begin, each, depth, left});
+      if (depth > 0) slices.push_back({begin, each, depth, left, (b - a) / (1 - 2 * kGauss)});
       tau += double(depth);
     }
   };
@@ -74,15 +84,16 @@ struct SentOn {
 };
 
 /// A ray from a place in the medium, if rays bring some of its light.
-void send_on(const MediaLight& light, const MediumPoint& point, std::uint32_t bounce, const PixelRandom& random, std::vector<SentOn>& rays) {
+void send_on(const MediaLight& light, const MediumPoint& point, std::uint32_t bounce, float weight, const PixelRandom& random, std::vector<SentOn>& rays) {
   const PhaseShare& share = light.share(point.g);
   if (!share.has_rays()) return;
   const Vec3 travel = sample_hg(point.g, point.travel, random.get2(bounce, Purpose::phase));
   const float q = 4 * kPi * pdf_hg(point.g, point.travel, travel);
-  rays.push_back({{point.position, travel, 0, INFINITY}, random.hashed().bits(bounce, Purpose::gather), point.albedo * share.of_rays(q)});
+  rays.push_back({{point.position, travel, 0, INFINITY}, random.hashed().bits(bounce, Purpose::gather), point.albedo * (weight * share.of_rays(q))});
 }
 
-/// Light scattered towards the eye from places along the slices, which are drawn by what is scattered from them: direct light of the lamps.
+/// Light scattered towards the eye from places along the slices, which are drawn by what is scattered from them, and weighed by how far the extinction
+/// there is from linear: direct light of the lamps.
 /// `whole`: share of what the eye would see from behind that is scattered or absorbed on the way. `sent_on` receives rays whose radiance is to be
 /// added.
 Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight& light, const Ray& ray, const std::vector<Slice>& slices,
@@ -100,14 +111,15 @@ Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight
     }
     const Slice& slice = slices[at];
     const float share = std::clamp((wanted - passed) / slice.left, 0.0f, -std::expm1(-slice.tau));
-    const float within = std::min(1.0f, -std::log1p(-share) / slice.tau);
+    const float within = slice.place_of(-std::log1p(-share));
     const Vec3 position = ray.origin + ray.direction * (slice.begin + within * slice.length);
+    const float linear = slice.extinction(within), weight = linear > 0 ? std::min(kMostAbove, media.extinction(position) / linear) : 0;
     const auto bounce = std::uint32_t(k);
     const MediumOptions& medium = media.collided(position, random.hashed().get1(bounce, Purpose::medium)).options();
     const MediumPoint point{position, ray.direction, medium.albedo, medium.g};
-    sum += medium.albedo * tempolux::sampled_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
+    sum += medium.albedo * weight * tempolux::sampled_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
                                          {random.hashed(), bounce, way_shadow_of_medium}, counts.shadow);
-    send_on(light, point, bounce, random, sent_on);
+    send_on(light, point, bounce, weight, random, sent_on);
   }
   for (std::size_t i = before; i < sent_on.size(); ++i) sent_on[i].weight *= whole / float(samples);
   return sum * (whole / float(samples));
