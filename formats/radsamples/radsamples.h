@@ -1,4 +1,4 @@
-// formats/radsamples/radsamples.h -- read and write .radsamples files, version 1.1.
+// formats/radsamples/radsamples.h -- read and write .radsamples files, version 1.2.
 //
 // radsamples.md is the definition of the format. If this code and that text disagree, the text is right.
 #pragma once
@@ -58,6 +58,8 @@ struct RadsamplesHeader {
   std::array<std::int32_t, 2> segment{0, 0};   ///< first and last frame
   bool anchors = false;             ///< samples have the column `anchor`, and the file the light of points
   std::string points_hash;          ///< of the anchored points' places; "" without anchors
+  /// Hash of what of the points' light is high (photonmap-split): samples hold what rays bring without it. "": all of the light.
+  std::string high_hash;
   /// Of an overlay: the file that records take samples from, and its digest.
   std::string base_name, base_digest;
 };
@@ -73,16 +75,47 @@ struct RadsamplesFile {
   std::vector<std::uint32_t> kept_from;
 };
 
-/// Writes a file front to back; never seeks. Samples that are the base's are left out. A value out of the format's range is std::invalid_argument: nothing that a reader would
-/// refuse is written.
+/// Writes a file front to back; never seeks. Samples that are the base's are left out. A value out of the format's range is std::invalid_argument: a file in which
+/// something is wrong is not finished.
+class RadsamplesWriter {
+ public:
+  /// `head`: a file without its samples and anchors; it must outlive the writer.
+  RadsamplesWriter(std::function<void(const void*, std::size_t)> sink, const RadsamplesFile& head);
+  ~RadsamplesWriter();
+  /// The samples of the next record, and their anchors if there is that column. For each record, those that are the base's, too.
+  void write(std::span<const RadianceSample> samples, std::span<const std::uint32_t> anchors);
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+/// The same of a file that is in memory.
 void write_radsamples(const std::function<void(const void*, std::size_t)>& sink, const RadsamplesFile& file);
 
-/// Reads and checks a file; "-" is standard input. Every truncation, flipped bit and value out of range is an InputError
-/// "FILE: byte OFFSET: REASON; REMEDY"; so is a base that is missing, has another digest or is an overlay itself. Memory: 12 bytes per sample, 200 per
-/// record, and one block; of an overlay twice that.
+/// Receives a record's samples and anchors (none without the column). `head`: the file as far as it is read, without samples.
+using TakeSamples = std::function<void(const RadsamplesFile& head, std::size_t record, std::span<const RadianceSample>, std::span<const std::uint32_t>)>;
+/// Reads and checks a file; "-" is standard input. Hands over the samples of each record once instead of keeping them: in order, but of an overlay
+/// its own first. Every truncation, flipped bit and value out of range is an InputError "FILE: byte OFFSET: REASON; REMEDY"; so is a base
+/// that is missing, has another digest or is an overlay itself: what was handed over until then is worth nothing. Memory: 200 bytes per record, and one block.
+RadsamplesFile read_radsamples(const std::string& path, const TakeSamples& take);
+/// The same with all samples: 12 bytes each; of an overlay twice that.
 RadsamplesFile load_radsamples(const std::string& path);
 
-/// Hash of the data without header and history (radsamples.md, section 9): an overlay has that of the same written whole.
+/// Hash of the data without header and history (radsamples.md, section 9): an overlay has that of the same written whole. Takes the samples
+/// in the order of the records, in pieces of any size.
+class RadsamplesDigest {
+ public:
+  RadsamplesDigest();
+  ~RadsamplesDigest();
+  void add(std::span<const RadianceSample> samples, std::span<const std::uint32_t> anchors);
+  /// `head`: the file, with or without its samples.
+  std::string of(const RadsamplesFile& head) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 std::string digest_of(const RadsamplesFile& file);
 
 }  // namespace tempolux::formats

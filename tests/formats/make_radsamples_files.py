@@ -100,6 +100,7 @@ def with_text(text, major=1, minor=0, magic=b"\x89TRADS\r\n"):
 text = pieces(BYTES)[0][16:-4]
 save("accept/worked-example", GOOD)
 save("accept/later-minor-version-with-new-key", with_text(text + b"colour-of-ink: blue\n", minor=3))
+save("accept/low-part", changed(high="e5"))
 plain = copy.deepcopy(GOOD)
 plain.header["columns"], plain.point_light = "none", []
 del plain.header["points"]
@@ -148,6 +149,12 @@ overlay_text = as_bytes[16:16 + struct.unpack_from("<I", as_bytes, 12)[0]]
 save("refuse/overlay-without-digest", with_text(overlay_text.replace(b"base-digest: " + BASE["base-digest"].encode() + b"\n", b""), minor=1))
 save("refuse/overlay-without-base", with_text(overlay_text.replace(b"base: worked-example.radsamples\n", b""), minor=1))
 save("refuse/overlay-in-version-1.0", with_text(overlay_text))
+save("refuse/overlay-of-another-part", overlay(KEPT, high="e5"))
+low_as_bytes = encode_radsamples(changed(high="e5"))
+low_text = low_as_bytes[16:16 + struct.unpack_from("<I", low_as_bytes, 12)[0]]
+save("refuse/header-high-in-version-1.1", with_text(low_text, minor=1))
+save("refuse/header-high-empty", changed(high=""))
+save("refuse/header-high-with-space", changed(high="e 5"))
 
 for name, bad in {"magic": with_text(text, magic=b"\x89TRADX\r\n"), "major-version-2": with_text(text, major=2),
                   "header-key-unknown": with_text(text + b"colour-of-ink: blue\n"),

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tests/formats/files.h"
 
@@ -150,6 +151,46 @@ TEST(Radsamples, TheWriterWritesNothingThatAReaderWouldRefuse) {
   refused([](auto& f) { f.samples[0].flags = sample_valid; });
   refused([](auto& f) { f.anchors[0] = 2; });
   refused([](auto& f) { f.point_light[1][1] = -1; });
+  refused([](auto& f) { f.header.high_hash = "a b"; });
+}
+
+// Samples come record by record; a file that is not finished is none.
+TEST(Radsamples, AWriterTakesAllRecordsAndNoMore) {
+  RadsamplesFile head = many(2);
+  const std::vector<RadianceSample> samples = std::exchange(head.samples, {});
+  const std::vector<std::uint32_t> anchors = std::exchange(head.anchors, {});
+  std::string bytes;
+  RadsamplesWriter writer([&](const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }, head);
+  const std::span s(samples), twelve = s.first(12);
+  const std::span<const std::uint32_t> a(anchors);
+  EXPECT_THROW(writer.write(s.first(11), a.first(11)), std::invalid_argument);
+  EXPECT_THROW(writer.write(twelve, {}), std::invalid_argument);
+  writer.write(twelve, a.first(12));
+  EXPECT_THROW(writer.finish(), std::invalid_argument);
+  writer.write(s.subspan(12), a.subspan(12));
+  EXPECT_THROW(writer.write(twelve, a.first(12)), std::invalid_argument);
+  writer.finish();
+  EXPECT_EQ(bytes, bytes_of(many(2)));
+}
+
+// The key `high` makes version 1.2; an overlay and its base both have it, or neither.
+TEST(Radsamples, SamplesOfTheLowPartSaySo) {
+  Folder folder;
+  RadsamplesFile file = many(12);
+  file.header.high_hash = "77";
+  const std::string bytes = bytes_of(file);
+  EXPECT_EQ(bytes[10], 2);
+  EXPECT_EQ(digest_of(file), digest_of(many(12)));
+  save(folder / "base.radsamples", bytes);
+  EXPECT_EQ(load_radsamples(folder / "base.radsamples").header.high_hash, "77");
+  RadsamplesFile overlay = many(12);
+  overlay.header.base_name = "base.radsamples", overlay.header.base_digest = digest_of(file);
+  overlay.kept_from = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  save(folder / "a", bytes_of(overlay));
+  EXPECT_THROW(load_radsamples(folder / "a"), InputError);
+  overlay.header.high_hash = "78";   // of another frame
+  save(folder / "a", bytes_of(overlay));
+  EXPECT_EQ(load_radsamples(folder / "a").samples, file.samples);
 }
 
 /// An overlay of many(12) whose odd records are the base's, in another order, with fields of their own; even ones have other samples.
@@ -281,6 +322,9 @@ TEST(Radsamples, FilesForTheSecondReader) {
   give("empty.radsamples", many(0));
   save(std::string(folder) + "/base.radsamples", bytes_of(many(12)));
   give("overlay.radsamples", overlay_of_many("base.radsamples"));
+  RadsamplesFile low = many(30);
+  low.header.high_hash = "77";
+  give("low.radsamples", low);
 }
 
 }  // namespace

@@ -37,6 +37,9 @@ BASE_RULES = {      # since 1.1
     "base": lambda v: v not in (".", "..") and re.fullmatch("[^\x00-\x1f\x7f/]+", v),
     "base-digest": lambda v: re.fullmatch("[0-9a-f]{32}", v),
 }
+HIGH_RULES = {      # since 1.2
+    "high": lambda v: re.fullmatch("[!-~]{1,128}", v),
+}
 
 
 @dataclasses.dataclass
@@ -113,7 +116,8 @@ def read_radsamples(path, is_base=False):
     chain = take(4)
     if struct.unpack("<I", chain)[0] != zlib.crc32(fixed + text):
         refuse(at - 4, "wrong checksum of the header")
-    header, history = parse_text(text, minor > 1, ["columns", "diagonal", "segment"], RULES | (BASE_RULES if minor >= 1 else {}))
+    header, history = parse_text(text, minor > 2, ["columns", "diagonal", "segment"],
+                                 RULES | (BASE_RULES if minor >= 1 else {}) | (HIGH_RULES if minor >= 2 else {}))
     anchors = header["columns"] == "anchor"
     if anchors != ("points" in header):
         refuse(16, "points go with the column anchor")
@@ -187,8 +191,9 @@ def read_radsamples(path, is_base=False):
 def take_from_base(f, base):
     """Section 6. The base's digest is not looked at: Python's own library has no XXH3."""
     same = ("columns", "points", "diagonal", "segment")
-    if [f.header.get(k) for k in same] != [base.header.get(k) for k in same] or len(f.point_light) != len(base.point_light):
-        refuse(16, "the base is of other columns, points, diagonal or segment")
+    if [f.header.get(k) for k in same] != [base.header.get(k) for k in same] or len(f.point_light) != len(base.point_light) or \
+            ("high" in f.header) != ("high" in base.header):
+        refuse(16, "the base is of other columns, points, diagonal or segment, or another part of the light")
     for r in f.records:
         if r.kept_from:
             there = base.records[r.kept_from - 1] if r.kept_from <= len(base.records) else None
@@ -203,9 +208,9 @@ def totals(f):
 
 
 def encode_radsamples(f):
-    keys = ["columns", "origin", "diagonal", "segment", "points", "base", "base-digest"] + IDENTITY
+    keys = ["columns", "origin", "diagonal", "segment", "points", "high", "base", "base-digest"] + IDENTITY
     text = "".join([f"{k}: {f.header[k]}\n" for k in keys if k in f.header] + [f"history: {line}\n" for line in f.history]).encode()
-    head = struct.pack("<8sHHI", MAGIC, 1, int("base" in f.header), len(text)) + text
+    head = struct.pack("<8sHHI", MAGIC, 1, 2 if "high" in f.header else int("base" in f.header), len(text)) + text
     chain = struct.pack("<I", zlib.crc32(head))
     out = [head, chain]
 

@@ -11,7 +11,7 @@ trap 'rm -rf "$folder"' EXIT
 bad=0
 fail() { echo "read_radsamples_test: $*"; bad=1; }
 TEMPOLUX_SECOND_READER=$folder "$program" --gtest_filter='*.FilesForTheSecondReader' >"$folder/log" 2>&1 || { cat "$folder/log"; fail "the C++ failed"; }
-for name in example many empty overlay; do
+for name in example many empty overlay low; do
   file=$folder/$name.radsamples
   python3 "$here/read_radsamples.py" "$file" "$folder/copy" >"$folder/json" || fail "$name not read"
   python3 -c 'import json, sys

@@ -19,6 +19,7 @@ Facts header_facts(const RadsamplesFile& file) {
                  {"diagonal_m", file.header.diagonal},
                  {"segment", file.header.segment}};
   if (file.header.anchors) facts["points_hash"] = file.header.points_hash;
+  if (!file.header.high_hash.empty()) facts["part"] = "low", facts["high_hash"] = file.header.high_hash;
   facts["points"] = file.point_light.size();
   facts["records"] = file.records.size();
   facts["samples"] = file.samples.size();
