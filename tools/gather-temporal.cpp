@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "formats/error.h"
+#include "lib/gather/bright_points.h"
 #include "lib/gather/cache_files.h"
 #include "lib/render/known_light.h"
 #include "tools/common/kept_files.h"
@@ -24,7 +25,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> inputs;   // final SCENE
-  std::string points, previous, output, cache, age_weight = "2";
+  std::string points, high, previous, output, cache, dynamic, age_weight = "2";
   int width = 640, height = 360;
   bool resume = false, free_radii = false;
   GatherOptions gather;
@@ -70,6 +71,7 @@ void count(tools::Tool& tool, const TemporalCounts& counts, int frame, bool firs
   set("records_born", counts.born);
   set("records_removed", counts.removed + counts.deforming);
   set("records_unchanged", counts.kept);
+  set("records_explicit_only", counts.explicit_only);
   set("cells", counts.cells);
   set("cells_moved", counts.moved);
   set("cells_lost", counts.lost);
@@ -78,6 +80,7 @@ void count(tools::Tool& tool, const TemporalCounts& counts, int frame, bool firs
   set("cells_scaled", counts.scaled);
   set("birth_rays", counts.birth.rays);
   set("update_rays", counts.update.rays);
+  set("shadow_rays", counts.birth.shadow_rays + counts.update.shadow_rays);
   set("near_hits", counts.birth.near_hits + counts.update.near_hits);
   set("unanswered", counts.birth.unanswered + counts.update.unanswered);
   double cells = 0, ages = 0;
@@ -96,10 +99,11 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   tool.stats().phase("evaluate");
   SceneFrame frame = input.at(number);
   tool.stats().phase("read points");
-  const tools::FramePoints points = tools::read_frame_points(tool, tools::frame_name(options.points, number), frame);
+  tools::FramePoints points = tools::read_frame_points(tool, tools::frame_name(options.points, number),
+                                                       options.high.empty() ? "" : tools::frame_name(options.high, number), frame);
   const std::string history = points.read.history + tool.history_line(number);
   if (resume && std::filesystem::is_regular_file(cache))
-    if (std::optional<KeptHemispheres> found = chain.files.find(samples, frame, points, history)) {
+    if (std::optional<KeptHemispheres> found = chain.files.find(samples, frame, points, history, tools::nothing_kept(tool, samples))) {
       chain.kept = std::move(*found);
       chain.before.emplace(std::move(frame));
       tool.say("frame " + std::to_string(number) + ": found");
@@ -108,16 +112,24 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   tools::Output kept_output(samples, tool.common().no_clobber), cache_output(cache, tool.common().no_clobber);
   if (single && !chain.before) {
     tool.stats().phase("read samples");
-    chain.kept = tools::read_kept(tool, input, options.previous, frame, points, chain.before).kept;
+    chain.kept = tools::nothing_kept(tool, samples);
+    tools::read_kept(tool, input, options.previous, frame, points, chain.kept, chain.before);
   }
-  if (chain.before && chain.before->segment.first != frame.segment.first) chain.kept = {}, chain.before.reset();
+  if (chain.before && chain.before->segment.first != frame.segment.first) chain.before.reset();
+  if (!chain.before) chain.kept = tools::nothing_kept(tool, samples);
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
   const PointLookup lookup(points.read.points, points.read.spacing, point_clearance(tracer));
-  const TemporalScene scene{tracer, lights, lookup, points.read.points, points.anchored, chain.before ? &*chain.before : nullptr};
+  const TemporalScene scene{tracer, lights, lookup, points.read.points, points.anchored, chain.before ? &*chain.before : nullptr,
+                            points.high_shares, points.high_hash};
   GatherOptions rays = options.gather;
   rays.seed = tool.common().seed_for_frame(number);
+  std::optional<BrightPoints> bright;
+  if (std::any_of(points.high_shares.begin(), points.high_shares.end(), [](float share) { return share > 0; })) {
+    bright.emplace(tracer, lights, lookup, points.high_shares, BrightOptions{.seed = rays.seed});
+    rays.bright = &*bright;
+  }
   const TemporalGather gather(scene, rays, options.placement, options.temporal, tools::sample_unit(frame));
   const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width, options.height);
   const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
@@ -136,13 +148,16 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   chain.before.emplace(std::move(frame));
 }
 
-void check(const Options& options, const std::vector<int>& frames) {
+void check(const CLI::App& app, const Options& options, const std::vector<int>& frames) {
   if (options.inputs.size() != 2 || options.inputs[0] != "final")
     throw InputError("'" + options.inputs[0] + "' is not a way to gather over time: final, then the scene");
+  if (!options.dynamic.empty())
+    throw InputError("--dynamic: what movers change of the light is in the frame's points; make them with irradcache-build points --update .. --dynamic " + options.dynamic);
+  if (app.get_option("--high-samples")->count() > 0 && options.high.empty()) throw InputError("--high-samples: a run without --high does not read it; leave it out");
   if (frames.size() > 1) {
     if (!options.previous.empty()) throw InputError("--previous: of one frame; with --frames each follows the one before");
-    for (const std::string* name : {&options.output, &options.cache, &options.points})
-      if (!tools::has_frame_pattern(*name)) throw InputError("'" + *name + "': several frames need a pattern, for example f.####.irradcache");
+    for (const std::string* name : {&options.output, &options.cache, &options.points, &options.high})
+      if (!name->empty() && !tools::has_frame_pattern(*name)) throw InputError("'" + *name + "': several frames need a pattern, for example f.####.irradcache");
     if (!std::is_sorted(frames.begin(), frames.end())) throw InputError("--frames: each frame follows the one before; name them upwards");
   }
   if (options.resume && options.previous.empty() == false) throw InputError("--resume: of a range; with --previous a frame is made anew");
@@ -152,6 +167,13 @@ void add_options(tools::Tool& tool, Options& options) {
   CLI::App& app = tool.app();
   app.add_option("scene", options.inputs, "final, and a glTF 2.0 scene")->required()->expected(1, 2)->type_name("final SCENE");
   app.add_option("--points", options.points, ".irradpoints file of the frame, or a pattern")->required()->type_name("FILE");
+  app.add_option("--high", options.high,
+                 ".irradpoints file of photonmap-split, the high part, or a pattern; --points is then the low one: samples hold what rays bring of it, bright points are "
+                 "sampled explicitly in each frame")
+      ->type_name("FILE");
+  app.add_option("--high-samples", options.gather.bright_samples, "explicit samples of a record")
+      ->capture_default_str()->check(tools::number_between(1, 1 << 20));
+  app.add_option("--dynamic", options.dynamic)->group("");   // not in the help: refused with the reason
   tool.leave_out_of_history(app.add_option("--previous", options.previous,
                                            ".radsamples file of an earlier frame of the same segment, from which this frame follows; "
                                            "without it the frame is gathered anew")->type_name("FILE"));
@@ -188,7 +210,7 @@ int main(int argc, char** argv) {
 
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
-    check(options, frames);
+    check(tool.app(), options, frames);
     options.placement.clamp_neighbours = !options.free_radii;
     options.temporal.age_weight = options.age_weight == "1"   ? AgeWeight::linear
                                   : options.age_weight == "2" ? AgeWeight::square

@@ -107,11 +107,16 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     sky.radiance[c] += shots.radiance[i] * (1 / float(1 + further[c]));
   }
   sky.irradiance_and_rotational_gradient(shots.directions.frame(), record);
-  if (options_.bright) {
-    const PathRandom random(options_.seed ^ 0x6272696768740001ull, gather_key(from.position, normal, options_.seed));
-    add_bright_light(options_.bright->arriving({from, normal, coated ? &bsdf : nullptr}, options_.bright_samples, random, counts), record);
-  }
+  add_explicit(from, gather_key(from.position, normal, options_.seed), record, counts);
   return record;
+}
+
+void FinalGather::add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record, GatherCounts& counts) const {
+  if (!options_.bright) return;
+  const Bsdf bsdf = incoming_.bsdf_at(from, record.normal);
+  const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
+  const PathRandom random(options_.seed ^ 0x6272696768740001ull, key);
+  add_bright_light(options_.bright->arriving({from, record.normal, coated ? &bsdf : nullptr}, options_.bright_samples, random, counts), record);
 }
 
 }  // namespace tempolux

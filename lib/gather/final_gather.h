@@ -40,6 +40,9 @@ class FinalGather {
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share = 1, float ray_share = 1) const;
   /// Sets the clearance of a record gathered there, as far as its radius: once that is limited.
   void look_around(const SurfacePoint& from, IrradianceRecord& record) const;
+  /// Adds to a record of rays alone what GatherOptions::bright_samples explicit samples bring, if there are bright points. Random numbers are those of `key`,
+  /// which gather_key() of the record's place and normal is.
+  void add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record, GatherCounts& counts) const;
   /// Share of the hemisphere from which light comes (Hemisphere::lit_cells), by at most 64 rays that gather() does not use.
   float lit_share(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
   static constexpr float kEnoughLit = 1.0f / 16;

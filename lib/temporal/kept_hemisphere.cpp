@@ -45,9 +45,9 @@ void scale_radiance(KeptHemisphere& kept, std::uint32_t cell, Rgb ratio) {
 }
 
 void keep_ray(KeptHemisphere& kept, std::uint32_t cell, Rgb radiance, float distance, const RadianceSource& source,
-              std::size_t anchored_points, SampleUnits units) {
+              bool may_anchor, SampleUnits units) {
   formats::RadianceSample& sample = kept.samples[cell];
-  const bool hit = distance < INFINITY, anchored = hit && source.point < anchored_points;
+  const bool hit = distance < INFINITY, anchored = hit && may_anchor;
   sample.flags = std::uint16_t(formats::age_of(sample) | formats::sample_valid | (hit ? 0 : formats::sample_miss) |
                                (source.mover ? formats::sample_dynamic : 0) | (source.partial ? formats::sample_near : 0) |
                                (anchored ? formats::sample_anchored : 0));
@@ -113,37 +113,50 @@ IrradianceRecord result_of(const formats::RadsamplesRecord& record) {
   return made;
 }
 
-formats::RadsamplesFile to_file(const KeptHemispheres& kept) {
+void fetch(const KeptHemispheres& all, KeptHemisphere& kept) {
+  if (all.shelf) all.shelf->fetch(kept.record.samples(), kept.place, kept.samples, kept.anchors);
+}
+void put_back(const KeptHemispheres& all, KeptHemisphere& kept) {
+  if (all.shelf) all.shelf->put(kept.place, kept.samples, kept.anchors);
+}
+void let_go(const KeptHemispheres& all, KeptHemisphere& kept) {
+  if (all.shelf) all.shelf->let_go(kept.place, kept.samples, kept.anchors);
+}
+void give_up(const KeptHemispheres& all, KeptHemisphere& kept) {
+  if (all.shelf) all.shelf->give_up(kept.record.samples(), kept.place);
+}
+
+SeenSamples see(const KeptHemispheres& all, const KeptHemisphere& kept, KeptHemisphere& room) {
+  if (!all.shelf || !kept.place.on_disk()) return {kept.samples, kept.anchors};
+  all.shelf->fetch(kept.record.samples(), kept.place, room.samples, room.anchors);
+  return {room.samples, room.anchors};
+}
+
+formats::RadsamplesFile head_of(const KeptHemispheres& kept) {
   formats::RadsamplesFile file;
-  std::size_t samples = 0;
-  for (const KeptHemisphere& k : kept.records) samples += k.samples.size();
   file.records.reserve(kept.records.size());
-  file.samples.reserve(samples);
-  file.anchors.reserve(samples);
-  for (const KeptHemisphere& k : kept.records) {
-    file.records.push_back(k.record);
-    file.samples.insert(file.samples.end(), k.samples.begin(), k.samples.end());
-    file.anchors.insert(file.anchors.end(), k.anchors.begin(), k.anchors.end());
-  }
+  for (const KeptHemisphere& k : kept.records) file.records.push_back(k.record);
   file.point_light.reserve(kept.point_light.size());
   for (const Rgb& light : kept.point_light) file.point_light.push_back(array_of(light));
+  file.header.high_hash = kept.high_hash;
   return file;
 }
 
-KeptHemispheres from_file(const formats::RadsamplesFile& file, Vec3d shift) {
-  KeptHemispheres kept;
-  std::size_t first = 0;
-  for (const formats::RadsamplesRecord& record : file.records) {
-    KeptHemisphere& k = kept.records.emplace_back();
-    k.record = record;
-    k.record.position = array_of(Vec3(Vec3d(vec_of(record.position)) + shift));
-    const auto begin = std::ptrdiff_t(first), end = std::ptrdiff_t(first += record.samples());
-    k.samples.assign(file.samples.begin() + begin, file.samples.begin() + end);
-    if (file.anchors.empty()) k.anchors.assign(record.samples(), kNone);
-    else k.anchors.assign(file.anchors.begin() + begin, file.anchors.begin() + end);
-  }
-  for (const auto& light : file.point_light) kept.point_light.push_back(rgb_of(light));
-  return kept;
+void take_samples(const formats::RadsamplesFile& head, std::size_t record, SeenSamples samples, Vec3d shift, KeptHemispheres& kept) {
+  kept.records.resize(head.records.size());
+  KeptHemisphere& k = kept.records[record];
+  k.record = head.records[record];
+  k.record.position = array_of(Vec3(Vec3d(vec_of(k.record.position)) + shift));
+  k.samples.assign(samples.samples.begin(), samples.samples.end());
+  if (samples.anchors.empty()) k.anchors.assign(k.samples.size(), kNone);
+  else k.anchors.assign(samples.anchors.begin(), samples.anchors.end());
+  put_back(kept, k);
+}
+
+void take_head(const formats::RadsamplesFile& head, KeptHemispheres& kept) {
+  kept.point_light.clear();
+  for (const auto& light : head.point_light) kept.point_light.push_back(rgb_of(light));
+  kept.high_hash = head.header.high_hash;
 }
 
 }  // namespace tempolux

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 
 #include "lib/core/check.h"
@@ -37,20 +38,28 @@ std::array<Vec3, 3> edges_of(const Surface& surface, std::uint32_t triangle) {
   return {along, cross(normal, along), normal};
 }
 
+/// Is the triangle one at both frames? What is not there, scaled to nothing, has no place for records.
+bool stays(const SceneFrame& before, const SceneFrame& now, const formats::RadsamplesRecord& r) {
+  for (const SceneFrame* frame : {&before, &now})
+    for (const Vec3 edge : edges_of(frame->surfaces[r.surface], r.triangle))
+      if (!(length2(edge) > 0.5f)) return false;   // 1, or NaN
+  return true;
+}
+
 bool deforms(const SceneFrame& frame, std::uint32_t surface) {
   return frame.scene && deforms(*frame.scene, frame.scene->nodes[frame.surfaces[surface].node]);
 }
 
 void add(const TemporalCounts& from, TemporalCounts& to) {
   to.moved += from.moved, to.lost += from.lost, to.unanchored += from.unanchored, to.aged += from.aged;
-  to.scaled += from.scaled;
+  to.scaled += from.scaled, to.explicit_only += from.explicit_only;
   to.update += from.update;
 }
 
 }  // namespace
 
 struct TemporalGather::Marked {
-  std::vector<std::uint8_t> marks;    ///< by cell
+  std::vector<std::uint8_t> marks;    ///< by cell; of samples that are not in memory empty, to be made again
   std::size_t count = 0;              ///< of those that are traced
   bool changed = false;
 };
@@ -61,6 +70,7 @@ struct TemporalGather::Changes {
   std::vector<std::uint8_t> points;
   std::vector<Rgb> ratios;
   bool anything = false, materials = false;
+  bool divided = false;               ///< there is an explicit part, or was one in the frame before
 };
 
 std::size_t anchored_points(const SceneFrame& frame, std::span<const IrradiancePoint> points) {
@@ -113,17 +123,23 @@ void TemporalGather::ride(KeptHemisphere& kept) const {
   if (length2(turned) > 0) r.normal = {turned.x, turned.y, turned.z};
 }
 
+/// Is a part of the point's light sampled explicitly? How much rays then bring of it follows from their length, too.
+bool TemporalGather::is_bright(std::uint32_t point) const { return point < scene_.high_shares.size() && scene_.high_shares[point] > 0; }
+
 TemporalGather::Changes TemporalGather::changes(const KeptHemispheres& kept) const {
   Changes changes;
   const SceneFrame& now = scene_.tracer.frame();
   changes.boxes = swept_boxes(*scene_.before, now);
   changes.materials = now.hashes.materials != scene_.before->hashes.materials;
-  changes.anything = changes.materials || !changes.boxes.empty();
+  changes.divided = !kept.high_hash.empty() || !scene_.high_hash.empty();
+  changes.anything = changes.materials || !changes.boxes.empty() || kept.high_hash != scene_.high_hash;
   changes.points.resize(kept.point_light.size(), unmarked);
   changes.ratios.resize(changes.points.size(), Rgb(1.0f));
   for (std::size_t i = 0; i < changes.points.size(); ++i) {
     const Rgb before = kept.point_light[i], light = scene_.points[i].total();
+    if (is_bright(std::uint32_t(i))) changes.points[i] = lost;   // it is a bright one since this frame
     if (before == light) continue;
+    if (changes.points[i] == lost) continue;
     changes.points[i] = scaled;
     changes.anything = true;
     for (int c = 0; c < 3; ++c) {
@@ -192,19 +208,35 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
   const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (coated) radiance[i] *= bsdf.arrival_weight(dot(rays[i].direction, kept.normal()));
-    keep_ray(kept, cells[i], radiance[i], distance[i], sources[i], scene_.anchored_points, units_);
+    const bool bright = is_bright(sources[i].point);
+    sources[i].partial |= bright;
+    keep_ray(kept, cells[i], radiance[i], distance[i], sources[i], sources[i].point < scene_.anchored_points && !bright, units_);
   }
 }
 
 /// The record that the samples make.
-void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born) const {
+void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born, GatherCounts& counts) const {
   float further = kept.record.further_share;
   IrradianceRecord made = reconstruct(kept, place, units_, born ? &further : nullptr);
   made.further_share = further;
+  const float expected = made.expected_share;
+  gather_.add_explicit(place, kept.record.key, made, counts);
   limit_radius(made, kept.record.footprint, placement_);
   made.clearance = result_of(kept.record).clearance;
   if (look_again || made.radius * Clearance::kPerRadius > made.clearance.reach) gather_.look_around(place, made);
   keep_result(made, kept.record);
+  kept.record.expected_share = expected;   // that of the rays alone: the explicit part comes on top in each frame
+}
+
+/// The explicit part of a record whose cells have no reason to change.
+void TemporalGather::sample_explicit(KeptHemisphere& kept, const Changes& changes, GatherCounts& counts) const {
+  finish(place_of(kept), kept, near_a_mover(kept, changes), false, counts);
+}
+
+/// Has something moved where a record looks around itself?
+bool TemporalGather::near_a_mover(const KeptHemisphere& kept, const Changes& changes) {
+  return std::any_of(changes.boxes.begin(), changes.boxes.end(),
+                     [&](const Box3& box) { return holds(grown(box, std::min(kept.record.clearance_reach, 1e15f)), kept.position()); });
 }
 
 KeptHemisphere TemporalGather::birth(const SeenPoint& seen, const RecordStore::Expected& expected, GatherCounts& counts) const {
@@ -231,7 +263,7 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, const RecordStore::E
   kept.anchors.assign(strata.cells(), kNone);
   const std::vector<std::uint8_t> marks(strata.cells(), all);
   shoot(place, kept, GatherDirections(place, seen.normal, r.rings, r.sectors, r.key), strata, marks, counts);
-  finish(place, kept, true, true);
+  finish(place, kept, true, true, counts);
   return kept;
 }
 
@@ -253,6 +285,7 @@ void TemporalGather::update(KeptHemisphere& kept, const Changes& changes, double
   std::vector<std::uint8_t>& marks = marked.marks;
   const SurfacePoint place = place_of(kept);
   const GatherDirections directions(place, kept.normal(), r.rings, r.sectors, r.key);
+  if (marks.empty()) mark(kept, changes, directions, marks);
   ++r.updates;
   ages.resize(marks.size());
   for (std::size_t c = 0; c < marks.size(); ++c) {
@@ -276,9 +309,7 @@ void TemporalGather::update(KeptHemisphere& kept, const Changes& changes, double
     if (marks[c] == scaled) scale_radiance(kept, c, changes.ratios[kept.anchors[c]]);
   }
   shoot(place, kept, directions, strata_of(r.rings, r.sectors), marks, counts.update);
-  const bool beside = std::any_of(changes.boxes.begin(), changes.boxes.end(),
-                                  [&](const Box3& box) { return holds(grown(box, std::min(r.clearance_reach, 1e15f)), kept.position()); });
-  finish(place, kept, beside, false);
+  finish(place, kept, near_a_mover(kept, changes), false, counts.update);
 }
 
 /// Looks at all records, then updates those that change: how many cells are drawn by age follows from how many are traced anyway.
@@ -290,23 +321,38 @@ void TemporalGather::update_all(KeptHemispheres& kept, const Changes& changes, c
     std::size_t here = 0, all = 0, unmoved = 0, cells = 0;
     for (std::size_t i = first; i < last; ++i) {
       if (gone[i]) continue;
-      cells += kept.records[i].samples.size();
-      if (!look(kept.records[i], changes, marked[i])) {
+      KeptHemisphere& k = kept.records[i];
+      cells += k.record.samples();
+      fetch(kept, k);
+      if (look(k, changes, marked[i])) {
+        here += marked[i].count;
+        all += k.record.samples();
+      } else {
         ++unmoved;
-        continue;
       }
-      here += marked[i].count;
-      all += marked[i].marks.size();
+      let_go(kept, k);
+      if (k.place.on_disk() || !marked[i].changed) std::vector<std::uint8_t>().swap(marked[i].marks);
     }
     const std::lock_guard lock(mutex);
-    counts.cells += cells, counts.kept += unmoved, traced += here, others += all - here;
+    counts.cells += cells, (changes.divided ? counts.explicit_only : counts.kept) += unmoved, traced += here, others += all - here;
   });
   const double refresh = double(options_.refresh), cells = double(traced + others);
   const double aged_share = others > 0 ? std::max((refresh * cells - double(traced)) / double(others), refresh * double(kLeastAged)) : 0;
   parallel_chunks(marked.size(), 16, [&](std::size_t first, std::size_t last) {
     TemporalCounts local;
-    for (std::size_t i = first; i < last; ++i)
-      if (marked[i].changed) update(kept.records[i], changes, aged_share, marked[i], local);
+    for (std::size_t i = first; i < last; ++i) {
+      if (gone[i] || !(marked[i].changed || changes.divided)) continue;
+      KeptHemisphere& k = kept.records[i];
+      fetch(kept, k);
+      if (marked[i].changed) {
+        update(k, changes, aged_share, marked[i], local);
+        put_back(kept, k);
+      } else {
+        sample_explicit(k, changes, local.update);
+        let_go(kept, k);
+      }
+      std::vector<std::uint8_t>().swap(marked[i].marks);
+    }
     const std::lock_guard lock(mutex);
     add(local, counts);
   });
@@ -317,8 +363,12 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
   const std::size_t before = kept.records.size();
   std::vector<bool> gone(before);
   for (std::size_t i = 0; i < before; ++i) {
-    gone[i] = deforms(now, kept.records[i].record.surface) && kept.records[i].record.set == formats::SurfaceSet::dynamic_set;
-    counts.deforming += gone[i];
+    const formats::RadsamplesRecord& r = kept.records[i].record;
+    if (r.set != formats::SurfaceSet::dynamic_set) continue;
+    const bool lost_place = !stays(*scene_.before, now, r);
+    gone[i] = deforms(now, r.surface) || lost_place;
+    counts.deforming += gone[i] && !lost_place;
+    counts.removed += lost_place;
   }
   const Changes changes = this->changes(kept);
   if (changes.anything) {
@@ -330,7 +380,7 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
       if (fading == 0) gone[i] = true, ++counts.removed;
     }
   } else {
-    for (const KeptHemisphere& k : kept.records) counts.cells += k.samples.size();
+    for (const KeptHemisphere& k : kept.records) counts.cells += k.record.samples();
     counts.kept += before;
   }
   // Numbers of records before those that went.
@@ -339,7 +389,8 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
   for (KeptHemisphere& k : kept.records)
     if (k.record.narrows_from <= before) k.record.narrows_from = moved_to[k.record.narrows_from];
   for (std::size_t i = 0; i < before; ++i)
-    if (!gone[i] && moved_to[i] != i) kept.records[moved_to[i]] = std::move(kept.records[i]);
+    if (gone[i]) give_up(kept, kept.records[i]);
+    else if (moved_to[i] != i) kept.records[moved_to[i]] = std::move(kept.records[i]);
   kept.records.resize(moved_to[before]);
   kept.changed = changes.anything;
   kept.point_light.clear();
@@ -352,7 +403,7 @@ void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCou
     IrradianceRecord record = result_of(k.record);
     const std::size_t first = k.record.narrows_from == kFixed ? ~std::size_t(0) : k.record.narrows_from;
     if (placement_.clamp_neighbours) store.clamp_with_neighbours(record, placement_.error_bound, first);
-    record.radius *= float(kFadingFrames - k.record.fading) / kFadingFrames;
+    record.radius = std::max(record.radius * float(kFadingFrames - k.record.fading) / kFadingFrames, std::numeric_limits<float>::min());
     TEMPOLUX_CHECK(store.add(record));
   }
   if (!kept.changed) return;
@@ -373,19 +424,25 @@ void TemporalGather::place(const PixelViews& views, int width, int height, KeptH
   std::vector<KeptHemisphere> batch(kPlacedTogether);
   RecordSource source;
   source.gather = [&](const SeenPoint& seen, const RecordStore::Expected& expected, std::size_t slot, GatherCounts& gathered) {
+    give_up(kept, batch[slot]);   // of one that was not added
     batch[slot] = birth(seen, expected, gathered);
+    put_back(kept, batch[slot]);
     return result_of(batch[slot].record);
   };
   source.added = [&](std::size_t slot, std::size_t narrows_from) {
     batch[slot].record.narrows_from = std::uint32_t(std::min<std::size_t>(narrows_from, kFixed));
     batch[slot].record.birth_weight = store.weight_of_earlier(std::uint32_t(store.records().size() - 1), {});
     kept.records.push_back(std::move(batch[slot]));
+    batch[slot] = {};
   };
   counts.born += place_records(gather_, views, width, height, placement_, store, counts.birth, progress, &source);
+  for (KeptHemisphere& k : batch) give_up(kept, k);
   counts.records = kept.records.size();
   for (std::size_t i = 0; i < scene_.anchored_points; ++i) kept.point_light.push_back(scene_.points[i].total());
+  kept.high_hash = scene_.high_hash;
+  KeptHemisphere room;
   for (const KeptHemisphere& k : kept.records)
-    for (const formats::RadianceSample& sample : k.samples) {
+    for (const formats::RadianceSample& sample : see(kept, k, room).samples) {
       const std::size_t age = formats::age_of(sample);
       if (age >= counts.ages.size()) counts.ages.resize(age + 1);
       ++counts.ages[age];

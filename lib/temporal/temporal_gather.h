@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "lib/gather/place_records.h"
@@ -20,10 +21,11 @@ struct TemporalOptions {
 
 /// rays of gather: of new records and their continuations. Cells that were traced again: `moved` along their old ray, as what moves was
 /// or is in the way; `lost`: their anchor's light is more than twice or less than half of what it was; `unanchored`: nothing stands for
-/// what they met; `aged` got a new ray. `scaled` read their anchor's new light; `kept` records had no reason to change.
+/// what they met; `aged` got a new ray. `scaled` read their anchor's new light; `kept` records had no reason to change; of `explicit_only` none of the
+/// cells had.
 struct TemporalCounts {
   std::uint64_t cells = 0, moved = 0, lost = 0, unanchored = 0, aged = 0, scaled = 0;
-  std::uint64_t records = 0, kept = 0, born = 0, fading = 0, removed = 0, deforming = 0;
+  std::uint64_t records = 0, kept = 0, explicit_only = 0, born = 0, fading = 0, removed = 0, deforming = 0;
   GatherCounts update, birth;
   std::vector<std::uint64_t> ages;            ///< cells by age, after the frame
 };
@@ -36,6 +38,9 @@ struct TemporalScene {
   std::span<const IrradiancePoint> points;    ///< of the lookup
   std::size_t anchored_points = 0;            ///< the first of them, on what stands still, may be anchors
   const SceneFrame* before = nullptr;         ///< the scene at the frame that was kept; null: nothing is kept
+  /// With GatherOptions::bright: the share of each point's light that is sampled explicitly, and a hash of them all; without: empty.
+  std::span<const float> high_shares = {};
+  std::string high_hash = {};
 };
 
 /// How many of a frame's first points lie on what stands still.
@@ -47,7 +52,7 @@ class TemporalGather {
   TemporalGather(const TemporalScene& scene, const GatherOptions& gather, const PlacementOptions& placement,
                  const TemporalOptions& options, float diagonal);
 
-  /// Brings what was kept to this frame. The records of what deforms are left out. Of the others a record changes where one of
+  /// Brings what was kept to this frame. The records of what deforms, and of what is not there at one of the frames, are left out. Of the others a record changes where one of
   /// these holds, else it stays to the bit:
   /// - a cell's ray, from the place to what it met, meets a box in which something has moved, or what it met moves: traced again, *along
   ///   its old direction*. Another direction would bring a bias: what hits the mover would be thrown away, what misses it kept;
@@ -55,6 +60,8 @@ class TemporalGather {
   ///   traced again along its old direction beyond 1/2 to 2;
   /// - no point stands for what it met (mirrors, corners): traced again alike.
   /// Of a record that changes, further cells get a new ray in their place of the hemisphere, drawn by age: see TemporalOptions::refresh.
+  /// Where bright points are sampled explicitly, cells that met one have no anchor, as what is left of its light follows from the distance, too; and if anything has
+  /// changed the explicit part of every record is sampled anew, with the record's random numbers.
   void advance(KeptHemispheres& kept, TemporalCounts& counts) const;
   /// The records of a store, and then new ones where they do not cover what the camera sees; those are kept, too. After a change records
   /// fade away, in four frames, where those before them weigh by a whole record more than when they were placed.
@@ -72,7 +79,10 @@ class TemporalGather {
   bool mark(const KeptHemisphere& kept, const Changes& changes, const GatherDirections& directions, std::vector<std::uint8_t>& marks) const;
   void shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions, const GatherStrata& strata,
              std::span<const std::uint8_t> marks, GatherCounts& counts) const;
-  void finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born) const;
+  bool is_bright(std::uint32_t point) const;
+  void finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born, GatherCounts& counts) const;
+  static bool near_a_mover(const KeptHemisphere& kept, const Changes& changes);
+  void sample_explicit(KeptHemisphere& kept, const Changes& changes, GatherCounts& counts) const;
   KeptHemisphere birth(const SeenPoint& seen, const RecordStore::Expected& expected, GatherCounts& counts) const;
   SurfacePoint place_of(const KeptHemisphere& kept) const;
   void ride(KeptHemisphere& kept) const;

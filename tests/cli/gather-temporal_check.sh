@@ -1,4 +1,4 @@
-# gather-temporal: a range and single frames, threads, what stands, a run that is killed and goes on, what it must refuse.
+# gather-temporal: a range and single frames, threads, little memory, a divided light, what stands, a run that is killed and goes on, what it must refuse.
 failed=0
 bad() { echo "$*"; failed=1; }
 refuses() {   # exit 2 and these words in one line; nothing is written
@@ -107,6 +107,45 @@ diff -r range killed || bad 'damaged and resumed: other files'
 gather-temporal final "$moving" -q --size 48x27 --rays 65 --frames 0-4 --points p.####.irradpoints --resume -o killed/s.####.radsamples --cache killed/c.####.irradcache || bad 'other options'
 cmp -s killed/s.0000.radsamples range/s.0000.radsamples && bad 'files of other options are taken for these'
 
+# --max-memory: what does not fit is kept in a file that nobody sees. 58 MB of samples, 37 MB of which may stay; before there was such a file
+# 350 MiB were too little.
+large() { mkdir -p "$1"; gather-temporal final "$moving" -q --size 48x27 --rays 14000 --error-bound 0.5 --threads 1 --frames 0-1 --points p.####.irradpoints -o "$1/s.####.radsamples" \
+  --cache "$1/c.####.irradcache" ${2:-}; }
+large in-memory && large on-disk --max-memory=300MiB || bad '--max-memory'
+diff -r in-memory on-disk || bad '--max-memory: other files'
+[ "$(ls -A on-disk | wc -l)" = 4 ] || bad "--max-memory left files: $(ls -A on-disk)"
+rm -r in-memory on-disk
+for folder in range rest; do mkdir limited-$folder; done
+range limited-range --max-memory 300MiB && diff -r range limited-range || bad '--max-memory: other files of a range'
+rest limited-rest --max-memory=300MiB && diff -r rest limited-rest || bad '--max-memory: other overlays'
+
+# --high: samples hold the low part, explicit samples of bright points come on top in each frame. S2 has no bright spot: a limit so low that a third of the points have a
+# high part. Records with and without are the same but for noise: 250 records of about 100 rays, 100 explicit samples.
+for f in 0 1 2 3 4; do photonmap-split p.000$f.irradpoints --energy 1 --low low.000$f.irradpoints --high high.000$f.irradpoints -q || bad "split of frame $f"; done
+divided() { folder=$1; shift; mkdir -p "$folder"; temporal --frames 0-4 --points low.####.irradpoints --high high.####.irradpoints -o "$folder/s.####.radsamples" --cache "$folder/c.####.irradcache" "$@"; }
+divided divided --stats divided.json || bad '--high'
+tempolux-info --check divided/* >/dev/null || bad '--high: not valid'
+divided divided3 --threads 3 && diff -r divided divided3 || bad '--high: other files with 3 threads'
+temporal --frame 3 --points low.0003.irradpoints --high high.0003.irradpoints --previous divided/s.0002.radsamples -o alone.radsamples --cache alone.irradcache || bad '--high: a frame alone'
+cmp alone.radsamples divided/s.0003.radsamples || bad '--high: a frame alone differs from a range'
+rm divided3/c.0003.irradcache && divided divided3 --resume && diff -r divided divided3 || bad '--high: resumed to other files'
+for kind in range divided; do
+  frame-render "$moving" --frame 4 --size 48x27 --spp 4 --pixel-error 0 --irradcache $kind/c.0004.irradcache --points p.0004.irradpoints --channels RGBA,layers -o $kind.exr -q ||
+    bad "a frame from $kind"
+done
+aqm-compare divided.exr range.exr --layer indirect --json high.json -q >/dev/null
+"${PYTHON:-python3}" - <<'END' || bad '--high: other light'
+import json
+bias = json.load(open("high.json"))["total"]["bias"]
+r = json.load(open("divided.json"))["results"]
+assert -0.03 < bias < 0.03, bias
+assert r["shadow_rays.0"] > 50 * r["records.0"] and r["shadow_rays.4"] > 50 * r["records.4"] and r["retraced_share.4"] < 0.9, r
+END
+# Nothing high: the bytes of whole points, but for what the files came from.
+photonmap-split p.0000.irradpoints --energy 1e9 --low low.irradpoints --high high.irradpoints -q
+temporal --frame 0 --points low.irradpoints --high high.irradpoints -o none.radsamples --cache none.irradcache || bad 'nothing high'
+[ "$(tempolux-info --digest none.irradcache | cut -d' ' -f1)" = "$(tempolux-info --digest range/c.0000.irradcache | cut -d' ' -f1)" ] || bad 'nothing high: other records'
+
 # Refused: with what to do.
 points='--points p.0001.irradpoints'
 refuses 'not a way to gather' gather-temporal often "$moving" $points -o refused --cache refused.c
@@ -119,5 +158,25 @@ refuses 'not a .radsamples file' temporal --frame 1 $points --previous range/c.0
 irradcache-build points "$moving" --frame 1 --photons p.photons --allow-stale --point-count 900 -o fewer.irradpoints -q 2>/dev/null
 refuses 'its points lay elsewhere' temporal --frame 1 --points fewer.irradpoints --allow-stale --previous range/s.0000.radsamples -o refused --cache refused.c
 refuses 'in another segment' temporal --frame 1 $points --segment 12 --previous range/s.0000.radsamples -o refused --cache refused.c
+PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$HERE/../formats "${PYTHON:-python3}" - <<'END' || bad 'files of no scene'
+from read_radsamples import encode_radsamples, read_radsamples
+f = read_radsamples("range/s.0000.radsamples")
+for name, change in {"surface": {"surface": 999}, "triangle": {"triangle": 12345678}, "set": {"set": 1 - f.records[0].set}}.items():
+    g = read_radsamples("range/s.0000.radsamples")
+    g.records[0] = g.records[0]._replace(**change)
+    open(f"forged-{name}.radsamples", "wb").write(encode_radsamples(g))
+f.point_light.append((1, 1, 1))
+open("forged-points.radsamples", "wb").write(encode_radsamples(f))
+END
+for forged in surface triangle set; do
+  refuses 'which the scene does not have' temporal --frame 1 $points --previous forged-$forged.radsamples -o refused --cache refused.c
+done
+refuses 'it has the light of' temporal --frame 1 $points --previous forged-points.radsamples -o refused --cache refused.c
+refuses 'hold all of the light' temporal --frame 1 --points low.0001.irradpoints --high high.0001.irradpoints --previous range/s.0000.radsamples -o refused --cache refused.c
+refuses 'hold the low part of the light alone' temporal --frame 1 $points --previous divided/s.0000.radsamples -o refused --cache refused.c
+refuses 'give the whole' temporal --frame 1 --points low.0001.irradpoints -o refused --cache refused.c
+refuses 'a run without --high' temporal --frame 1 $points --high-samples 10 -o refused --cache refused.c
+refuses "is in the frame's points" temporal --frame 1 $points --dynamic d.photons -o refused --cache refused.c
+refuses 'several frames need a pattern' temporal --frames 0-1 --points low.####.irradpoints --high high.0000.irradpoints -o s.####.radsamples --cache c.####.irradcache
 refuses '0.5 not in' temporal --frame 1 $points --age-weight 0.5 -o refused --cache refused.c
 exit $failed
