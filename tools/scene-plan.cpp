@@ -103,8 +103,8 @@ void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options&
 }
 
 /// Decides what of a frame's light follows from that of what stands: as asked, or by a pilot. What it then costs is noted for the
-/// estimate. split: bright points are to be divided from the others.
-void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options, int camera, bool split, Plan& plan) {
+/// estimate.
+void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options, int camera, Plan& plan) {
   const UpdatableLight light = updatable_light(plan);
   if (plan.photon_kinds.empty()) return;
   if (light.segments == 0)
@@ -123,9 +123,6 @@ void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options
     choice.method = options.moving == "light"     ? MovingMethod::light
                     : options.moving == "records" ? MovingMethod::records
                                                   : MovingMethod::time;
-  } else if (choice.method == MovingMethod::time && split) {
-    choice.method = MovingMethod::light;
-    choice.because += "; bright points are divided from the others, which records over time cannot take";
   }
   options.run.moving_cost = choice.cost;
   use_moving(plan, kMovingMethods[std::size_t(choice.method)], choice.because);
@@ -159,7 +156,7 @@ void plan_range(tools::Tool& tool, Options& options, bool write) {
   Plan plan = make_plan(scene, tool.common().frames, camera, input.time(), input.has_media() ? media : MediaHash{});
   decide_indirect(tool, input, options, camera, plan);
   const SplitChoice split = split_choice(tool, input, options, camera, plan);
-  decide_moving(tool, input, options, camera, split.split, plan);
+  decide_moving(tool, input, options, camera, plan);
   use_split(plan, split.split, split.because);
   for (const std::string& warning : plan.warnings) tool.warn(options.scene + ": " + warning);
   if (write && !plan.photon_kinds.empty()) {

@@ -302,10 +302,10 @@ void use_moving(Plan& plan, const std::string& method, const std::string& becaus
 
 void use_split(Plan& plan, bool split, const std::string& because) {
   if (plan.photon_kinds.empty() || plan.indirect == "paths") return;
-  const bool updated = plan.moving == "records" || plan.moving == "time";
+  const bool updated = plan.moving == "records";
   plan.split = split && !updated;
   const auto before = std::ranges::find(plan.stages, "irradcache-build records", &Stage::name);
-  plan.stages.insert(before, {"photonmap-split", plan.split, split && updated ? "records follow from others" : because});
+  plan.stages.insert(before, {"photonmap-split", plan.split, split && updated ? "records follow from those of what stands" : because});
 }
 
 Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node, const TimeOptions& options,

@@ -105,7 +105,7 @@ UpdatableLight updatable_light(const Plan& plan);
 /// decides.
 void use_moving(Plan& plan, const std::string& method, const std::string& because);
 /// Has points divided where `split` says so and it can be: points are read, by records made anew or in pixels; not by records that follow
-/// from those of what stands or of the frame before. `because`: the fact that decides.
+/// from those of what stands. `because`: the fact that decides.
 void use_split(Plan& plan, bool split, const std::string& because);
 /// The media at a frame: content hash (SceneHashes::media). An empty function: there are none.
 using MediaHash = std::function<std::string(int frame)>;
