@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """S3 with its lamp narrowed to a cone: the same flux through a spot of 0.2 rad, so that a small bright spot lights the room by reflection.
 
-    python3 tests/bench/spot_room.py spot.glb
+    python3 tests/bench/spot_room.py spot.glb [ball]
+
+With `ball` the ball rises by 0.6 m in 48 frames; else nothing moves.
 """
 import json
 import math
@@ -19,7 +21,23 @@ def read_glb(path):
     return json.loads(data[20:20 + size]), data[28 + size:]
 
 
-def make(path, cone=CONE):
+def lift(gltf, binary, name="Ball", by=0.6, last=47 / 24):
+    """An animation of a node: up by so many metres in so many seconds. Returns the binary with its four numbers a key."""
+    node = next(i for i, n in enumerate(gltf["nodes"]) if n["name"] == name)
+    begin = gltf["nodes"][node].get("translation", [0, 0, 0])
+    times, places = struct.pack("<2f", 0, last), struct.pack("<6f", *begin, begin[0], begin[1] + by, begin[2])
+    binary += b"\0" * (-len(binary) % 4)
+    for data, accessor in ((times, {"count": 2, "type": "SCALAR", "min": [0], "max": [last]}), (places, {"count": 2, "type": "VEC3"})):
+        gltf["bufferViews"].append({"buffer": 0, "byteOffset": len(binary), "byteLength": len(data)})
+        gltf["accessors"].append({"bufferView": len(gltf["bufferViews"]) - 1, "componentType": 5126, **accessor})
+        binary += data
+    gltf["buffers"][0]["byteLength"] = len(binary)
+    last_accessor = len(gltf["accessors"]) - 1
+    gltf["animations"] = [{"samplers": [{"input": last_accessor - 1, "output": last_accessor}], "channels": [{"sampler": 0, "target": {"node": node, "path": "translation"}}]}]
+    return binary
+
+
+def make(path, cone=CONE, ball=False):
     """Writes the scene; the lamp shines from its middle along its normal, +x, into the wall 2 m away. The camera Behind looks there, too."""
     gltf, binary = read_glb(S3)
     lamp = next(n for n in gltf["nodes"] if n["name"] == "Emitter")
@@ -41,6 +59,8 @@ def make(path, cone=CONE):
                           "rotation": [0, -half, 0, half], "extensions": {"KHR_lights_punctual": {"light": 0}}})
     gltf["nodes"].append({"name": "Behind", "camera": 0, "translation": [high[0] + 0.1, 1.3, (low[2] + high[2]) / 2], "rotation": [0, -half, 0, half]})
     gltf["scenes"][0]["nodes"] += [len(gltf["nodes"]) - 2, len(gltf["nodes"]) - 1]
+    if ball:
+        binary = lift(gltf, binary)
     text = json.dumps(gltf).encode()
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
@@ -48,4 +68,4 @@ def make(path, cone=CONE):
 
 
 if __name__ == "__main__":
-    make(sys.argv[1])
+    make(sys.argv[1], ball="ball" in sys.argv[2:])

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """What gathering over time costs and errs against gathering each frame anew: the tables of docs/methods/temporal.md.
 
-    python3 tests/bench/temporal.py BIN SCENE WORK [--frames N] [--size WxH] [--photons N] [--judge F ...] [--seeds N] [--light anew] [--pixels] [--paths SPP]
+    python3 tests/bench/temporal.py BIN SCENE WORK [--frames N] [--size WxH] [--photons N] [--judge F ...] [--seeds N] [--light anew] [--pixels] [--paths SPP] [--threads N] [--split]
 
 Points of each frame come from static and dynamic photons, as with MOVING=time, or with `--light anew` from photons of the frame alone: where a lamp
 moves no light stands. Both sides read the same points and take turns. Error: of the indirect layer, one sample a pixel, against records of 16 times the
 rays from the same points, over N seeds. Flicker: RMS of the change from one frame to the next beyond that of the reference. Processor seconds are those of
 the phase `records`, median over the frames after a segment's first. `--pixels`: frames too, as Makefile.example renders them, photons and points anew, and what whole
 frames cost on both sides, what stands and a segment's first records counted by 1/24; `--paths SPP`: a frame by path
-tracing, its error and that of the chain against 64 SPP samples.
+tracing, its error and that of the chain against 64 SPP samples. `--split`: both sides take the points of photonmap-split, --high; the reference of an error is that of
+the whole points.
 """
 import argparse
 import json
@@ -30,13 +31,15 @@ parser.add_argument("--refresh", default="0.05")
 parser.add_argument("--light", choices=("follows", "anew"), default="follows")
 parser.add_argument("--pixels", action="store_true")
 parser.add_argument("--paths", type=int, default=0)
+parser.add_argument("--threads", type=int, default=2)
+parser.add_argument("--split", action="store_true")
 options = parser.parse_args()
 options.work.mkdir(parents=True, exist_ok=True)
 scene, frames, size = options.scene.resolve(), range(options.frames), ("--size", options.size)
 
 
 def run(tool, *words):
-    subprocess.run([options.bin / tool, *map(str, words), "-q"], check=True, cwd=options.work)
+    subprocess.run([options.bin / tool, *map(str, words), "-q", "--threads", str(options.threads)], check=True, cwd=options.work)
 
 
 def stats(file):
@@ -49,6 +52,12 @@ def phase(file, name="records"):
 
 def points(f):
     return f"p.{f:04}.irradpoints"
+
+
+def divided(f):
+    """--points and what goes with it of a frame or a pattern, as the gatherers take them."""
+    name = f"{f:04}" if isinstance(f, int) else f
+    return ("--points", f"low.{name}.irradpoints", "--high", f"high.{name}.irradpoints") if options.split else ("--points", f"p.{name}.irradpoints")
 
 
 def previous(f):
@@ -77,13 +86,15 @@ def light():
             run("photon-trace", scene, "--frame", f, "--map", "dynamic", "--static", "s.paths", "-o", "d.photons", "--stats", "d.json")
             run("irradcache-build", "points", scene, "--frame", f, "--photons", "s.photons", "--update", "s.irradpoints", "--dynamic", "d.photons",
                 "-o", points(f), "--stats", "p.json")
+        if options.split:
+            run("photonmap-split", points(f), "--low", f"low.{f:04}.irradpoints", "--high", f"high.{f:04}.irradpoints")
         spent["photons"].append(stats("d.json")["cpu_s"])
         spent["points"].append(stats("p.json")["cpu_s"])
     return {k: statistics.median(v) if v else None for k, v in spent.items()}
 
 
-def anew(f, out, *words):
-    run("irradcache-build", "records", scene, "--frame", f, "--points", points(f), *size, "-o", out, "--stats", "f.json", *words)
+def anew(f, out, *words, whole=False):
+    run("irradcache-build", "records", scene, "--frame", f, *(("--points", points(f)) if whole else divided(f)), *size, "-o", out, "--stats", "f.json", *words)
 
 
 def pixels(cache, f, out, *words):
@@ -97,7 +108,7 @@ def costs():
         name = f"{f:04}"
         anew(f, f"f.{name}.irradcache")
         follows = ["--previous", f"s.{previous(f):04}.radsamples"] if previous(f) is not None else []
-        run("gather-temporal", "final", scene, "--frame", f, "--points", points(f), *size, "--refresh", options.refresh, *follows, "-o",
+        run("gather-temporal", "final", scene, "--frame", f, *divided(f), *size, "--refresh", options.refresh, *follows, "-o",
             f"s.{name}.radsamples", "--cache", f"t.{name}.irradcache", "--stats", "t.json")
         if f >= 1:
             (options.work / f"s.{f - 1:04}.radsamples").unlink(missing_ok=True)
@@ -125,10 +136,10 @@ def judge(f):
     first = f // SEGMENT * SEGMENT
     both = [g for g in (f - 1, f) if g >= 0]
     for g in both:
-        anew(g, "r.irradcache", "--rays", 8000, "--seed", 1000)
+        anew(g, "r.irradcache", "--rays", 8000, "--seed", 1000, whole=True)
         pixels("r.irradcache", g, f"reference.{g:04}.exr", *layer)
     for seed in range(options.seeds):
-        run("gather-temporal", "final", scene, "--frames", f"{first}-{f}", "--points", "p.####.irradpoints", *size, "--refresh", options.refresh, "--seed", seed,
+        run("gather-temporal", "final", scene, "--frames", f"{first}-{f}", *divided("####"), *size, "--refresh", options.refresh, "--seed", seed,
             "-o", "j.####.radsamples", "--cache", "jtime.####.irradcache")
         for g in range(first, f + 1):
             (options.work / f"j.{g:04}.radsamples").unlink()
