@@ -25,7 +25,7 @@ spent = $(if $(raw),$(OUT)/raw/$1.json+)$(if $(plan_media),$(OUT)/clear/$1.json+
   $(stands_$(photons_$1)),$(call spent_on_segment,$(stands_$(photons_$1))))$(OUT)/frames/$1.json
 $(OUT)/report/index.html: $(judged:%=$(OUT)/error/%.json) $(OUT)/options/report $(BIN)/error-report
 	$(RUN) $(BIN)/error-report $(options_report)
-report: $(OUT)/report/index.html ; @cat $(OUT)/report/report.md
+report: $(OUT)/report/index.html $(kept_report) ; @cat $(OUT)/report/report.md $(kept_report)
 estimate: $(BIN)/scene-plan # processor seconds and bytes of all that `demo` would make
 	@$< $(options_plan) --estimate --jobs 2 --photon-options '--photons $(PHOTONS) $(shared)' --point-options '$(options_points)' \
 	  --cache-options '$(options_cache)' --frame-options '$(options_frames)'

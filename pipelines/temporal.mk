@@ -14,8 +14,12 @@ points_of_time = $(if $(plan_split),$(OUT)/split/$1.low.irradpoints $(OUT)/split
 define kept_rule
 $(OUT)/cache/$1.irradcache $(OUT)/kept/$1.radsamples &: $(call points_of_time,$1) $(patsubst %,$(OUT)/kept/%.radsamples,$(call kept_from,$1)) \
   $(camera_$1) $(OUT)/options/cache $(BIN)/gather-temporal
-	$$(RUN) $(BIN)/gather-temporal final $$(SCENE) --frame $1 --points $$< $(addprefix --high ,$(word 2,$(call points_of_time,$1))) \
-	  $(patsubst %,--previous $(OUT)/kept/%.radsamples,$(call kept_from,$1)) \
+	$$(RUN) $(BIN)/gather-temporal final $$(SCENE) --frame $1 --points $$< $(addprefix --high ,$(word 2,$(call points_of_time,$1))) $(patsubst %,--previous $(OUT)/kept/%.radsamples,$(call kept_from,$1)) \
 	  $$(options_cache) -o $(OUT)/kept/$1.radsamples --cache $(OUT)/cache/$1.irradcache --stats $(OUT)/cache/$1.json
 endef
 $(foreach f,$(over_time),$(eval $(call kept_rule,$f)))
+
+# For `make report`: rays, ages, records born and removed, frame by frame.
+kept_report = $(if $(over_time),$(OUT)/report/over-time.md)
+$(OUT)/report/over-time.md: $(updated_records) $(pipelines)temporal_report.awk
+	awk -f $(filter %.awk,$^) $(updated_records:.irradcache=.json) > $@

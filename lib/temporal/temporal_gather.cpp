@@ -8,27 +8,17 @@
 #include "lib/core/check.h"
 #include "lib/core/parallel.h"
 #include "lib/scene/deform.h"
-#include "lib/temporal/swept_boxes.h"
+#include "lib/temporal/light_changes.h"
 
 namespace tempolux {
 namespace {
 
 constexpr int kSteps = 27;             ///< of strata: 8 x 9 times the rays, in steps of 2^(1/4), and one
-constexpr float kLargestRatio = 2;     ///< of an anchor's light: beyond, and below its inverse, cells are traced again
 constexpr int kStepForEvenness = 1;    ///< 2^(1/4): at equal rays noise is 9 % more, worth 19 % of them (docs/methods/temporal.md)
 constexpr std::uint32_t kFixed = 0xffffffff;
 constexpr int kFadingFrames = 4;
 constexpr std::uint32_t kAhead = 12;   ///< cells: of the light that is fetched from memory
 constexpr float kLeastAged = 0.25f;    ///< of `refresh`: drawn by age however many cells are traced anyway
-
-/// What becomes of a cell: it stays, it is scaled as its anchor's light, or why it is traced.
-enum Mark : std::uint8_t { unmarked = 0, scaled, moved, lost, unanchored, aged, all };
-bool is_traced(std::uint8_t mark) { return mark > scaled; }
-
-Box3 grown(const Box3& box, float by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
-bool holds(const Box3& box, Vec3 p) {
-  return min(p, box.lower) == box.lower && max(p, box.upper) == box.upper;
-}
 
 /// Unit vectors along a triangle's first edge, across it and along its normal.
 std::array<Vec3, 3> edges_of(const Surface& surface, std::uint32_t triangle) {
@@ -62,15 +52,6 @@ struct TemporalGather::Marked {
   std::vector<std::uint8_t> marks;    ///< by cell; of samples that are not in memory empty, to be made again
   std::size_t count = 0;              ///< of those that are traced
   bool changed = false;
-};
-
-struct TemporalGather::Changes {
-  std::vector<Box3> boxes;            ///< m: what has moved
-  /// By anchor: unmarked, scaled or lost; and by how much its light has changed. Apart, as the one is asked for each cell.
-  std::vector<std::uint8_t> points;
-  std::vector<Rgb> ratios;
-  bool anything = false, materials = false;
-  bool divided = false;               ///< there is an explicit part, or was one in the frame before
 };
 
 std::size_t anchored_points(const SceneFrame& frame, std::span<const IrradiancePoint> points) {
@@ -123,64 +104,6 @@ void TemporalGather::ride(KeptHemisphere& kept) const {
   if (length2(turned) > 0) r.normal = {turned.x, turned.y, turned.z};
 }
 
-/// Is a part of the point's light sampled explicitly? How much rays then bring of it follows from their length, too.
-bool TemporalGather::is_bright(std::uint32_t point) const { return point < scene_.high_shares.size() && scene_.high_shares[point] > 0; }
-
-TemporalGather::Changes TemporalGather::changes(const KeptHemispheres& kept) const {
-  Changes changes;
-  const SceneFrame& now = scene_.tracer.frame();
-  changes.boxes = swept_boxes(*scene_.before, now);
-  changes.materials = now.hashes.materials != scene_.before->hashes.materials;
-  changes.divided = !kept.high_hash.empty() || !scene_.high_hash.empty();
-  changes.anything = changes.materials || !changes.boxes.empty() || kept.high_hash != scene_.high_hash;
-  changes.points.resize(kept.point_light.size(), unmarked);
-  changes.ratios.resize(changes.points.size(), Rgb(1.0f));
-  for (std::size_t i = 0; i < changes.points.size(); ++i) {
-    const Rgb before = kept.point_light[i], light = scene_.points[i].total();
-    if (is_bright(std::uint32_t(i))) changes.points[i] = lost;   // it is a bright one since this frame
-    if (before == light) continue;
-    if (changes.points[i] == lost) continue;
-    changes.points[i] = scaled;
-    changes.anything = true;
-    for (int c = 0; c < 3; ++c) {
-      if (before[c] == light[c]) continue;
-      const float ratio = changes.ratios[i][c] = light[c] / before[c];   // infinite: the next line
-      if (!(ratio <= kLargestRatio && ratio * kLargestRatio >= 1)) changes.points[i] = lost;
-    }
-  }
-  return changes;
-}
-
-/// Marks the cells that are scaled or traced again along their old ray. False if nothing about the record's light has changed.
-bool TemporalGather::mark(const KeptHemisphere& kept, const Changes& changes, const GatherDirections& directions,
-                          std::vector<std::uint8_t>& marks) const {
-  const std::size_t cells = kept.samples.size();
-  marks.assign(cells, changes.materials ? std::uint8_t(moved) : std::uint8_t(unmarked));
-  for (std::size_t c = 0; c < cells; ++c) {
-    const std::uint16_t flags = kept.samples[c].flags;
-    if (!(flags & formats::sample_valid) || marks[c]) continue;
-    if (flags & formats::sample_dynamic) {
-      marks[c] = moved;
-    } else if (flags & formats::sample_anchored) {
-      marks[c] = changes.points[kept.anchors[c]];
-    } else if (flags & formats::sample_near) {   // what neither has an anchor nor more along it is black, whatever the light
-      marks[c] = unanchored;
-    }
-  }
-  for (const Box3& box : changes.boxes) {
-    const CellsTowards towards(kept.position(), directions.frame(), box, kept.record.rings, kept.record.sectors);
-    towards.for_each([&](std::uint32_t c) {
-      if (!(kept.samples[c].flags & formats::sample_valid) || marks[c] == moved) return;
-      const bool miss = kept.samples[c].flags & formats::sample_miss;
-      const float distance = miss ? INFINITY : units_.decode(kept.samples[c].distance) * (1 + 0x1p-10f);
-      Ray ray;
-      std::uint64_t key = 0;
-      if (directions.aim(c, kept.draw_of(c), ray, key) && meets(ray, distance, box)) marks[c] = moved;
-    });
-  }
-  return std::any_of(marks.begin(), marks.end(), [](std::uint8_t mark) { return mark != unmarked; });
-}
-
 /// Traces the marked cells along the rays that their ages say.
 void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions,
                            const GatherStrata& strata, std::span<const std::uint8_t> marks, GatherCounts& counts) const {
@@ -208,7 +131,7 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
   const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (coated) radiance[i] *= bsdf.arrival_weight(dot(rays[i].direction, kept.normal()));
-    const bool bright = is_bright(sources[i].point);
+    const bool bright = is_bright(scene_, sources[i].point);
     sources[i].partial |= bright;
     keep_ray(kept, cells[i], radiance[i], distance[i], sources[i], sources[i].point < scene_.anchored_points && !bright, units_);
   }
@@ -229,14 +152,8 @@ void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, boo
 }
 
 /// The explicit part of a record whose cells have no reason to change.
-void TemporalGather::sample_explicit(KeptHemisphere& kept, const Changes& changes, GatherCounts& counts) const {
+void TemporalGather::sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const {
   finish(place_of(kept), kept, near_a_mover(kept, changes), false, counts);
-}
-
-/// Has something moved where a record looks around itself?
-bool TemporalGather::near_a_mover(const KeptHemisphere& kept, const Changes& changes) {
-  return std::any_of(changes.boxes.begin(), changes.boxes.end(),
-                     [&](const Box3& box) { return holds(grown(box, std::min(kept.record.clearance_reach, 1e15f)), kept.position()); });
 }
 
 KeptHemisphere TemporalGather::birth(const SeenPoint& seen, const RecordStore::Expected& expected, GatherCounts& counts) const {
@@ -268,16 +185,16 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, const RecordStore::E
 }
 
 /// Takes a record along with what it rides on and marks the cells that are traced again. False if nothing about its light has changed.
-bool TemporalGather::look(KeptHemisphere& kept, const Changes& changes, Marked& marked) const {
+bool TemporalGather::look(KeptHemisphere& kept, const LightChanges& changes, Marked& marked) const {
   if (kept.record.set == formats::SurfaceSet::dynamic_set) ride(kept);
   const SurfacePoint place = place_of(kept);
   const GatherDirections directions(place, kept.normal(), kept.record.rings, kept.record.sectors, kept.record.key);
-  marked.changed = mark(kept, changes, directions, marked.marks);
+  marked.changed = mark_cells(kept, changes, directions, units_, marked.marks);
   marked.count = std::size_t(std::count_if(marked.marks.begin(), marked.marks.end(), is_traced));
   return marked.changed;
 }
 
-void TemporalGather::update(KeptHemisphere& kept, const Changes& changes, double aged_share, Marked& marked, TemporalCounts& counts) const {
+void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, double aged_share, Marked& marked, TemporalCounts& counts) const {
   thread_local std::vector<std::uint16_t> ages;
   thread_local std::vector<std::uint32_t> drawn;
   thread_local AgeDraw lot;
@@ -285,7 +202,7 @@ void TemporalGather::update(KeptHemisphere& kept, const Changes& changes, double
   std::vector<std::uint8_t>& marks = marked.marks;
   const SurfacePoint place = place_of(kept);
   const GatherDirections directions(place, kept.normal(), r.rings, r.sectors, r.key);
-  if (marks.empty()) mark(kept, changes, directions, marks);
+  if (marks.empty()) mark_cells(kept, changes, directions, units_, marks);
   ++r.updates;
   ages.resize(marks.size());
   for (std::size_t c = 0; c < marks.size(); ++c) {
@@ -313,7 +230,7 @@ void TemporalGather::update(KeptHemisphere& kept, const Changes& changes, double
 }
 
 /// Looks at all records, then updates those that change: how many cells are drawn by age follows from how many are traced anyway.
-void TemporalGather::update_all(KeptHemispheres& kept, const Changes& changes, const std::vector<bool>& gone, TemporalCounts& counts) const {
+void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& changes, const std::vector<bool>& gone, TemporalCounts& counts) const {
   std::vector<Marked> marked(kept.records.size());
   std::mutex mutex;
   std::size_t traced = 0, others = 0;
@@ -370,7 +287,7 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
     counts.deforming += gone[i] && !lost_place;
     counts.removed += lost_place;
   }
-  const Changes changes = this->changes(kept);
+  const LightChanges changes = light_changes(scene_, kept);
   if (changes.anything) {
     update_all(kept, changes, gone, counts);
     for (std::size_t i = 0; i < before; ++i) {

@@ -43,6 +43,8 @@ struct TemporalScene {
   std::string high_hash = {};
 };
 
+struct LightChanges;   // lib/temporal/light_changes.h
+
 /// How many of a frame's first points lie on what stands still.
 std::size_t anchored_points(const SceneFrame& frame, std::span<const IrradiancePoint> points);
 
@@ -69,24 +71,18 @@ class TemporalGather {
              const std::function<void(double)>& progress = {}) const;
 
  private:
-  struct Changes;
-  struct Shots;
   const GatherStrata& strata_of(int rings, int sectors) const;
   struct Marked;
-  bool look(KeptHemisphere& kept, const Changes& changes, Marked& marked) const;
-  void update(KeptHemisphere& kept, const Changes& changes, double aged_share, Marked& marked, TemporalCounts& counts) const;
-  void update_all(KeptHemispheres& kept, const Changes& changes, const std::vector<bool>& gone, TemporalCounts& counts) const;
-  bool mark(const KeptHemisphere& kept, const Changes& changes, const GatherDirections& directions, std::vector<std::uint8_t>& marks) const;
+  bool look(KeptHemisphere& kept, const LightChanges& changes, Marked& marked) const;
+  void update(KeptHemisphere& kept, const LightChanges& changes, double aged_share, Marked& marked, TemporalCounts& counts) const;
+  void update_all(KeptHemispheres& kept, const LightChanges& changes, const std::vector<bool>& gone, TemporalCounts& counts) const;
   void shoot(const SurfacePoint& place, KeptHemisphere& kept, const GatherDirections& directions, const GatherStrata& strata,
              std::span<const std::uint8_t> marks, GatherCounts& counts) const;
-  bool is_bright(std::uint32_t point) const;
   void finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born, GatherCounts& counts) const;
-  static bool near_a_mover(const KeptHemisphere& kept, const Changes& changes);
-  void sample_explicit(KeptHemisphere& kept, const Changes& changes, GatherCounts& counts) const;
+  void sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const;
   KeptHemisphere birth(const SeenPoint& seen, const RecordStore::Expected& expected, GatherCounts& counts) const;
   SurfacePoint place_of(const KeptHemisphere& kept) const;
   void ride(KeptHemisphere& kept) const;
-  Changes changes(const KeptHemispheres& kept) const;
   void fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const;
 
   TemporalScene scene_;

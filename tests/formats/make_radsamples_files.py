@@ -149,7 +149,6 @@ overlay_text = as_bytes[16:16 + struct.unpack_from("<I", as_bytes, 12)[0]]
 save("refuse/overlay-without-digest", with_text(overlay_text.replace(b"base-digest: " + BASE["base-digest"].encode() + b"\n", b""), minor=1))
 save("refuse/overlay-without-base", with_text(overlay_text.replace(b"base: worked-example.radsamples\n", b""), minor=1))
 save("refuse/overlay-in-version-1.0", with_text(overlay_text))
-save("refuse/overlay-of-another-part", overlay(KEPT, high="e5"))
 low_as_bytes = encode_radsamples(changed(high="e5"))
 low_text = low_as_bytes[16:16 + struct.unpack_from("<I", low_as_bytes, 12)[0]]
 save("refuse/header-high-in-version-1.1", with_text(low_text, minor=1))

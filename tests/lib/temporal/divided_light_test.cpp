@@ -1,0 +1,115 @@
+// Bright points sampled explicitly beside samples that are kept.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/gather/bright_points.h"
+#include "lib/temporal/temporal_gather.h"
+#include "tests/support/scenes.h"
+
+namespace tempolux {
+namespace {
+
+using test::HandMadeScene;
+using test::matte;
+
+/// A floor that is black, and high above it a bright square of 1 m, for which one point stands (spacing 1, R = 0.56 m). Seen from 8 m, beyond the fade at 6 R,
+/// all of its high part is sampled explicitly.
+struct Spot {
+  HandMadeScene scene;
+  std::vector<IrradiancePoint> points;
+  explicit Spot(float irradiance, bool moved = false) {
+    scene.add_quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}, matte(Rgb(0.0f)));
+    scene.add_quad({-0.5f, 8, -0.5f}, {0.5f, 8, -0.5f}, {0.5f, 8, 0.5f}, {-0.5f, 8, 0.5f}, matte(Rgb(1.0f)));
+    const float x = moved ? 3.5f : 3;   // something small aside, that moves
+    scene.add_quad({x, 0.5f, 0.1f}, {x + 0.1f, 0.5f, 0.1f}, {x + 0.1f, 0.5f, 0}, {x, 0.5f, 0}, matte(Rgb(0.0f)), true);
+    IrradiancePoint point;
+    point.position = {0, 8, 0};
+    point.normal = {0, -1, 0};
+    point.object = 1;
+    point.indirect = Rgb(irradiance);
+    points.push_back(point);
+  }
+};
+
+/// Radii so small that each place gets a record of its own.
+PlacementOptions each_place_its_own() {
+  PlacementOptions options;
+  options.error_bound = 1e-6f;
+  options.clamp_neighbours = false;
+  return options;
+}
+
+double mean_of(const KeptHemispheres& kept) {
+  double sum = 0;
+  for (const KeptHemisphere& k : kept.records) sum += double(k.record.irradiance[1]);
+  return sum / double(kept.records.size());
+}
+
+/// One frame of it: the first, or what follows from `kept`. high: share of the point's light.
+KeptHemispheres spot_frame(Spot& now, Spot* before, float high, KeptHemispheres kept, TemporalCounts& counts) {
+  const SceneFrame& frame = now.scene.frame();
+  const Tracer tracer(frame);
+  const Lights lights(frame, EmissionTable{});
+  const PointLookup lookup(now.points, 1);
+  const std::vector<float> shares{high};
+  const BrightPoints bright(tracer, lights, lookup, shares, {});
+  const TemporalScene scene{tracer, lights, lookup, now.points, anchored_points(frame, now.points), before ? &before->scene.frame() : nullptr,
+                            high > 0 ? std::span<const float>(shares) : std::span<const float>(), high > 0 ? "share " + std::to_string(high) : ""};
+  const TemporalGather gather(scene, {.rays = 500, .bright = high > 0 ? &bright : nullptr, .bright_samples = 16}, each_place_its_own(), {}, 8);
+  if (before) gather.advance(kept, counts);
+  RecordStore store;
+  gather.place([&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      Hit hit;
+      seen[i].reset();
+      if (!before && tracer.intersect({{0.02f * looks[i].x, 0.1f, 0.02f * looks[i].y}, {0, -1, 0}}, hit))
+        seen[i] = SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
+    }
+  }, 10, 10, kept, store, counts);
+  return kept;
+}
+
+// A square of 1 m at 8 m, radiance E / pi, right above: irradiance E / pi x integral of cos cos / l^2 = E / pi x 0.01551 (the square's corners are
+// at most 0.71 m aside). Explicit samples of 16 sites know it to 1 %; rays find it with 500 / pi x 0.0155 = 2.5 of 500 cells, 100 records: 1 / sqrt(250) = 6 %.
+// Whatever share is high, whether it is so from the start or comes and goes, the light is the same; and in each frame that of the frame.
+TEST(DividedLight, TheHighPartIsThatOfTheFrame) {
+  const double form = 0.01551 / M_PI;
+  double exact = 0;
+  for (int i = 0; i < 100; ++i)
+    for (int j = 0; j < 100; ++j) {
+      const double x = (i + 0.5) / 100 - 0.5, z = (j + 0.5) / 100 - 0.5, l2 = x * x + z * z + 64;
+      exact += 64 / (l2 * l2) / 1e4;
+    }
+  ASSERT_NEAR(exact, 0.01551, 1e-4);
+  Spot first(100), second(150, true), third(60);
+  for (const std::array<float, 3> high : {std::array{1.0f, 1.0f, 1.0f}, {0.5f, 0.9f, 0.2f}, {0.0f, 1.0f, 0.0f}, {1.0f, 0.0f, 1.0f}}) {
+    TemporalCounts a, b, c;
+    KeptHemispheres kept = spot_frame(first, nullptr, high[0], {}, a);
+    ASSERT_EQ(kept.records.size(), 100u);
+    const float expected_share = kept.records[0].record.expected_share;
+    const auto tolerance = [&](float share) { return share == 1 ? 0.02 : 0.2; };   // 3 s.e. of rays alone
+    EXPECT_NEAR(mean_of(kept) / (100 * form), 1, tolerance(high[0])) << high[0];
+    kept = spot_frame(second, &first, high[1], std::move(kept), b);
+    EXPECT_NEAR(mean_of(kept) / (150 * form), 1, tolerance(high[1])) << high[1];
+    kept = spot_frame(third, &second, high[2], std::move(kept), c);
+    EXPECT_NEAR(mean_of(kept) / (60 * form), 1, tolerance(high[2])) << high[2];
+    for (const KeptHemisphere& k : kept.records)
+      EXPECT_TRUE(high[2] == 0 || std::ranges::find(k.anchors, 0u) == k.anchors.end()) << "an anchor of a bright point";
+    EXPECT_EQ(kept.records[0].record.expected_share, expected_share) << "what the explicit part adds must not add up";
+  }
+  // Nothing moves: nothing is sampled.
+  Spot same(100);
+  TemporalCounts a, still;
+  const KeptHemispheres kept = spot_frame(first, nullptr, 0.7f, {}, a), again = spot_frame(same, &first, 0.7f, kept, still);
+  EXPECT_EQ(still.update.rays + still.update.shadow_rays, 0u);
+  ASSERT_EQ(again.records.size(), kept.records.size());
+  for (std::size_t i = 0; i < kept.records.size(); ++i) {
+    EXPECT_EQ(again.records[i].record, kept.records[i].record);
+    EXPECT_EQ(again.records[i].samples, kept.records[i].samples);
+  }
+}
+
+}  // namespace
+}  // namespace tempolux
