@@ -92,7 +92,7 @@ void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options&
   tool.stats().phase("pilot", true);
   const SceneFrame frame = input.at(plan.frames[plan.frames.size() / 2]);
   const CameraView view(frame.camera(camera), frame.origin, options.run.width, options.run.height);
-  const Tracer tracer(frame, TreeQuality::quick);
+  const Tracer tracer(frame);
   const Lights lights(frame, input.emission(frame.frame));
   const IndirectPilot pilot = pilot_indirect({tracer, lights}, view, options.pixel_error, 0);
   plan.record_rays = record_rays(pilot, options.rays);

@@ -50,7 +50,7 @@ PilotMaps trace_maps(const SceneFrame& frame, const SceneFrame& standing, const 
   options.photon_count = kPaths;
   options.group_count = 1;
   options.set_kinds("indirect");
-  const Tracer whole_tracer(frame, TreeQuality::quick), fixed_tracer(standing, TreeQuality::quick);
+  const Tracer whole_tracer(frame), fixed_tracer(standing);
   const Lights whole_lights(frame, emission), fixed_lights(standing, emission);
   const PhotonTracer whole(whole_tracer, whole_lights, options);
   PhotonTracer fixed(fixed_tracer, fixed_lights, options);
@@ -84,7 +84,7 @@ MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission,
   const SceneFrame standing = standing_scene(frame);
   const PilotMaps maps = trace_maps(frame, standing, emission, seed);
   const PhotonIndex fixed(maps.fixed, kind_bit(formats::PathKind::indirect), {}), dynamic(maps.dynamic, kind_bit(formats::PathKind::indirect), {});
-  const Tracer tracer(frame, TreeQuality::quick);
+  const Tracer tracer(frame);
   const Lights lights(frame, emission);
   const SeenPlaces seen = places_seen({tracer, lights}, view, kPlaces, seed);
   std::vector<std::uint8_t> gathered(kPlaces, 0);

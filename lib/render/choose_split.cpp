@@ -46,7 +46,7 @@ struct Moments {
 }  // namespace
 
 SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view, std::uint64_t seed) {
-  const Tracer tracer(frame, TreeQuality::quick);
+  const Tracer tracer(frame);
   const Lights lights(frame, emission);
   const RenderScene scene{tracer, lights};
   const std::vector<formats::Photon> photons = trace_photons(scene, seed);

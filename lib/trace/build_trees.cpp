@@ -89,7 +89,7 @@ const SharedTree& Tracer::Impl::shared_tree(const Primitive& primitive) {
   SharedTree& shared = forest->shared_trees[&primitive];
   if (shared.scene) return shared;
   shared.scene = rtcNewScene(forest->device);
-  rtcSetSceneBuildQuality(shared.scene, forest->quality);
+  rtcSetSceneBuildQuality(shared.scene, RTC_BUILD_QUALITY_MEDIUM);
   rtcSetSceneFlags(shared.scene, RTC_SCENE_FLAG_ROBUST);
   const RTCGeometry geometry = triangles_of(primitive, primitive.positions.data());
   rtcCommitGeometry(geometry);
@@ -133,7 +133,7 @@ void Tracer::Impl::build(Tree& tree, std::size_t first, std::size_t last) {
   tree.first_surface = std::uint32_t(first);
   if (first == last) return;
   tree.scene = rtcNewScene(forest->device);
-  rtcSetSceneBuildQuality(tree.scene, forest->quality);
+  rtcSetSceneBuildQuality(tree.scene, RTC_BUILD_QUALITY_MEDIUM);
   rtcSetSceneFlags(tree.scene, RTC_SCENE_FLAG_ROBUST);
   for (std::size_t s = first; s < last; ++s) {
     const Surface& surface = frame->surfaces[s];
@@ -163,21 +163,20 @@ void Tracer::Impl::build(Tree& tree, std::size_t first, std::size_t last) {
   tree.bounds = {tree.bounds.lower - Vec3{margin, margin, margin}, tree.bounds.upper + Vec3{margin, margin, margin}};
 }
 
-Tracer::Tracer(const SceneFrame& frame, TreeQuality quality) : impl_(std::make_unique<Impl>()) {
+Tracer::Tracer(const SceneFrame& frame) : impl_(std::make_unique<Impl>()) {
   StandingTree none;
-  build(frame, none, quality);
+  build(frame, none);
 }
 
 Tracer::Tracer(const SceneFrame& frame, StandingTree& standing) : impl_(std::make_unique<Impl>()) {
-  build(frame, standing, TreeQuality::fine);
+  build(frame, standing);
 }
 
-void Tracer::build(const SceneFrame& frame, StandingTree& standing, TreeQuality quality) {
+void Tracer::build(const SceneFrame& frame, StandingTree& standing) {
   impl_->frame = &frame;
   if (!standing.kept_ || !standing.kept_->holds_for(frame)) {
     standing.kept_.reset();   // before the next one: they need not fit into memory together
     impl_->forest = std::make_shared<Forest>();
-    impl_->forest->quality = quality == TreeQuality::quick ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM;
     const auto made = std::make_shared<StandingTree::Kept>();
     made->forest = impl_->forest;
     made->surfaces.assign(frame.surfaces.begin(), frame.surfaces.begin() + std::ptrdiff_t(frame.static_count));

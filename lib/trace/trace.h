@@ -24,9 +24,6 @@ struct Hit {
   float u = 0, v = 0;                            ///< barycentrics of corners 1 and 2
 };
 
-/// How search trees are built: quick ones in about half the time and for somewhat slower rays, for pilots that send few.
-enum class TreeQuality { fine, quick };
-
 /// The search tree of what stands still, handed from the Tracer of one frame to that of the next: built anew only where
 /// that is something else. For the frames of one Scene, one Tracer made at a time.
 class StandingTree {
@@ -47,7 +44,7 @@ class StandingTree {
 /// and counted, never an abort.
 class Tracer {
  public:
-  explicit Tracer(const SceneFrame& frame, TreeQuality quality = TreeQuality::fine);
+  explicit Tracer(const SceneFrame& frame);
   /// The same; the tree of the static surfaces is that of `standing` if they are the same arrays, as in all frames of a
   /// SegmentScene, and let no ray pass by alpha. Else it is built, and left there for the next.
   Tracer(const SceneFrame& frame, StandingTree& standing);
@@ -75,7 +72,7 @@ class Tracer {
 
  private:
   struct Impl;
-  void build(const SceneFrame& frame, StandingTree& standing, TreeQuality quality);
+  void build(const SceneFrame& frame, StandingTree& standing);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -115,7 +115,6 @@ struct AlphaSurface {
 /// differently, and one ray at a time gains nothing by them; what we are compiled for has these.
 struct Forest {
   RTCDevice device = rtcNewDevice("isa=avx2");
-  RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
   std::unordered_map<const Primitive*, SharedTree> shared_trees;
 
   Forest();
