@@ -171,8 +171,10 @@ void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset, int ti
     cells.resize(std::size_t(place.cuts) * place.cuts);
     Cell& cell = cells[place.cell];
     cell.photons += std::uint32_t(times);
-    for (std::size_t c = 0; c < 3; ++c)
-      cell.sums[c] += times * std::int64_t(std::llrint(std::clamp(double(photons[i].flux[c]) / unit_, 0.0, 9e18)));
+    for (std::size_t c = 0; c < 3; ++c) {   // unsigned: what overflows in a damaged file wraps, and comes back when it is taken away
+      const auto more = std::uint64_t(std::llrint(std::clamp(double(photons[i].flux[c]) / unit_, 0.0, 9e18)));
+      cell.sums[c] = std::int64_t(std::uint64_t(cell.sums[c]) + std::uint64_t(std::int64_t(times)) * more);
+    }
   }
 }
 

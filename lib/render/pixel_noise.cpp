@@ -110,7 +110,7 @@ PartCounts PixelNoise::missing_at(int x, int y) const {
   const double onward_variance = first_.onward > 1 ? within / n : sample_variance(n, onward, onward_square);
   const auto further = [&](double variance, double cost, int first) {
     const double wanted = wanted_samples(std::sqrt(variance), cost, level / n, picture_, options_.pixel_error);
-    return std::max(0, int(std::min(wanted, double(options_.adaptive_limit))) - first);
+    return std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
   };
   PartCounts more{further(own_variance(x, y), kOwn, first_.own), further(lit_variance, kLit, first_.lit),
                   further(onward_variance, std::max(kLeastOnward, rays / n), first_.onward)};

@@ -133,6 +133,7 @@ void Tracer::Impl::build(Tree& tree, std::size_t first, std::size_t last) {
   tree.first_surface = std::uint32_t(first);
   if (first == last) return;
   tree.scene = rtcNewScene(forest->device);
+  // Not the quick build: in Debian's Embree 3.13 it ends the process by an assertion where all meshes lie in one plane.
   rtcSetSceneBuildQuality(tree.scene, RTC_BUILD_QUALITY_MEDIUM);
   rtcSetSceneFlags(tree.scene, RTC_SCENE_FLAG_ROBUST);
   for (std::size_t s = first; s < last; ++s) {
