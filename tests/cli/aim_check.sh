@@ -10,6 +10,9 @@ sys.path.insert(0, sys.argv[1])
 from open_scenes import hut
 hut(5, True).save("small.glb")
 hut(500, True).save("wide.glb")
+lit = hut(500, False)
+lit.quad((-0.5, 2.5, -0.5), (0.5, 2.5, -0.5), (0.5, 2.5, 0.5), (-0.5, 2.5, 0.5), lit.material(0.0, 15, one_sided=True))
+lit.save("lit.glb")
 EOF
 plan() { scene=$1; shift; scene-plan "$scene" --frames 0 -q "$@" || bad "plan of $scene"; }
 plan wide.glb --camera inside -o wide
@@ -17,7 +20,10 @@ plan wide.glb --camera outside -o outside
 plan small.glb --camera inside -o small
 plan "$scenes/S2_cornell_moving.glb" -o lamps
 
-# Wide ground: spheres. Small ground: a file without spheres. Lamps alone: no file.
+plan lit.glb --camera inside -o lit
+
+# Wide ground: spheres, also under a lamp. Small ground: a file without spheres. Lamps alone in a room: no file.
+[ "$(wc -l <lit/state/view.0000)" -gt 8 ] || bad 'lit: few spheres'
 [ "$(head -1 wide/state/view.0000)" = 'tempolux view 1.0' ] || bad 'wide: first line'
 [ "$(wc -l <wide/state/view.0000)" -gt 8 ] || bad 'wide: few spheres'
 [ "$(wc -l <wide/state/view.0000)" -le 33 ] || bad 'wide: many spheres'
