@@ -4,16 +4,7 @@
 #
 #     read_irrad_test.sh FORMAT PATH-OF-ITS-TEST       in the folder tests; FORMAT: irradpoints or irradcache
 format=$1 program=$2
-here=$(pwd)/formats
-folder=$(mktemp -d) || exit 3
-export PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$here
-trap 'rm -rf "$folder"' EXIT
-bad=0
-fail() { echo "read_irrad_test: $*"; bad=1; }
-cpp() {  # writes its files into the folder, and FILE.expected for each one there
-  TEMPOLUX_SECOND_READER=$folder "$program" --gtest_filter='*.FilesForTheSecondReader' >"$folder/log" 2>&1 ||
-    { cat "$folder/log"; fail "the C++ failed"; }
-}
+. formats/second_reader.sh
 numbers() {  # what FILE.expected holds, from the JSON
   python3 -c 'import json, sys
 j = json.load(sys.stdin)

@@ -4,13 +4,8 @@
 #
 #     read_radsamples_test.sh PATH-OF-THE-TEST       in the folder tests
 program=$1
-here=$(pwd)/formats
-folder=$(mktemp -d) || exit 3
-export PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$here
-trap 'rm -rf "$folder"' EXIT
-bad=0
-fail() { echo "read_radsamples_test: $*"; bad=1; }
-TEMPOLUX_SECOND_READER=$folder "$program" --gtest_filter='*.FilesForTheSecondReader' >"$folder/log" 2>&1 || { cat "$folder/log"; fail "the C++ failed"; }
+. formats/second_reader.sh
+cpp
 for name in example many empty overlay low; do
   file=$folder/$name.radsamples
   python3 "$here/read_radsamples.py" "$file" "$folder/copy" >"$folder/json" || fail "$name not read"

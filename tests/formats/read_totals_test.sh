@@ -4,14 +4,8 @@
 #
 #     read_totals_test.sh FORMAT PATH-OF-ITS-TEST       in the folder tests; FORMAT: paths or meshirrad
 format=$1 program=$2
-here=$(pwd)/formats
-folder=$(mktemp -d) || exit 3
-export PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$here
-trap 'rm -rf "$folder"' EXIT
-bad=0
-fail() { echo "read_totals_test: $format: $*"; bad=1; }
-TEMPOLUX_SECOND_READER=$folder "$program" --gtest_filter='*.FilesForTheSecondReader' >"$folder/log" 2>&1 ||
-  { cat "$folder/log"; fail "the C++ failed"; }
+. formats/second_reader.sh
+cpp
 [ -e "$folder/rich.$format" ] || fail "the C++ wrote nothing"
 for file in "$folder"/*."$format"; do
   python3 "$here/read_$format.py" "$file" "$folder/copy" >"$folder/json" || fail "$file not read"
