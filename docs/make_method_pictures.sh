@@ -1,5 +1,5 @@
 #!/bin/sh
-# Make the pictures of docs/methods/split.md and dynamic.md again, into docs/images: sh docs/make_method_pictures.sh [BIN]
+# Make the pictures of docs/methods/split.md, dynamic.md and caustics.md again, into docs/images: sh docs/make_method_pictures.sh [BIN]
 # Run at the top of the tree; BIN is the folder with the tools. Takes about a CPU minute.
 bin=${1:-build/release/bin} out=docs/images
 work=$(mktemp -d) || exit 3
@@ -47,3 +47,16 @@ for layer in influence blend; do "$info" --png "$work/$layer.png" --layer $layer
 "$info" --png "$work/whole.png" "$work/u.exr"
 "$info" --sheet $out/localised.png --columns 3 --tile 240 "$work/t.png" "$work/y.png" "$work/u.png" "$work/influence.png" "$work/blend.png" "$work/whole.png"
 ls -l $out/split.png $out/localised.png
+
+# Light through glass by paths, and by a map of caustic photons: a scene that stays outside of the tree.
+glass=../shared/scenes/found/gltf/playcanvas/AttenuationTest.glb sky=../shared/scenes/found/hdri/spiaggia_di_mondello_1k.hdr
+if [ -f $glass ]; then
+  "$bin/photon-trace" $glass --environment $sky --frame 10 --kinds caustic -o "$work/c.photons" -q
+  for map in '' "--photons $work/c.photons"; do
+    "$bin/frame-render" $glass --environment $sky --frame 10 --camera auto --size 320x180 --spp 4 --pixel-error 0.016 --learn-lights $map -o "$work/glass${map:+map}.exr" -q
+    "$info" --png "$work/glass${map:+map}.png" "$work/glass${map:+map}.exr"
+  done
+  "$info" --sheet $out/caustics-paths.png --columns 2 --tile 320 "$work/glass.png" "$work/glassmap.png"
+else
+  echo "skipped: caustics-paths.png, $glass is not there"
+fi

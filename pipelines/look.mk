@@ -21,7 +21,7 @@ $(judged:%=$(OUT)/path/%.exr): $(OUT)/path/%.exr: $$(camera_$$*) $$(light_$$*) $
 $(OUT)/error/%.json: $(OUT)/frames/%.exr $(OUT)/path/%.exr $(BIN)/aqm-compare
 	$(RUN) $(BIN)/aqm-compare $< --reference-halves $(OUT)/path/$*_a.exr $(OUT)/path/$*_b.exr --json $@ --quiet
 # And what did it cost? For each its error, and the processor seconds of all stages that lead to it.
-spent = $(if $(raw),$(OUT)/raw/$1.json+)$(if $(plan_media),$(OUT)/clear/$1.json+)$(foreach s,$(if $(photons_$1),photons $(or $(textured),points $(split_stage) $(if $(records),cache))),$(OUT)/$s/$(photons_$1).json+)$(if \
+spent = $(if $(raw),$(OUT)/raw/$1.json+)$(if $(plan_media),$(OUT)/clear/$1.json+)$(foreach s,$(if $(photons_$1),photons $(if $(filter paths,$(plan_indirect)),,$(or $(textured),points $(split_stage) $(if $(records),cache)))),$(OUT)/$s/$(photons_$1).json+)$(if \
   $(stands_$(photons_$1)),$(call spent_on_segment,$(stands_$(photons_$1))))$(OUT)/frames/$1.json
 $(OUT)/report/index.html: $(judged:%=$(OUT)/error/%.json) $(OUT)/options/report $(BIN)/error-report
 	$(RUN) $(BIN)/error-report $(options_report)

@@ -155,6 +155,7 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--integrator cache: name the cache with --irradcache FILE");
   if (options.integrator == "path" && !options.traces_paths())
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
+  options.light.photons_alone = options.integrator == "photons";
   tools::check_influence(options.light.influence);
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
@@ -180,7 +181,7 @@ void add_light_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "path", "photons", "cache"}));
   app.add_option("--photons", options.light.photons,
-                 ".photons file, or a pattern: indirect and caustic light; with --irradcache caustic light")
+                 ".photons file, or a pattern: indirect and caustic light; with --irradcache, or of a map of --kinds caustic, caustic light alone")
       ->type_name("FILE");
   app.add_option("--dynamic", options.light.dynamic,
                  ".photons file of the frame, photon-trace --map dynamic, or a pattern: --photons is then the segment's static map")

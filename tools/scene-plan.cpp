@@ -19,9 +19,11 @@
 #include "formats/error.h"
 #include "lib/core/parallel.h"
 #include "lib/plan/plan_files.h"
+#include "lib/render/choose_caustics.h"
 #include "lib/render/choose_indirect.h"
 #include "lib/render/choose_moving.h"
 #include "lib/render/choose_split.h"
+#include "lib/render/seen_spheres.h"
 #include "tools/common/option_words.h"
 #include "tools/common/pilot.h"
 #include "tools/common/plan_views.h"
@@ -84,6 +86,16 @@ void write_plan(tools::Tool& tool, const Plan& plan, const std::vector<std::stri
   tool.stats().count("state_files_changed", double(changed));
 }
 
+/// Of photons that are aimed where the camera looks, as photon-trace aims them.
+CausticPilot aimed_caustics(const Tracer& tracer, tools::SceneInput& input, const CameraView& view) {
+  EmissionTable emission = input.emission(tracer.frame().frame);
+  std::vector<WeighedPlace> places;
+  add_seen_places(tracer, view, 0, places);
+  emission.aim = tools::spheres_in_scene(spheres_around(places, emission.sphere_radius), tracer.frame().origin);
+  const Lights lights(tracer.frame(), emission);
+  return pilot_caustics({tracer, lights}, view, 0);
+}
+
 /// Decides how indirect light is to be found: as asked, or by a pilot of the middle one of the frames asked for.
 void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options& options, int camera, Plan& plan) {
   if (plan.photon_kinds.empty()) return;
@@ -99,14 +111,16 @@ void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options&
   const IndirectChoice choice = choose_indirect(pilot);
   const std::string method = kIndirectMethods[std::size_t(choice.method)];
   if (plan.media && method == "paths") return use_indirect(plan, "gather", "photons light the media, points read them, too");
-  use_indirect(plan, method, choice.because);
+  if (choice.method != IndirectMethod::paths || plan.photon_kinds.find("caustic") == std::string::npos) return use_indirect(plan, method, choice.because);
+  const CausticChoice caustics = choose_caustics(pilot, aimed_caustics(tracer, input, view));
+  use_indirect(plan, method, choice.because + "; " + caustics.because, caustics.map);
 }
 
 /// Decides what of a frame's light follows from that of what stands: as asked, or by a pilot. What it then costs is noted for the
 /// estimate.
 void decide_moving(tools::Tool& tool, tools::SceneInput& input, Options& options, int camera, Plan& plan) {
   const UpdatableLight light = updatable_light(plan);
-  if (plan.photon_kinds.empty()) return;
+  if (plan.photon_kinds.empty() || plan.indirect == "paths") return;
   if (light.segments == 0)
     return use_moving(plan, "anew", "no segment has " + std::to_string(kFewestStates) + " states of light");
   if (plan.media && options.moving != "auto" && options.moving != "anew")

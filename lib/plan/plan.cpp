@@ -242,14 +242,15 @@ void plan_stages(const Scene& scene, Plan& plan) {
 
 }  // namespace
 
-void use_indirect(Plan& plan, const std::string& method, const std::string& because) {
+void use_indirect(Plan& plan, const std::string& method, const std::string& because, bool caustic_map) {
   if (plan.photon_kinds.empty()) return;
   if (plan.media && method == "paths") throw InputError("indirect light by paths: the scene has media, which photons light; choose records or gather");
   plan.indirect = method;
-  if (method == "paths") plan.photon_kinds.clear();
+  if (method == "paths") plan.photon_kinds = caustic_map ? "caustic" : "";
   for (Stage& stage : plan.stages) {
     const bool records = stage.name == "irradcache-build records";
-    const bool before = stage.name.starts_with("photon-trace") || stage.name == "irradcache-build points";
+    const bool left = caustic_map && (stage.name == "photon-trace" || stage.name == "photon-trace --kinds caustic");
+    const bool before = !left && (stage.name.starts_with("photon-trace") || stage.name == "irradcache-build points");
     if (!stage.needed || !(records || before)) continue;
     if (records) stage.because += "; " + because;
     if (method == "paths" || (records && method == "gather")) stage = {stage.name, false, because};
@@ -287,7 +288,7 @@ UpdatableLight updatable_light(const Plan& plan) {
 }
 
 void use_moving(Plan& plan, const std::string& method, const std::string& because) {
-  if (plan.photon_kinds.empty()) return;
+  if (plan.photon_kinds.empty() || plan.indirect == "paths") return;
   if (plan.media && method != "anew") throw InputError("light that follows from that of what stands: the scene has media, which all light meets; use anew");
   const auto states = states_by_segment(plan);
   const bool records = (method == "records" || method == "time") && plan.indirect == "records";

@@ -89,8 +89,8 @@ struct Plan {
 
 /// Leaves out what another way of finding indirect light does not need: records, or photons and points as well.
 /// `because`: the fact that decides. A plan whose scene has no indirect light stays as it is. Throws InputError for paths where
-/// there are media: their light is photons'.
-void use_indirect(Plan& plan, const std::string& method, const std::string& because);
+/// there are media: their light is photons'. `caustic_map`: with paths, photons tell caustic light all the same.
+void use_indirect(Plan& plan, const std::string& method, const std::string& because, bool caustic_map = false);
 
 /// Segments of whose light something stands while something moves: those with kFewestStates states of light or more among what is
 /// asked for.

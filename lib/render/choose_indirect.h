@@ -23,6 +23,10 @@ struct IndirectPilot {
   /// Means over the picture, of the square of radiance (mean of channels): the variance of a path's indirect light, and the squared error
   /// that all other light has left when frame-render has spent the samples that `pixel_error` asks for.
   double indirect_variance = 0, other_error2 = 0;
+  /// The same of samples that were independent: of all but layer indirect, and of paths alone all but layer caustic; samples a pixel.
+  double other_noise = 0, rest_noise = 0, samples = 0;
+  double caustic = 0, caustic_variance = 0;   ///< of layer caustic by paths: its mean radiance, the variance of one path
+  int paths = 0;               ///< of which these are means
 };
 
 /// 2048 places and 8192 paths: some hundredths of a second. Same result for any number of threads.
@@ -39,7 +43,7 @@ struct IndirectChoice {
 };
 
 /// Paths where indirect light is little or most rays leave the scene: what photons, points and records cost is then more than
-/// they save. Else records where lamps light the scene: from a few bright patches, which rays of single pixels seldom find; and
+/// they save. But not under lamps if the noise of paths is mostly that of indirect light, as bounces that land beside a point lamp make it: gathering. Else records where lamps light the scene: from a few bright patches, which rays of single pixels seldom find; and
 /// gathering in the pixel where its light comes through openings. docs/pixels.md has the measurements that the limits are from.
 IndirectChoice choose_indirect(const IndirectPilot& pilot);
 

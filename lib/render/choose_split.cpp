@@ -9,7 +9,7 @@
 #include "lib/density/split_light.h"
 #include "lib/material/bsdf.h"
 #include "lib/material/surface_material.h"
-#include "lib/photon/photon_trace.h"
+#include "lib/render/pilot_photons.h"
 #include "lib/render/places_seen.h"
 
 namespace tempolux {
@@ -18,22 +18,6 @@ namespace {
 constexpr int kPlaces = 2048;
 constexpr std::uint64_t kPaths = 1 << 16;
 constexpr double kPays = 2;      ///< variance_ratio
-
-std::vector<formats::Photon> trace_photons(const RenderScene& scene, std::uint64_t seed) {
-  PhotonOptions options;
-  options.seed = seed;
-  options.photon_count = kPaths;
-  options.group_count = 1;
-  options.set_kinds("direct,caustic,indirect");
-  const PhotonTracer tracer(scene.tracer, scene.lights, options);
-  std::vector<PhotonBatch> batches(tracer.batch_count());
-  parallel_chunks(batches.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t b = first; b < last; ++b) batches[b] = tracer.trace(b);
-  });
-  std::vector<formats::Photon> photons;
-  for (const PhotonBatch& batch : batches) photons.insert(photons.end(), batch.block.photons.begin(), batch.block.photons.end());
-  return photons;
-}
 
 /// Mean and variance of numbers, one after the other.
 struct Moments {
@@ -49,7 +33,7 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
   const Tracer tracer(frame);
   const Lights lights(frame, emission);
   const RenderScene scene{tracer, lights};
-  const std::vector<formats::Photon> photons = trace_photons(scene, seed);
+  const std::vector<formats::Photon> photons = pilot_photons(tracer, lights, "direct,caustic,indirect", kPaths, seed);
   CellEdge edge;
   for (const formats::Photon& photon : photons) edge.add(place_of(photon).position);
   EnergyCells cells(edge.edge(), 0);

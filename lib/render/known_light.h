@@ -29,7 +29,7 @@ class KnownLight {
   int bright_samples = 0;                 ///< at the first such place of an eye path; one at each later one
   /// Do eye paths fork at the first Lambert lobe under a gloss, to follow both? A gloss reflects 4 % as a rule: one ray in 25 that
   /// meets something bright makes a dot. Where nothing is known both would be whole paths: a fork costs as much as it gains then.
-  bool forks() const { return records || mesh || localised || points || photons; }
+  bool forks() const { return records || mesh || localised || points || (photons && photons->has_indirect()); }
 
   /// Irradiance of kind indirect at the first Lambert lobe of an eye path; both normals are unit and on the side seen. None where no
   /// record is near: a ray of the hemisphere is to find it. `direct_view`: the camera ray itself met the place; then records with

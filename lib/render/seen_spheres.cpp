@@ -24,16 +24,16 @@ constexpr double kLeastGain = 1;                 ///< log2: twice as dense
 struct Cell {
   int level = 0;                                 // size 2^level m
   std::array<double, 3> index{};                 // whole numbers: corner = index 2^level
-  std::vector<const SeenPlace*> places;
+  std::vector<const WeighedPlace*> places;
   double weight = 0;
 
   double size() const { return std::ldexp(1.0, level); }
 };
 
 /// The cells of this level that hold the places, in the order of their indices.
-std::vector<Cell> cells_of(const std::vector<const SeenPlace*>& places, int level) {
+std::vector<Cell> cells_of(const std::vector<const WeighedPlace*>& places, int level) {
   std::map<std::array<double, 3>, Cell> cells;
-  for (const SeenPlace* place : places) {
+  for (const WeighedPlace* place : places) {
     const Vec3d& p = place->position;
     const std::array index{std::floor(std::ldexp(p.x, -level)), std::floor(std::ldexp(p.y, -level)), std::floor(std::ldexp(p.z, -level))};
     Cell& cell = cells[index];
@@ -54,9 +54,9 @@ int level_above(double x) {
 }
 
 /// A quarter of the median distance seen, rounded down to a power of two; the lowest there is if nothing was.
-int lowest_level(const std::vector<SeenPlace>& places) {
+int lowest_level(const std::vector<WeighedPlace>& places) {
   std::vector<double> distances;
-  for (const SeenPlace& place : places)
+  for (const WeighedPlace& place : places)
     if (place.distance > 0) distances.push_back(place.distance);
   if (distances.empty()) return -1000;
   const auto middle = distances.begin() + std::ptrdiff_t(distances.size() / 2);
@@ -90,7 +90,7 @@ std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
 
 }  // namespace
 
-void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t number, std::vector<SeenPlace>& places) {
+void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t number, std::vector<WeighedPlace>& places) {
   const Vec3d origin = tracer.frame().origin;
   const auto add = [&](Vec3 position, double weight, double distance) {
     places.push_back({Vec3d(position) + origin, weight, distance});
@@ -118,10 +118,10 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
   }
 }
 
-std::vector<formats::ViewSphere> spheres_around(const std::vector<SeenPlace>& places, double scene_radius) {
+std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius) {
   double farthest = 0, whole = 0;
-  std::vector<const SeenPlace*> all;
-  for (const SeenPlace& place : places) {
+  std::vector<const WeighedPlace*> all;
+  for (const WeighedPlace& place : places) {
     const Vec3d& p = place.position;
     farthest = std::max({farthest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     whole += place.weight;

@@ -25,14 +25,20 @@ for kinds in direct indirect caustic caustic,indirect; do
   photon-trace "$matte" --photons 5k --kinds $kinds -o "matte.$kinds" -q || bad "photons: $kinds"
 done
 
-# Without indirect light a map is refused, without caustic light there is a warning where there is a mirror.
+# Without indirect light a map is refused, without caustic light there is a warning where there is a mirror. Beside a map of caustic light alone
+# paths find the rest, unless the photons are to tell it.
 for kinds in direct caustic; do
   for scene in mirror matte; do
     file=$matte; [ $scene = mirror ] && file=mirror.gltf
-    expect 2 "holds no indirect light" frame-render "$file" --photons $scene.$kinds $frame -o made.exr
+    expect 2 "holds no indirect light" frame-render "$file" --integrator photons --photons $scene.$kinds $frame -o made.exr
     expect 2 "holds no indirect light" irradcache-build points "$file" --photons $scene.$kinds $point -o made.irradpoints
     expect 2 "holds no indirect light" irradcache-build "$file" --photons $scene.$kinds $point $tiny -o made.irradcache
   done
+done
+expect 2 "holds no indirect light" frame-render mirror.gltf --photons mirror.direct $frame -o made.exr
+expect 0 '' frame-render mirror.gltf --photons mirror.caustic $frame --channels caustic,indirect -o made.exr
+for layer in caustic indirect; do
+  tempolux-info --json made.exr | tr -d ' \n' | grep -q "\"$layer.G\"[^}]*\"max\":0[.0]*[,}]" && bad "caustic photons beside paths: no $layer light"
 done
 for kinds in indirect caustic,indirect; do
   word='mirror.indirect: holds no caustic light'; [ $kinds = caustic,indirect ] && word=

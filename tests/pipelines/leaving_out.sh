@@ -69,6 +69,10 @@ tool photon-trace "$work/mirror.glb" --photons 5k --kinds caustic,indirect -o "$
 [ "$(count specular_rays "$work/mirror.json")" -gt 0 ] || bad 'a mirror: no specular ray is counted'
 [ "$(kinds "$work/mirror.photons")" = 'caustic indirect ' ] || bad "a mirror: photons of kinds $(kinds "$work/mirror.photons")"
 
+# Where paths find indirect light the mirror's caustics alone are left to photons, or nothing is.
+tool scene-plan "$work/mirror.glb" --frames 0 --indirect paths -o "$work/paths"
+grep -q '^plan_kinds := $' "$work/paths/plan.mk" || bad 'paths asked for: photons planned all the same'
+
 # A texture that no ray touches is not decoded, and what decodes is not opened; one that is touched shows that the list says it.
 top=$(pwd)
 (cd "$work" && python3 -B "$top/tests/cli/make_floor.py") || bad 'make_floor.py'

@@ -48,7 +48,10 @@ void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options,
 
 void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number) {
   const SceneFrame& frame = tracer.frame();
-  const bool alone = options.irradcache.empty() && options.points.empty() && options.meshirrad.empty();   // photons tell indirect light, too
+  const std::string name = frame_name(options.photons, number);
+  // Do photons tell indirect light, too? Beside a map of caustic photons paths find it.
+  const bool alone = options.irradcache.empty() && options.points.empty() && options.meshirrad.empty() &&
+                     (options.photons_alone || formats::PhotonReader(name, {.digest = false}).header().kinds != "caustic");
   const LightNeeded needed = alone ? LightNeeded::all : LightNeeded::caustic;
   const auto shift = [&](const formats::PhotonMap& map) {
     return Vec3d{map.header.origin[0], map.header.origin[1], map.header.origin[2]} - frame.origin;
@@ -56,7 +59,6 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
   tool.stats().phase("read photons");
   formats::PhotonMap map;
   Vec3d moved{};
-  const std::string name = frame_name(options.photons, number);
   if (options.dynamic.empty()) {
     map = read_photons(tool, name, frame, needed);
     moved = shift(map);

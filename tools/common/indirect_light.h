@@ -16,6 +16,7 @@ struct IndirectLightOptions {
   std::string dynamic;                       ///< the same: photons is then the segment's static map
   std::string high;                          ///< the same: points is then the low part of photonmap-split
   int high_samples = 4;                      ///< of an eye path
+  bool photons_alone = false;                ///< photons must tell indirect light
   PhotonLightOptions photon_light;
   InfluenceThresholds influence;             ///< of a localised cache
 };

@@ -148,6 +148,7 @@ class Pilots {
   Pilots(const std::string& scene, const Plan& plan, const RunOptions& options)
       : scene_(scene), options_(options), counts_(plan), frame_count_(double(plan.frames.size())) {
     kinds_ = plan.photon_kinds;
+    with_points_ = plan.indirect != "paths";
     with_records_ = plan.indirect == "records";
     const Words cache = words_of(options.cache), frames = words_of(options.frames);
     for (const Words& words : {frames, cache})
@@ -165,7 +166,7 @@ class Pilots {
     if (!kinds_.empty()) {
       photons();
       done(0.1);
-      points();
+      if (with_points_) points();
       done(0.3);
       if (with_records_) records();
       done(0.7);
@@ -182,7 +183,7 @@ class Pilots {
   const Counts counts_;
   const double frame_count_;
   std::string kinds_;
-  bool with_records_;
+  bool with_points_, with_records_;
   int width_ = 0, height_ = 0;
   Folder folder_;
   Estimate estimate_;
@@ -253,7 +254,7 @@ class Pilots {
     Words words = common(options_.frames, counts_.first);
     take(words, "--size", "");
     words.insert(words.end(), {"--size", size_of(width, height), "-o", output});
-    if (!kinds_.empty()) {
+    if (!kinds_.empty() && with_points_) {
       words.insert(words.end(), {"--points", folder_.file("p.irradpoints")});
       if (with_records_) words.insert(words.end(), {"--irradcache", folder_.file("p.irradcache")});
     }

@@ -22,7 +22,7 @@ void plan_views(SceneInput& input, int camera_node, int width, int height, Plan&
   if (plan.photon_kinds.empty()) return;
   StandingTree standing;
   for (const ViewGroup& group : view_groups(plan)) {
-    std::vector<SeenPlace> places;
+    std::vector<WeighedPlace> places;
     double radius = 0;
     bool from_afar = false;
     const std::size_t count = std::min(kMostPictures, group.pictures.size());

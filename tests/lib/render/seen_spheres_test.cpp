@@ -12,8 +12,8 @@ namespace {
 
 /// `count` places on the walls of a cube of this size around `middle`, seen from its middle, and `far` more on a ground
 /// that reaches `reach` to each side.
-std::vector<SeenPlace> room(Vec3d middle, double size, int count, int far = 0, double reach = 0) {
-  std::vector<SeenPlace> places;
+std::vector<WeighedPlace> room(Vec3d middle, double size, int count, int far = 0, double reach = 0) {
+  std::vector<WeighedPlace> places;
   for (int i = 0; i < count + far; ++i) {
     const PathRandom random(3, std::uint64_t(i));
     const auto number = [&](std::uint32_t k) { return 2 * unit_double(random.bits(0, Purpose::test, k)) - 1; };
@@ -38,11 +38,11 @@ bool held(const std::vector<formats::ViewSphere>& spheres, Vec3d p) {
 
 TEST(SpheresAround, ARoomInAWideLandIsHeldByFewSmallOnes) {
   const Vec3d middle{100.3, 2, -40};
-  const std::vector<SeenPlace> places = room(middle, 4, 3000);
+  const std::vector<WeighedPlace> places = room(middle, 4, 3000);
   const std::vector<formats::ViewSphere> spheres = spheres_around(places, 700);
   ASSERT_FALSE(spheres.empty());
   EXPECT_LE(spheres.size(), formats::kMaxViewSpheres);
-  for (const SeenPlace& place : places) EXPECT_TRUE(held(spheres, place.position));
+  for (const WeighedPlace& place : places) EXPECT_TRUE(held(spheres, place.position));
   for (const formats::ViewSphere& s : spheres) {
     EXPECT_LE(s.radius, 4 * 0.875) << "the room's own size";
     EXPECT_GE(s.radius, 0.5 * 0.875) << "a quarter of the distance seen, 2 m";
@@ -68,19 +68,19 @@ TEST(SpheresAround, AClosedRoomHasNone) {
 
 TEST(SpheresAround, NothingSeenHasNone) {
   EXPECT_TRUE(spheres_around({}, 10).empty());
-  EXPECT_TRUE(spheres_around({SeenPlace{{0, 0, 0}, 1, 1}}, 10).empty());
+  EXPECT_TRUE(spheres_around({WeighedPlace{{0, 0, 0}, 1, 1}}, 10).empty());
 }
 
 /// All places at one point: one cell, of finite size, however deep it could go.
 TEST(SpheresAround, OnePlaceIsOneCell) {
-  const std::vector<formats::ViewSphere> spheres = spheres_around({SeenPlace{{10, 1, 3}, 1, 2}, SeenPlace{{10, 1, 3}, 1, 2}}, 1000);
+  const std::vector<formats::ViewSphere> spheres = spheres_around({WeighedPlace{{10, 1, 3}, 1, 2}, WeighedPlace{{10, 1, 3}, 1, 2}}, 1000);
   ASSERT_EQ(spheres.size(), 1u);
   EXPECT_EQ(spheres[0].radius, 0.5 * 0.875);
 }
 
 /// A step of a millimetre moves places of a room of 4 m, but no cell.
 TEST(SpheresAround, ASmallStepLeavesThemAsTheyAre) {
-  const std::vector<SeenPlace> before = room({100.3, 2.2, -40.6}, 4, 3000), after = room({100.301, 2.2, -40.6}, 4, 3000);
+  const std::vector<WeighedPlace> before = room({100.3, 2.2, -40.6}, 4, 3000), after = room({100.301, 2.2, -40.6}, 4, 3000);
   EXPECT_EQ(formats::view_text(spheres_around(before, 700)), formats::view_text(spheres_around(after, 700)));
 }
 

@@ -1,0 +1,97 @@
+#include "lib/render/choose_caustics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "lib/core/frame.h"
+#include "lib/core/parallel.h"
+#include "lib/core/sampling.h"
+#include "lib/material/bsdf.h"
+#include "lib/material/surface_material.h"
+#include "lib/render/photon_light.h"
+#include "lib/render/pilot_photons.h"
+
+namespace tempolux {
+namespace {
+
+constexpr std::uint64_t kPaths = 1 << 15;
+constexpr int kColumns = 32, kRows = 18;   ///< of the picture, by which the mean square is told
+constexpr float kSame = 1e-3f;   ///< of the distance: the camera sees the photon's place, not one before it
+/// Squared error of a density estimate by k photons is 1 / k of its square.
+constexpr double kMapError2 = 1.0 / PhotonLightOptions{}.caustic_neighbours;
+constexpr double kSure = 3;      ///< standard errors
+constexpr double kCosts = 2.5;   ///< times as much CPU, with a map: docs/methods/caustics.md
+
+/// Share of the picture that 1 m^2 of the plane through `point` (normal: unit) takes up; 0 where it cannot be told.
+double picture_share(const CameraView& view, Vec3 point, Vec3 normal, const std::array<double, 2>& at) {
+  const Frame frame(normal);
+  const float step = view.pixel_size(float(view.depth(point)));
+  const auto right = view.project(point + frame.tangent * step), up = view.project(point + frame.bitangent * step);
+  if (!right || !up) return 0;
+  const double area = ((*right)[0] - at[0]) * ((*up)[1] - at[1]) - ((*right)[1] - at[1]) * ((*up)[0] - at[0]);
+  return std::abs(area) / (double(step) * double(step) * view.width() * view.height());
+}
+
+/// What a photon adds to the mean radiance of the picture, and where it lies in it.
+struct SeenFlux {
+  double radiance = 0;
+  std::size_t cell = 0;
+};
+/// Of a photon at `point`: its flux x rho / pi x picture_share, if the camera sees it. Nothing is blurred, so the sum over photons is unbiased.
+SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const formats::Photon& photon) {
+  const Vec3 point{photon.position[0], photon.position[1], photon.position[2]};
+  const auto n = formats::decode_normal(photon.normal);
+  const Vec3 normal{n[0], n[1], n[2]};
+  const auto at = view.project(point);
+  if (!at || !((*at)[0] >= 0 && (*at)[0] < view.width() && (*at)[1] >= 0 && (*at)[1] < view.height())) return {};
+  const Ray ray = view.ray(float((*at)[0]), float((*at)[1]));
+  if (!(dot(ray.direction, normal) < 0)) return {};
+  Hit hit;
+  scene.tracer.intersect(ray, hit);
+  if (hit.surface == kNone) return {};
+  SurfacePoint surface = scene.tracer.surface_point(hit);
+  if (length(surface.position - point) > kSame * hit.t) return {};
+  const SurfaceMaterial material(scene.frame(), surface);
+  const Rgb albedo = Bsdf(material, dot(surface.normal_geometric, ray.direction) < 0).diffuse_albedo();
+  const Rgb flux(photon.flux[0], photon.flux[1], photon.flux[2]);
+  const auto cell = [](double x, int size, int cells) { return std::size_t(std::min(cells - 1.0, x / size * cells)); };
+  return {double(channel_mean(albedo * flux)) / kPi * picture_share(view, point, normal, *at),
+          cell((*at)[1], view.height(), kRows) * kColumns + cell((*at)[0], view.width(), kColumns)};
+}
+
+}  // namespace
+
+CausticPilot pilot_caustics(const RenderScene& scene, const CameraView& view, std::uint64_t seed) {
+  const std::vector<formats::Photon> photons = pilot_photons(scene.tracer, scene.lights, "caustic", kPaths, seed ^ 0x63617573746963ull);
+  std::vector<SeenFlux> seen(photons.size());
+  parallel_chunks(photons.size(), 64, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) seen[i] = seen_flux(scene, view, photons[i]);
+  });
+  CausticPilot pilot;
+  std::vector<double> cells(kRows * kColumns, 0.0);
+  double squares = 0;
+  for (const SeenFlux& one : seen) {
+    pilot.mean += one.radiance;
+    squares += one.radiance * one.radiance;
+    cells[one.cell] += one.radiance;
+  }
+  pilot.mean_error = std::sqrt(squares);
+  for (const double cell : cells) pilot.square += cell * cell * double(cells.size());
+  return pilot;
+}
+
+CausticChoice choose_caustics(const IndirectPilot& paths, const CausticPilot& photons) {
+  const double missed = photons.mean - paths.caustic;
+  const double unseen = missed > 0 ? paths.paths * std::max(0.0, missed * missed - kSure * kSure * photons.mean_error * photons.mean_error) : 0;
+  const double by_paths = std::max(paths.caustic_variance, unseen) / std::max(1.0, paths.samples);
+  const double left = paths.rest_noise + by_paths, with_map = paths.rest_noise + kMapError2 * photons.square;
+  char text[200];
+  if (!(left > 0)) return {false, "no light is seen that mirrors, glass or gloss send onto matte surfaces"};
+  std::snprintf(text, sizeof text, "of the squared error that paths would leave %.0f %% is light that mirrors, glass and gloss send onto matte surfaces",
+                100 * by_paths / left);
+  return {left > kCosts * with_map, text};
+}
+
+}  // namespace tempolux

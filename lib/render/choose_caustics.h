@@ -1,0 +1,31 @@
+// lib/render/choose_caustics.h -- is the light that mirrors, glass and gloss send onto matte surfaces worth a photon map, where paths find all other light?
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "lib/render/choose_indirect.h"
+
+namespace tempolux {
+
+/// What photons tell of the caustic light that a camera sees directly: radiance, mean of the channels, over the picture.
+struct CausticPilot {
+  double mean = 0, mean_error = 0;   ///< and its standard error
+  double square = 0;                 ///< mean of the square, of 32 x 18 parts of the picture
+};
+
+/// 32768 photon paths, and a camera ray to each caustic photon: some hundredths of a second. The scene's lights may aim photons where the
+/// camera looks. What mirrors show is not counted. Same result for any number of threads.
+CausticPilot pilot_caustics(const RenderScene& scene, const CameraView& view, std::uint64_t seed);
+
+struct CausticChoice {
+  bool map;
+  std::string because;
+};
+
+/// A map where it lowers the picture's squared error by more than it costs. Paths find a caustic by hitting the mirror or glass that
+/// sends it, and in it a lamp: of a small one that is so rare that a few paths in a picture carry all of it, as dots; and none can hit a
+/// point lamp in a mirror. So the variance of the paths that were tried says too little; docs/methods/caustics.md derives what is used.
+CausticChoice choose_caustics(const IndirectPilot& paths, const CausticPilot& photons);
+
+}  // namespace tempolux

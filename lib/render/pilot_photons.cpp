@@ -1,0 +1,25 @@
+#include "lib/render/pilot_photons.h"
+
+#include "lib/core/parallel.h"
+#include "lib/photon/photon_trace.h"
+
+namespace tempolux {
+
+std::vector<formats::Photon> pilot_photons(const Tracer& tracer, const Lights& lights, const std::string& kinds, std::uint64_t paths,
+                                           std::uint64_t seed) {
+  PhotonOptions options;
+  options.seed = seed;
+  options.photon_count = paths;
+  options.group_count = 1;
+  options.set_kinds(kinds);
+  const PhotonTracer photons_of(tracer, lights, options);
+  std::vector<PhotonBatch> batches(photons_of.batch_count());
+  parallel_chunks(batches.size(), 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t b = first; b < last; ++b) batches[b] = photons_of.trace(b);
+  });
+  std::vector<formats::Photon> photons;
+  for (const PhotonBatch& batch : batches) photons.insert(photons.end(), batch.block.photons.begin(), batch.block.photons.end());
+  return photons;
+}
+
+}  // namespace tempolux
