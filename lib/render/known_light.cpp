@@ -20,11 +20,13 @@ std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geomet
   return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric)) : std::nullopt;
 }
 
-std::optional<Rgb> KnownLight::all(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {
+std::optional<KnownLight::Told> KnownLight::told(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {
   if (!points) return std::nullopt;
   const PointLookup::Light* light = points->find(hit.position, geometric);
-  if (!light || !points->is_even(*light) || distance < kNear * light->radius * (0.5f + u)) return std::nullopt;
-  return light->all;
+  if (!light || distance < kNear * light->radius * (0.5f + u)) return std::nullopt;
+  if (points->is_even(*light)) return Told{light->all};
+  const IrradiancePoint& point = points->point(*light);
+  return Told{point.indirect + point.caustic, false};
 }
 
 float KnownLight::left(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {

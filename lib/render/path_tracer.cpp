@@ -149,10 +149,10 @@ KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, const 
   const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * here.left);
   const Layer layer = path.after(true).after(true).layer();   // indirect; or that of what the path saw before
   if (beyond.matte) {
-    if (const std::optional<Rgb> all = known.all(x.surface, x.normal_geometric, beyond.distance, u)) {
+    if (const std::optional<KnownLight::Told> told = known.told(x.surface, x.normal_geometric, beyond.distance, u)) {
       ++counts.points_read;
-      result[layer] += reflected * *all;
-      return {true, true, true};
+      result[layer] += reflected * told->irradiance;
+      return {true, told->direct, true, false, here.left};
     }
   }
   const auto sample_bright = [&](int samples) {

@@ -165,16 +165,43 @@ TEST(KnownLight, PointsAnswerBeyondTheirBlur) {
   KnownLight known;
   const auto seen = chain.surface_at({0.3f, -1, 0.2f}, {0, 1, 0}, 0.01f);
   ASSERT_TRUE(seen);
-  EXPECT_FALSE(known.all(seen->first, {0, 1, 0}, 100, 0)) << "there are no points";
+  EXPECT_FALSE(known.told(seen->first, {0, 1, 0}, 100, 0)) << "there are no points";
   known.points = &chain.lookup;
   const PointLookup::Light* light = chain.lookup.find(seen->first.position, {0, 1, 0});
   ASSERT_TRUE(light);
   ASSERT_TRUE(chain.lookup.is_even(*light));
   const float limit = KnownLight::kNear * light->radius;
   for (const float u : {0.0f, 0.5f, 0.999f}) {
-    EXPECT_FALSE(known.all(seen->first, {0, 1, 0}, 0.99f * limit * (0.5f + u), u)) << u;
-    ASSERT_TRUE(known.all(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u)) << u;
-    EXPECT_EQ(*known.all(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u), light->all);
+    EXPECT_FALSE(known.told(seen->first, {0, 1, 0}, 0.99f * limit * (0.5f + u), u)) << u;
+    ASSERT_TRUE(known.told(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u)) << u;
+    EXPECT_EQ(known.told(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u)->irradiance, light->all);
+  }
+}
+
+/// A floor half in the light: beside the border points tell all but direct light, elsewhere all. Rows of points 0.1 m apart; the border is
+/// compared within 1.5 of that.
+TEST(KnownLight, DirectLightIsNotReadWhereAShadowEnds) {
+  std::vector<IrradiancePoint> points;
+  for (int i = -10; i < 10; ++i)
+    for (int j = -10; j < 10; ++j) {
+      IrradiancePoint point;
+      point.position = {(float(i) + 0.5f) * 0.1f, 0, (float(j) + 0.5f) * 0.1f};
+      point.normal = {0, 1, 0};
+      point.direct = Rgb(i < 0 ? 0.0f : 5.0f);
+      point.caustic = Rgb(0.25f);
+      point.indirect = Rgb(1.0f);
+      points.push_back(point);
+    }
+  const PointLookup lookup(points, 0.1f);
+  KnownLight known;
+  known.points = &lookup;
+  SurfacePoint hit;
+  for (const auto& [x, direct, expected] : {std::tuple{-0.45f, true, 1.25f}, {-0.05f, false, 1.25f}, {0.05f, false, 1.25f}, {0.45f, true, 6.25f}}) {
+    hit.position = {x, 0, 0.05f};
+    const std::optional<KnownLight::Told> told = known.told(hit, {0, 1, 0}, 1, 0);
+    ASSERT_TRUE(told) << x;
+    EXPECT_EQ(told->direct, direct) << x;
+    EXPECT_EQ(told->irradiance, Rgb(expected)) << x;
   }
 }
 
