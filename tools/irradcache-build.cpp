@@ -45,7 +45,6 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (mode == "both") refuse_unread(app, "a run without a step", {"--map", "--update", "--dynamic"});
   if (mode == "records" && !options.update.empty()) refuse_unread(app, "records --update", {"--records", "--high"});
   if (!options.high.empty() && options.points.empty()) throw InputError("--high: name the low part with --points FILE");
-  if (!options.high.empty() && options.radii == "hessian") throw InputError("--high: radii follow from distances; leave out --radii hessian");
   if (options.high.empty()) refuse_unread(app, "a run without --high", {"--high-samples"});
   if (mode == "points" && options.dynamic.size() > 1) throw InputError("--dynamic: points take one map, that of their frame");
   tools::check_influence(options.influence);
@@ -54,7 +53,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (!options.update.empty() && options.map == "static")
     throw InputError("--update: makes points of the whole scene; leave out --map static");
   if (mode == "points")
-    refuse_unread(app, "points", {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--high", "--high-samples", "--records", "--rays", "--error-bound", "--radii", "--free-radii",
+    refuse_unread(app, "points", {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--high", "--high-samples", "--records", "--rays", "--error-bound", "--free-radii",
                                   "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points",
@@ -111,11 +110,6 @@ void add_options(tools::Tool& tool, Options& options) {
                  "radius of a record / harmonic mean distance to what it sees: smaller is finer; records count where normals "
                  "differ by less than 50 degrees times this, from 5 to 20")
       ->capture_default_str()->check(tools::number_between(1e-3, 2.0));
-  app.add_option(
-         "--radii", options.radii,
-         "what the radius of a record follows from: ward (distances of what it sees) or hessian (second derivatives)")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"ward", "hessian"}));
   app.add_flag(
       "--free-radii", options.free_radii,
       "leave radii as each record's own rays tell; else none exceeds a neighbour's by more than the error bound x "
@@ -148,7 +142,6 @@ int main(int argc, char** argv) {
     options.point.count = std::uint32_t(options.point_count);
     options.view = tools::read_importance(tool, options.importance);
     options.placement.clamp_neighbours = !options.free_radii;
-    options.gather.curvature = options.placement.by_curvature = options.radii == "hessian";
     const auto seeded = [&](int frame) -> const Options& {   // for a file of this frame, alone or of a range
       options.point.seed = options.gather.seed = tool.common().seed_for_frame(frame);
       return options;

@@ -92,7 +92,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     sky.radiance[shots.cells[i]] = shots.radiance[i];
     sky.inverse_distance[shots.cells[i]] = 1 / std::max(shots.distance[i], closest);   // 0 for a miss
   }
-  IrradianceRecord record = record_of_first_rays(sky, shots.directions.frame(), from, normal, expected_share, options_.curvature);
+  IrradianceRecord record = record_of_first_rays(sky, shots.directions.frame(), from, normal, expected_share);
 
   // More rays where light is uneven: a cell's value becomes the mean of all of its own.
   sky.further_rays(further);

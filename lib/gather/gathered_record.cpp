@@ -7,7 +7,7 @@ namespace tempolux {
 float closest_distance(const SurfacePoint& place) { return std::max(4 * place.offset, 1e-30f); }
 
 IrradianceRecord record_of_first_rays(const Hemisphere& sky, const Frame& frame, const SurfacePoint& place, Vec3 normal,
-                                      float expected_share, bool curvature) {
+                                      float expected_share) {
   IrradianceRecord record;
   record.position = place.position;
   record.normal = normal;
@@ -16,7 +16,6 @@ IrradianceRecord record_of_first_rays(const Hemisphere& sky, const Frame& frame,
   sky.translational_gradient(frame, record);
   record.lit_cells = sky.lit_cells();
   record.lit_share = record.lit_cells / float(sky.radiance.size());
-  if (curvature) record.curvature = sky.curvature();
   record.radius_unclamped = sky.harmonic_distance();
   record.radius = sky.nearest_across();
   return record;

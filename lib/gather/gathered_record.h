@@ -11,9 +11,9 @@ namespace tempolux {
 float closest_distance(const SurfacePoint& place);
 
 /// Sets of a record what follows from one ray a cell: translational gradient, lit cells and share, radius_unclamped (harmonic mean
-/// distance) and radius (the nearest across the tangent plane); with `curvature` that, too. Position, normal and object are the
+/// distance) and radius (the nearest across the tangent plane). Position, normal and object are the
 /// place's. `expected_share`: see FinalGather::gather.
 IrradianceRecord record_of_first_rays(const Hemisphere& sky, const Frame& frame, const SurfacePoint& place, Vec3 normal,
-                                      float expected_share, bool curvature);
+                                      float expected_share);
 
 }  // namespace tempolux

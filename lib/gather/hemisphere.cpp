@@ -102,37 +102,6 @@ void Hemisphere::translational_gradient(const Frame& frame, IrradianceRecord& re
   for (std::size_t c = 0; c < 3; ++c) record.translational[c] = frame.to_world(Vec3(gradient[c]));
 }
 
-float Hemisphere::curvature() const {
-  const int M = rings_, N = sectors_;
-  Rgbd xx{0.0}, xy{0.0}, yy{0.0};
-  for (int k = 0; k < N; ++k) {
-    const double middle = 2 * M_PI * (k + 0.5) / N, lower = 2 * M_PI * double(k) / N;
-    Rgbd along{0.0}, mixed{0.0};
-    for (int j = 0; j < M; ++j) {
-      const Rgbd here(radiance[cell(j, k)]);
-      const double near_here = double(inverse_distance[cell(j, k)]);
-      if (j > 0) {
-        const double near = std::max(near_here, double(inverse_distance[cell(j - 1, k)])), sin2 = double(j) / M;
-        along += (here - Rgbd(radiance[cell(j - 1, k)])) * ((1 - sin2) * (4 * sin2 - 1) * near * near);
-      }
-      const std::size_t before = cell(j, (k + N - 1) % N);
-      const double near = std::max(near_here, double(inverse_distance[before]));
-      mixed += (here - Rgbd(radiance[before])) * (1.5 / M * near * near);
-    }
-    along *= 2 * M_PI / N;
-    const double cu = std::cos(middle), su = std::sin(middle), cl = std::cos(lower), sl = std::sin(lower);
-    xx += along * (cu * cu) - mixed * (2 * cl * sl);   // u v + v u, u = (c, s), v = (-s, c)
-    yy += along * (su * su) + mixed * (2 * cl * sl);
-    xy += along * (cu * su) + mixed * (cl * cl - sl * sl);
-  }
-  double size = 0;
-  for (int c = 0; c < 3; ++c) {
-    const double mean = (xx[c] + yy[c]) / 2, apart = std::hypot((xx[c] - yy[c]) / 2, xy[c]);
-    size += std::max(std::abs(mean), apart);   // (|mean + apart| + |mean - apart|) / 2
-  }
-  return float(size);
-}
-
 void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {
   const std::size_t M = std::size_t(rings_), N = std::size_t(sectors_);
   counts.assign(M * N, 0);

@@ -38,14 +38,6 @@ class Hemisphere {
   /// distance are those of one ray: of a cell that an edge cuts a mean would have no distance.
   void translational_gradient(const Frame& frame, IrradianceRecord& record) const;
 
-  /// Sum over channels of the mean size of the second derivatives of E along the tangent plane, (|l1| + |l2|) / 2 of
-  /// their eigenvalues, W/m^4. Every border between cells is taken for a straight edge at the nearer distance r, as
-  /// the gradient takes it, and differentiated once more:
-  ///
-  ///     between rings, along u_k u_k: 2pi/N cos^2 t (3 sin^2 t - cos^2 t) / r^2 (L_jk - L_j-1,k)
-  ///     between sectors, u v + v u:   3/2 (sin^2 t_j+ - sin^2 t_j-) / r^2 (L_jk - L_j,k-1)
-  float curvature() const;
-
   /// How many more rays each cell deserves beside the one it has had: the standard deviation of the cells around it
   /// (eight, five at the rims) over the mean of all others, rounded, at most kMostFurther. More rays fall where light is
   /// uneven [Neyman 1934]. A cell's own ray has no say in it, so that the mean of that and the further ones has no bias:

@@ -167,8 +167,6 @@ class Placement {
 void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options) {
   // double: squares of gradients, whatever the strength of the light, stay finite, and its power of two changes no radius.
   const double e = channel_sum(Rgbd(record.irradiance));
-  if (options.by_curvature)
-    record.radius_unclamped = record.curvature > 0 ? float(std::sqrt(2 * e / double(record.curvature))) : INFINITY;
   // Of light that a handful of rays found gradients say nothing. Were they to shrink the radius, records whose rays missed
   // that light would outweigh those that met it: a small bright thing over a wide floor came out 75 % dark.
   const float trust = std::clamp((record.lit_cells - kFewCells) / (kEnoughCells - kFewCells), 0.0f, 1.0f);
@@ -177,7 +175,7 @@ void limit_radius(IrradianceRecord& record, float footprint, const PlacementOpti
   if (record.expected_share > 0) record.radius_unclamped *= std::min(1.0f, std::sqrt(record.expected_share / kWideLight));
   double reach = double(record.radius_unclamped), slope = 0;
   for (Vec3 g : record.translational) slope += length(Vec3d(g));
-  if (!options.by_curvature && slope * reach > e && slope > 0) reach = e / slope;
+  if (slope * reach > e && slope > 0) reach = e / slope;
   const float r = std::min(std::isfinite(reach) ? options.error_bound * float(reach) : options.unseen_radius_px * footprint, record.radius);
   record.radius_unclamped *= options.error_bound;
   record.radius = std::max(r, options.min_radius_px * footprint);

@@ -18,7 +18,6 @@ struct PlacementOptions {
   /// 7 and 6 times the least.
   float unseen_radius_px = 32;
   bool clamp_neighbours = true;       ///< RecordStore::clamp_with_neighbours
-  bool by_curvature = false;          ///< R of limit_radius from second derivatives instead of distances
   float min_weight = 0.9f;           ///< sum of weights that counts as covered; a record has 1 at its own place
 };
 
@@ -73,9 +72,7 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
 /// s: expected_share, if it is known. An edge in front of light that fills a share s of the hemisphere throws a shadow whose border
 /// is as wide as the edge is far times sqrt(s), or so; and of a bright thing narrower than the cells of a record its
 /// gradient finds a part only (each of its borders moves as far as in full, but is met as rarely as it is narrow): such
-/// borders came out blurred, up to 10 % bright. s comes from others' rays, so that radii do not follow E's noise. And at least min_radius_px footprints. radius_unclamped keeps error_bound x R sqrt(..). By curvature R = sqrt(2 |E| /
-/// curvature) takes the place of both: the distance at which the second order, which gradients leave out, is as large
-/// as the irradiance itself [after Schwarzhaupt, Jensen & Jarosz 2012, one radius for all directions].
+/// borders came out blurred, up to 10 % bright. s comes from others' rays, so that radii do not follow E's noise. And at least min_radius_px footprints. radius_unclamped keeps error_bound x R sqrt(..).
 void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
 }  // namespace tempolux

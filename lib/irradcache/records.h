@@ -27,7 +27,6 @@ struct IrradianceRecord {
   float lit_share = 1;                  ///< lit_cells / all cells; not in files
   float expected_share = 1;             ///< what was thought of lit_share before its own rays; not in files
   float further_share = 0;              ///< further rays per cell that its unevenness would call for; not in files
-  float curvature = 0;                  ///< W/m^4: size of the second derivatives (hemisphere.h); not in files
   Clearance clearance;                  ///< what was seen around it, about `normal`: beyond it does not count
   std::uint32_t object = 0;             ///< the object it rides on
 };

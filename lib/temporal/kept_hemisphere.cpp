@@ -66,7 +66,7 @@ IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& pla
     if (sample.distance != 0) sky.inverse_distance[c] = 1 / std::max(units.decode(sample.distance), closest);
   }
   const Frame frame(kept.normal());
-  IrradianceRecord made = record_of_first_rays(sky, frame, place, kept.normal(), kept.record.expected_share, false);
+  IrradianceRecord made = record_of_first_rays(sky, frame, place, kept.normal(), kept.record.expected_share);
   sky.irradiance_and_rotational_gradient(frame, made);
   if (further_share) {
     thread_local std::vector<std::uint8_t> further;

@@ -111,7 +111,6 @@ refuses 'not a part of light' irradcache-build records "$still" --points p.irrad
 refuses 'is the low part' irradcache-build records "$still" --points low.irradpoints --high low.irradpoints $small -o refused
 refuses 'name the low part' irradcache-build "$still" --photons p.photons --high high.irradpoints $small -o refused
 refuses '--high' irradcache-build points "$still" --photons p.photons --high high.irradpoints -o refused
-refuses 'leave out --radii' irradcache-build records "$still" --points low.irradpoints --high high.irradpoints --radii hessian $small -o refused
 refuses '--high-samples' irradcache-build records "$still" --points p.irradpoints --high-samples 10 $small -o refused
 irradcache-build points "$still" --photons p.photons --point-count 700 -o other.irradpoints -q
 photonmap-split other.irradpoints --low otherlow.irradpoints --high foreign.irradpoints --energy 1 -q

@@ -14,7 +14,7 @@ namespace tempolux::tools {
 /// What irradcache-build was asked for.
 struct CacheOptions {
   std::vector<std::string> inputs;  // [points|records] SCENE
-  std::string photons, points, importance, high, records, mask, output, keep_points, radii = "ward", map = "global", update;
+  std::string photons, points, importance, high, records, mask, output, keep_points, map = "global", update;
   std::vector<std::string> dynamic;   // the frame's own first
   std::uint64_t point_count = PointOptions{}.count;
   std::vector<formats::ViewSphere> view;   // of importance

@@ -270,21 +270,6 @@ TEST(LimitRadius, NarrowLightHasNarrowShadows) {
   }
 }
 
-/// --radii hessian: R = sqrt(2 E / |E''|), whatever lies how far and whatever the gradient.
-TEST(LimitRadius, CurvatureDecidesWhereItIsAskedFor) {
-  PlacementOptions options{.unseen_radius_px = 500};
-  options.error_bound = 0.2f;
-  options.by_curvature = true;
-  IrradianceRecord bent = gathered(1, {4, 0, 0}, 1, INFINITY), flat = gathered(1, {}, 1, INFINITY);
-  bent.curvature = 8 * (bent.irradiance.r + bent.irradiance.g + bent.irradiance.b);   // R = sqrt(2 / 8)
-  flat.curvature = 0;
-  limit_radius(bent, 1e-3f, options);
-  limit_radius(flat, 1e-3f, options);
-  EXPECT_FLOAT_EQ(bent.radius, 0.2f * 0.5f);
-  EXPECT_FLOAT_EQ(bent.radius_unclamped, 0.2f * 0.5f);
-  EXPECT_FLOAT_EQ(flat.radius, 0.5f);   // the largest
-}
-
 /// Light times a power of two: the same radii, gradients times the power, though their squares are beyond floats.
 TEST(LimitRadius, DoesNotDependOnTheStrengthOfTheLight) {
   const PlacementOptions options{.unseen_radius_px = 500};
