@@ -17,6 +17,7 @@ check: build_all # all tests; those skipped are counted and named
 	@ctest --preset release -j 2; code=$$?; sh tests/skipped.sh build/release/Testing/Temporary/LastTest.log; exit $$code
 bench: build_all ; python3 -B tests/bench/bench.py --out $(OUT)/bench $(if $(PEERS),--peers) # error against time, required figures, into RESULTS.md
 report-papers: build ; python3 -B tests/bench/papers.py $(BIN) $(OUT)/papers # figures of the papers with our numbers
+ablation: configured ; python3 -B tests/bench/ablation.py --out $(OUT)/bench --page docs/results/ablation.md # what each idea of the samplers is worth
 stress: build ; python3 -B tests/stress/stress.py --bin $(BIN) $(STRESS) # extreme cases; STRESS=--long for some hours more
 asan: deps ; cmake --preset asan && cmake --build --preset asan && ctest --preset asan
 tsan: deps ; cmake --preset tsan && cmake --build --preset tsan --target tools && sh tests/pipelines/tsan.sh build/tsan/bin # a short chain under ThreadSanitizer

@@ -33,6 +33,9 @@ foreach(format paths meshirrad)
            WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
 endforeach()
 
+# Ideas that the ablation leaves out still stand in the source as it has them: one that is gone leaves tests/bench/ablation_ideas.py.
+add_test(NAME bench.ablation COMMAND python3 -B tests/bench/ablation.py --check WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+
 # Stages together, run by make at the top of the tree.
 foreach(script rerun make_asks plan_example plan_refuses content_camera drop_kind environment
                scenes leaving_out walkthrough filter dynamic temporal split smoke)

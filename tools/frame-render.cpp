@@ -226,7 +226,7 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 24));
   app.add_option("--pixel-error", options.pixel_error,
-                 "more samples where pixels are uncertain: n = 12 (sigma / (12 x this x radiance))^0.75; 0: none; -1: "
+                 "more samples where pixels are uncertain: n = 12 (sigma / (12 x this x radiance))^0.875; 0: none; -1: "
                  "0.01 with photons or a cache, else none")
       ->capture_default_str()
       ->check(tools::number_between(-1.0, 1.0));

@@ -21,6 +21,9 @@ small='--point-count 2k --rays 50'
 tool scene-plan "$work/walk.glb" --frames 0-3 -o "$work/plan"
 grep -q '^plan_photons := 0000$' "$work/plan/plan.mk" || bad 'only the camera moves: photons of more than frame 0'
 grep -q '^plan_kinds := indirect$' "$work/plan/plan.mk" || bad 'no mirror, no glass: photons of other kinds than indirect'
+# A closed room that lamps light: no importance, of photons or points; a sky would bring it.
+ls "$work"/plan/state/view.* 2> /dev/null && bad 'a closed room: a file of where cameras look'
+grep -q '^view_' "$work/plan/plan.mk" && bad 'a closed room: photons are aimed'
 tool photon-trace "$work/walk.glb" --frame 0 --photons 20k --kinds indirect -o "$work/0.photons"
 tool photon-trace "$work/walk.glb" --frame 2 --photons 20k --kinds indirect -o "$work/2.photons"
 "$bin/tempolux-info" --diff "$work/0.photons" "$work/2.photons" > /dev/null || bad 'only the camera moves: other photons'
@@ -57,6 +60,27 @@ tool frame-render "$work/walk.glb" --irradcache "$work/0.irradcache" --points "$
 [ "$(count points_read "$work/frame.json")" = 0 ] || bad 'no record is missing: points were read'
 "$bin/tempolux-info" --json "$work/0.exr" | tr -d ' \n' | grep -q '"caustic.G"[^}]*"max":0[.0]*[,}]' ||
   bad 'no mirror, no glass: a caustic layer that is not 0'
+
+tool frame-render "$work/walk.glb" --irradcache "$work/0.irradcache" --points "$work/0.irradpoints" --spp 1 --learn-lights \
+  --size 16x9 -o "$work/closed.exr" --stats "$work/closed.json"
+[ -z "$(count light_cells "$work/closed.json")" ] || bad 'a closed room: learned where skies and suns come in'
+
+# A lone object under a sky: paths alone. No photons, points or records are planned, and make makes none.
+python3 -B - "$work/lone.gltf" <<'END' || bad 'a lone object: no scene'
+import sys
+sys.path.insert(0, "tests/stress")
+from scenes import Scene, sphere_mesh
+scene = Scene()
+positions, triangles, normals = sphere_mesh((0, 0, 0), (1, 1, 1), 8, inwards=False)
+scene.mesh(positions, triangles, scene.material(0.7), normals)
+scene.camera((0, 1, 4), (0, 0, 0), fov=0.7)
+scene.save(sys.argv[1])
+END
+"${MAKE:-make}" -s -f Makefile.example SCENE="$work/lone.gltf" FRAMES=0 SIZE=32x18 OUT="$work/lone" BIN="$bin" QUALITY=draft TIME='--environment-color 1,1,1' \
+  demo > /dev/null 2> "$work/lone.log" || { cat "$work/lone.log"; bad 'a lone object: not rendered'; }
+grep -q '^plan_indirect := paths$' "$work/lone/plan/plan.mk" || bad 'a lone object: not paths'
+[ -s "$work/lone/frames/0000.exr" ] || bad 'a lone object: no frame'
+find "$work/lone" -name '*.photons' -o -name '*.irradpoints' -o -name '*.irradcache' | grep . && bad 'a lone object: made for nothing'
 
 # A mirror brings caustic photons, and without one there are none of them even where they are asked for.
 tool photon-trace "$work/walk.glb" --photons 5k --kinds caustic,indirect -o "$work/matte.photons" --stats "$work/matte.json"

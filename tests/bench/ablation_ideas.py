@@ -1,0 +1,95 @@
+"""The ideas of the samplers, each with the change to the source that leaves it out.
+
+A change is (file, text, replacement); the text must stand there exactly once. `ablation.py --check` (a test) says which ones the code has left behind.
+`stage`: what must be part of a scene's chain for the idea to matter: frames, cache (records), points, photons.
+"""
+import dataclasses
+
+
+@dataclasses.dataclass(frozen=True)
+class Idea:
+    name: str
+    what: str
+    stage: str
+    edits: tuple
+
+
+IDEAS = (
+    # ---- samples of light
+    Idea("sky by the cosine", "directions of the sky are drawn by its light times the surface's cosine", "frames",
+         (("lib/light/lights.cpp", "if (impl_->environment_weight > 0) impl_->sky_by_normal =", "if (impl_->environment_weight < 0) impl_->sky_by_normal ="),)),
+    Idea("learned lights", "a grid of what reaches places through openings, by which lights are drawn", "frames",
+         (("lib/render/learn_lights.cpp", "if (!scene.lights.has_distant()) return nullptr;", "if (scene.lights.count() > 0) return nullptr;"),)),
+    Idea("suns apart", "a ray to a sun beside that to another light", "frames",
+         (("tools/frame-render.cpp", "!yardstick && lights.has_suns()}", "false}"),)),
+    Idea("cosine on lamps", "a place on a triangle is drawn by the cosine at the surface, too", "frames",
+         (("lib/light/triangle_light.cpp", "bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample) {\n",
+           "bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample) {\n  normal = {};\n"),
+          ("lib/light/triangle_light.cpp", "double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position) {\n",
+           "double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position) {\n  normal = {};\n"))),
+    Idea("near triangles by Lambert", "a lamp near by is chosen by Lambert's formula of the triangle instead of its ball", "frames",
+         (("lib/light/light_tree.cpp", "if (node.triangles) look_closer(", "if (false) look_closer("),)),
+    Idea("shells", "of a closed convex lamp the backs are never chosen", "frames",
+         (("lib/light/lights.cpp", "return convex_shell(frame->surfaces[surface]).value_or(Ball{});", "return {};"),)),
+    Idea("matte rays meet lamps", "a ray that leaves a matte surface counts lamps it meets, weighed against light samples", "frames",
+         (("lib/render/path_tracer.cpp", "if (has_diffuse) diffuse *= mis_power(pdf, lobes.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));", ""),
+          ("lib/render/path_tracer.cpp", "times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye)", "times * (next.diffuse ? 0.0f"))),
+    Idea("gloss forks", "under a gloss both lobes are followed at the first surface", "frames",
+         (("lib/render/path_tracer.cpp", "const bool forks = known_ && ", "const bool forks = known_ && walk.bounce > 1000 && "),)),
+    # ---- numbers of samples
+    Idea("parts apart", "light samples, rays onward and camera rays have numbers of their own", "frames",
+         (("lib/render/pixel_noise.cpp",
+           "more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});",
+           "const int most = std::max({first_.own + more.own, first_.lit + more.lit, first_.onward + more.onward});\n"
+           "  more = {most - first_.own, most - first_.lit, most - first_.onward};\n"
+           "  static_assert(kMostLit == kMostOnward);"),)),
+    Idea("edges between pixels", "what is seen counts as uneven where neighbours differ", "frames",
+         (("lib/render/pixel_noise.cpp", "(options_.samples == 1 ? 1 : kBetween)", "(options_.samples == 1 ? 1 : 0 * kBetween)"),)),
+    Idea("packets of camera rays", "three and more rays of a pixel are traced as a packet", "frames",
+         (("lib/render/pixel_samples.h", "kFewest = 3;", "kFewest = 1000;"),)),
+    # ---- photons and points
+    Idea("photons by importance", "photons of suns and skies start where cameras look", "photons",
+         (("lib/render/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),
+    Idea("points by importance", "points lie where cameras look", "points",
+         (("lib/gather/irradiance_points.cpp", "if (seen.empty()) return {};\n  std::vector<double> standing", "if (seen.size() < 1000000) return {};\n  std::vector<double> standing"),)),
+    Idea("near hits go on", "rays that end nearer than two radii of an estimate go on for a bounce", "points",
+         (("lib/gather/final_gather.h", "float near_factor = 2;", "float near_factor = 0;"),
+          ("lib/render/known_light.h", "static constexpr float kNear = 2;", "static constexpr float kNear = 0;"))),
+    Idea("shadow borders", "where points side by side have direct light that differs eightfold it is sampled instead", "points",
+         (("lib/irradcache/points.cpp", "const bool even = !(least * kContrast < most);", "const bool even = !(least * kContrast < most) || least < INFINITY;"),)),
+    Idea("answers by cell", "which point answers in a cell of half a spacing is found once", "points",
+         (("lib/irradcache/points.cpp", "  std::size_t slot = mix64(q.cell) & mask_;\n  for (", "  std::size_t slot = mix64(q.cell) & mask_;\n  if (mask_ > 0) return {search_cell(q.cell)};\n  for ("),)),
+    # ---- records
+    Idea("further rays", "cells of the hemisphere get up to eight more rays where their neighbours are uneven", "cache",
+         (("lib/gather/hemisphere.cpp", "if (others > 0) counts[c] =", "if (others > 1e37) counts[c] ="),)),
+    Idea("rays for small light", "records whose light comes from a small share of the hemisphere get up to eight times the rays", "cache",
+         (("lib/gather/final_gather.cpp", "while (times + 1 < strata_.size() && expected_share * float(1 << (times - kFewer)) < kEnoughLit) ++times;", ""),)),
+    Idea("a look before the first", "where no record tells how small the light is, 64 rays are sent to find out", "cache",
+         (("lib/gather/place_records.cpp", "RecordStore::Expected{gather_.lit_share(seen.surface, seen.normal, local), 0}", "RecordStore::Expected{1, 0}"),)),
+    Idea("gradients", "records are extrapolated by their gradients", "cache",
+         (("lib/gather/place_records.cpp", "if (over > e && slope > 0)\n    for (Vec3& g : record.translational) g *= float(e / over);\n",
+           "if (over > e && slope > 0)\n    for (Vec3& g : record.translational) g *= float(e / over);\n  record.translational = record.rotational = {};\n"),)),
+    Idea("trust in gradients", "gradients that few rays make out are reduced", "cache",
+         (("lib/gather/place_records.cpp", "const float trust = std::clamp((record.lit_cells - kFewCells) / (kEnoughCells - kFewCells), 0.0f, 1.0f);",
+           "const float trust = record.lit_cells < -kFewCells * kEnoughCells ? 0.0f : 1.0f;"),)),
+    Idea("radii by gradients", "where light changes fast records hold less far", "cache",
+         (("lib/gather/place_records.cpp", "if (slope * reach > e && slope > 0) reach = e / slope;", ""),)),
+    Idea("radii by small light", "of light from a small share of the hemisphere records hold less far", "cache",
+         (("lib/gather/place_records.cpp", "if (record.expected_share > 0) record.radius_unclamped *=", "if (record.expected_share > 2) record.radius_unclamped *="),)),
+    Idea("radii across", "no record holds farther than what its lowest rays met", "cache",
+         (("lib/gather/gathered_record.cpp", "record.radius = sky.nearest_across();", "record.radius = INFINITY;"),)),
+    Idea("neighbours clamp radii", "what is near one record is not far from its neighbours", "cache",
+         (("lib/gather/place_records.cpp", "if (options_.clamp_neighbours) store_", "if (options_.clamp_neighbours && records.empty()) store_"),)),
+    Idea("narrow angle", "records count within 10 degrees at the preset's error bound, not 20", "cache",
+         (("lib/irradcache/records.cpp", "return 1 - std::clamp(0.375f * error_bound * error_bound, 0.00375f, 1 - kWideCosine);",
+           "return 1 - std::clamp(100 * error_bound, 0.00375f, 1 - kWideCosine);"),)),
+    Idea("looks at edges", "four more places in pixels at edges and behind glass get records", "cache",
+         (("lib/gather/place_records.cpp", "for (std::uint32_t k = 0; k < 4; ++k) {\n    const auto look", "for (std::uint32_t k = 4; k < 4; ++k) {\n    const auto look"),)),
+    Idea("four times the radius", "where the camera ray meets a place without a record, one four radii away answers", "cache",
+         (("lib/render/known_light.cpp", "return records->irradiance(surface.position, shading, direct_view);", "return records->irradiance(surface.position, shading, direct_view && !direct_view);"),)),
+    Idea("clearance", "records know how far they see along their surface, so that none answers across a wall", "cache",
+         (("lib/gather/final_gather.cpp", "  record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);",
+           "  if (!(length2(lit) > 0)) record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);"),)),
+    Idea("rays of records by a pilot", "scene-plan finds how many rays records need", "cache",
+         (("pipelines/quality.mk", "else\nPHOTONS = 700k\nCACHE   = --rays $(or $(plan_rays),$(RAYS))", "else\nPHOTONS = 700k\nCACHE   = --rays $(RAYS)"),)),
+)
