@@ -29,5 +29,5 @@ help:
 	@sed -n '/^#/!q; s/^# //p' $(firstword $(MAKEFILE_LIST))
 clean: # what this file has made, and nothing else that may lie in OUT
 	rm -rf build $(addprefix $(OUT)/,options plan report exposure sheet.png)
-	find $(STAGES:%=$(OUT)/%) -maxdepth 1 -regextype egrep -regex '.*/[0-9]+(_[a-z]+)?\.(exr|png|json|photons|paths|irrad[a-z]*|meshirrad|radsamples)' \
+	find $(STAGES:%=$(OUT)/%) -maxdepth 1 -regextype egrep -regex '.*/[0-9]+(_[a-z]+)?\.(exr|png|json|photons|paths|irrad[a-z]*|meshirrad|lightgrid|radsamples)' \
 	  -delete 2> /dev/null; rmdir $(STAGES:%=$(OUT)/%) $(OUT) 2> /dev/null || true

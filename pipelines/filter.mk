@@ -31,8 +31,8 @@ note_window = $(eval place_$(word 1,$1) := $(word 2,$1))$(eval window_$(word 1,$
 $(foreach w,$(windows),$(call note_window,$(subst :, ,$w)))
 
 # Few samples, and what the filter reads.
-$(raw): $(OUT)/raw/%.exr: $$(camera_$$*) $$(light_$$*) $$(call lit_files,$$(photons_$$*)) $(OUT)/options/raw $(BIN)/frame-render
-	$(RUN) $(BIN)/frame-render $(SCENE) --frame $* $(call lit,$(photons_$*)) $(options_raw) -o $@ --stats $(@:.exr=.json)
+$(raw): $(OUT)/raw/%.exr: $$(camera_$$*) $$(light_$$*) $$(call lit_files,$$(photons_$$*)) $$(call lights_of,$$*) $(OUT)/options/raw $(BIN)/frame-render
+	$(RUN) $(BIN)/frame-render $(SCENE) --frame $* $(call lit,$(photons_$*)) $(addprefix --lights ,$(call lights_of,$*)) $(options_raw) -o $@ --stats $(@:.exr=.json)
 
 $(clear): %.exr: $$(foreach f,$$(window_$$(*F)),$(OUT)/raw/$$f.exr) $(OUT)/options/filter $(BIN)/st-filter
 	$(RUN) $(BIN)/st-filter $(filter %.exr,$^) --position $(place_$(*F)) --channels $(CHANNELS) -o $@ --stats $(@:.exr=.json)

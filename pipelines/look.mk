@@ -22,10 +22,10 @@ $(OUT)/error/%.json: $(OUT)/frames/%.exr $(OUT)/path/%.exr $(BIN)/aqm-compare
 	$(RUN) $(BIN)/aqm-compare $< --reference-halves $(OUT)/path/$*_a.exr $(OUT)/path/$*_b.exr --json $@ --quiet
 # And what did it cost? For each its error, and the processor seconds of all stages that lead to it.
 spent = $(if $(raw),$(OUT)/raw/$1.json+)$(if $(plan_media),$(OUT)/clear/$1.json+)$(foreach s,$(if $(photons_$1),photons $(if $(filter paths,$(plan_indirect)),,$(or $(textured),points $(split_stage) $(if $(records),cache)))),$(OUT)/$s/$(photons_$1).json+)$(if \
-  $(stands_$(photons_$1)),$(call spent_on_segment,$(stands_$(photons_$1))))$(OUT)/frames/$1.json
+  $(stands_$(photons_$1)),$(call spent_on_segment,$(stands_$(photons_$1))))$(addsuffix +,$(patsubst %.lightgrid,%.json,$(call lights_of,$1)))$(OUT)/frames/$1.json
 $(OUT)/report/index.html: $(judged:%=$(OUT)/error/%.json) $(OUT)/options/report $(BIN)/error-report
 	$(RUN) $(BIN)/error-report $(options_report)
 report: $(OUT)/report/index.html $(kept_report) ; @cat $(OUT)/report/report.md $(kept_report)
 estimate: $(BIN)/scene-plan # processor seconds and bytes of all that `demo` would make
 	@$< $(options_plan) --estimate --jobs 2 --photon-options '--photons $(PHOTONS) $(shared)' --point-options '$(options_points)' \
-	  --cache-options '$(options_cache)' --frame-options '$(options_frames)'
+	  --cache-options '$(options_cache)' --frame-options '$(options_frames) $(filter --learn-lights,$(PIXELS))'

@@ -14,18 +14,18 @@ STAGES      += keys walk
 intervals   := $(if $(word 2,$(plan_pictures)),$(shell sh $(walkthrough) intervals $(KEY_DISTANCE) $(plan_pictures)))
 ends         = $(subst +, ,$1)
 between      = $(shell sh $(walkthrough) between $(call ends,$1) $(plan_pictures))
-lit_of       = $(call lit,$(photons_$1))
+lit_of       = $(call lit,$(photons_$1)) $(addprefix --lights ,$(call lights_of,$1))
 $(if $(plan_frames),$(shell mkdir -p $(OUT)/keys $(OUT)/walk)$(call note,keys)$(call note,walk))
 
 # A key is rendered as every frame is without METHOD.
-$(OUT)/keys/%.exr: $$(camera_$$*) $$(light_$$*) $$(call lit_files,$$(photons_$$*)) $(OUT)/options/keys $(BIN)/frame-render
+$(OUT)/keys/%.exr: $$(camera_$$*) $$(light_$$*) $$(call lit_files,$$(photons_$$*)) $$(call lights_of,$$*) $(OUT)/options/keys $(BIN)/frame-render
 	$(RUN) $(BIN)/frame-render $(SCENE) --frame $* $(call lit_of,$*) $(options_keys) -o $@ --stats $(@:.exr=.json)
 
 # An interval: warped, or halved by the same rule. What its frames show is looked at again if a camera or a light in it changed.
 inside = $(call ends,$1) $(call between,$1)
 export OUT THRESHOLD
 $(OUT)/walk/%.done: $$(foreach f,$$(call ends,$$*),$(OUT)/keys/$$f.exr) \
-  $$(foreach f,$$(call inside,$$*),$$(camera_$$f) $$(light_$$f) $$(call lit_files,$$(photons_$$f))) \
+  $$(foreach f,$$(call inside,$$*),$$(camera_$$f) $$(light_$$f) $$(call lit_files,$$(photons_$$f)) $$(call lights_of,$$f)) \
   $(OUT)/options/walk $(BIN)/ibr-warp $(BIN)/aqm-compare $(BIN)/frame-render
 	+@$(foreach f,$(call between,$*),LIT_$f='$(call lit_of,$f)') $(walk_commands) \
 	  sh $(walkthrough) interval $(call inside,$*)

@@ -21,6 +21,7 @@
 #include "tools/common/base_frame.h"
 #include "tools/common/frame_output.h"
 #include "tools/common/indirect_light.h"
+#include "tools/common/light_grid_file.h"
 #include "tools/common/localised_cache.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/option_words.h"
@@ -31,7 +32,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, output, integrator = "auto", compression = "zip", mask, base;
+  std::string scene, output, integrator = "auto", compression = "zip", mask, base, lights;
   std::vector<std::string> channels{"RGBA", "Z", "N", "id"};
   FrameOptions frame;
   tools::IndirectLightOptions light;
@@ -39,6 +40,7 @@ struct Options {
   bool half_float = false, learn_lights = false;
   int width = 640, height = 360;
 
+  bool only_learns() const { return output.ends_with(".lightgrid"); }
   bool traces_paths() const { return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty(); }
 };
 
@@ -87,18 +89,21 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   Lights lights(frame, input.emission(frame.frame));
-  const bool yardstick = options.integrator == "path" && !options.learn_lights;
+  const bool yardstick = options.integrator == "path" && !options.learn_lights && options.lights.empty();
   const RenderScene scene{tracer, lights, !yardstick && lights.has_suns()};
   const tools::IndirectLight light(tool, options.light, tracer, lights, tool.common().seed_for_frame(number), number);
 
   if (!yardstick) lights.weigh_sky_by_cosine();
   std::unique_ptr<LightGrid> grid;
-  if (options.learn_lights) {
+  if (!options.lights.empty()) {
+    tool.stats().phase("read lights");
+    grid = tools::read_light_grid(tool, tools::frame_name(options.lights, number), frame);
+  } else if (options.learn_lights) {
     tool.stats().phase("learn lights", true);
-    grid = learn_lights(scene, view, {.seed = tool.common().seed_for_frame(number)});
+    grid = learn_lights(scene, {&view, 1}, {.seed = tool.common().seed_for_frame(number)});
     if (grid) tool.stats().count("light_cells", double(grid->size()));
-    lights.use(grid.get());
   }
+  lights.use(grid.get());
   tool.stats().phase("render", true);
   frame_options.seed = tool.common().seed_for_frame(number);
   if (options.integrator != "path") frame_options.known = &light.get();
@@ -121,6 +126,32 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   count_work(tool, rendered, tracer);
 }
 
+constexpr std::size_t kMostViews = 8;
+
+/// Of all frames named the cameras, kMostViews of them at most, and of the one in the middle the scene.
+void learn(tools::Tool& tool, tools::SceneInput& input, const Options& options, const std::vector<int>& frames) {
+  tools::Output output(options.output, tool.common().no_clobber);
+  tool.stats().phase("evaluate");
+  const SceneFrame frame = input.at(frames[frames.size() / 2]);
+  const int camera = input.scene().camera_node(tool.common().camera);
+  std::vector<CameraView> views;
+  const std::size_t count = std::min(frames.size(), kMostViews);
+  for (std::size_t i = 0; i < count; ++i) {
+    const int number = frames[i * (frames.size() - 1) / std::max<std::size_t>(1, count - 1)];
+    views.emplace_back(input.at(number, false).camera(camera), frame.origin, options.width, options.height);
+  }
+  tool.stats().phase("build");
+  const Tracer tracer(frame);
+  Lights lights(frame, input.emission(frame.frame));
+  lights.weigh_sky_by_cosine();
+  tool.stats().phase("learn lights", true);
+  const std::unique_ptr<LightGrid> grid =
+      learn_lights({tracer, lights, lights.has_suns()}, views, {.seed = tool.common().seed_for_frame(frame.frame)});
+  tool.stats().phase("write");
+  tools::write_light_grid(tool, grid.get(), frame, output);
+  tool.stats().end_phase();
+}
+
 /// A scene without light may be meant (unlit materials, depth alone), but a black frame is explained.
 void warn_of_darkness(tools::Tool& tool, const Scene& scene) {
   if (std::ranges::any_of(scene.materials, &Material::unlit)) return;
@@ -132,7 +163,10 @@ void warn_of_darkness(tools::Tool& tool, const Scene& scene) {
 }
 
 void check(Options& options, const std::vector<int>& frames) {
-  if (frames.size() > 1 && !tools::has_frame_pattern(options.output))
+  if (options.only_learns() && !options.learn_lights)
+    throw InputError("--output " + options.output + ": what is learned of lights is written with --learn-lights alone; a frame is OpenEXR, name it f.exr");
+  if (options.learn_lights && !options.lights.empty()) throw InputError("--lights and --learn-lights: read or learn; leave out one");
+  if (frames.size() > 1 && !options.only_learns() && !tools::has_frame_pattern(options.output))
     throw InputError("--output: several frames need a pattern, for example f.####.exr");
   if (options.output == "-") throw InputError("--output: a frame is a file, readers of OpenEXR must seek; name one");
   for (const char* other : {".png", ".jpg", ".jpeg", ".hdr", ".tif", ".tiff", ".bmp", ".ppm", ".pfm", ".webp"})
@@ -236,7 +270,10 @@ void add_options(tools::Tool& tool, Options& options) {
                "the frame will be filtered by st-filter: --pixel-error counts noise of the layer specular alone, which passes it");
   add_light_options(tool, options);
   app.add_flag("--learn-lights", options.learn_lights,
-               "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that");
+               "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that; with -o FILE.lightgrid "
+               "learn for the cameras of all frames named, write that and no frame");
+  app.add_option("--lights", options.lights, ".lightgrid file, or a pattern: what --learn-lights has learned before, in place of learning it for each frame")
+      ->type_name("FILE");
   app.add_flag("--halves", options.frame.halves,
                "also write NAME_a.exr and NAME_b.exr: independent halves of spp/2 samples each");
   app.add_option("--target-error", options.frame.target_error,
@@ -256,7 +293,7 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--compression", options.compression, "EXR compression")
       ->capture_default_str()
       ->check(CLI::IsMember({"zip", "none"}));
-  tool.output_option(options.output, "EXR file, or a pattern as f.####.exr")->required();
+  tool.output_option(options.output, "EXR file, or a pattern as f.####.exr; or a .lightgrid file")->required();
 }
 
 }  // namespace
@@ -276,6 +313,10 @@ int main(int argc, char** argv) {
     tool.stats().phase("load");
     tools::SceneInput input(tool, options.scene, tools::SceneInput::a_camera);
     warn_of_darkness(tool, input.scene());
+    if (options.only_learns()) {
+      learn(tool, input, options, frames);
+      return tools::exit_ok;
+    }
     StandingTree standing;
     for (int frame : frames) render(tool, input, options, frame, standing);
     return tools::exit_ok;

@@ -23,6 +23,7 @@
 #include "lib/render/choose_indirect.h"
 #include "lib/render/choose_moving.h"
 #include "lib/render/choose_split.h"
+#include "lib/render/learn_lights.h"
 #include "lib/render/seen_spheres.h"
 #include "tools/common/option_words.h"
 #include "tools/common/pilot.h"
@@ -98,6 +99,7 @@ CausticPilot aimed_caustics(const Tracer& tracer, tools::SceneInput& input, cons
 
 /// Decides how indirect light is to be found: as asked, or by a pilot of the middle one of the frames asked for.
 void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options& options, int camera, Plan& plan) {
+  plan.learn_lights = !plan.photon_kinds.empty();
   if (plan.photon_kinds.empty()) return;
   plan.record_rays = options.rays;
   if (options.indirect != "auto") return use_indirect(plan, options.indirect, "--indirect " + options.indirect);
@@ -108,6 +110,7 @@ void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options&
   const Lights lights(frame, input.emission(frame.frame));
   const IndirectPilot pilot = pilot_indirect({tracer, lights}, view, options.pixel_error, 0);
   plan.record_rays = record_rays(pilot, options.rays);
+  plan.learn_lights = lights.has_distant() && pilot.open_share <= kMostOpen;
   const IndirectChoice choice = choose_indirect(pilot);
   const std::string method = kIndirectMethods[std::size_t(choice.method)];
   if (plan.media && method == "paths") return use_indirect(plan, "gather", "photons light the media, points read them, too");

@@ -28,14 +28,29 @@ LightGrid::LightGrid(float edge, const Environment* environment) : edge_(edge) {
   if (environment) sky_ = std::make_unique<EnvironmentLight>(*environment, 1);
 }
 
-std::uint64_t LightGrid::key(Vec3 position, Vec3 normal) const {
+std::uint64_t LightGrid::key_of(const Place& place) {
   std::uint64_t key = 1;
-  for (const float x : {position.x, position.y, position.z}) {
-    const double cell = std::floor(double(x) / double(edge_)) + double(kHalf);
-    if (!(cell >= 1 && cell < double(2 * kHalf - 1))) return 0;
-    key = key << kBits | std::uint64_t(cell);
+  for (const std::int32_t x : place.at) key = key << kBits | std::uint64_t(x + kHalf);
+  return key * 6 + place.facing;
+}
+
+LightGrid::Place LightGrid::place_of(std::uint64_t key) {
+  Place place;
+  place.facing = std::uint32_t(key % 6);
+  for (int axis = 0; axis < 3; ++axis)
+    place.at[std::size_t(axis)] = std::int32_t(std::int64_t(key / 6 >> (kBits * (2 - axis)) & kMask) - kHalf);
+  return place;
+}
+
+std::uint64_t LightGrid::key(Vec3 position, Vec3 normal) const {
+  Place place;
+  place.facing = std::uint32_t(facing(normal));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double cell = std::floor(double((&position.x)[axis]) / double(edge_));
+    if (!(std::abs(cell) <= double(kFarthest))) return 0;
+    place.at[axis] = std::int32_t(cell);
   }
-  return key * 6 + facing(normal);
+  return key_of(place);
 }
 
 std::uint64_t LightGrid::beside(std::uint64_t key, int axis, int steps) {

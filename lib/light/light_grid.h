@@ -26,6 +26,14 @@ class LightGrid {
   /// edge: of a cell, m. environment: nullptr for none; must outlive it.
   LightGrid(float edge, const Environment* environment);
 
+  /// Where a cell is: its place on the lattice, and 0 to 5 for +x, -x, +y, -y, +z, -z. Of places within kFarthest of 0.
+  struct Place {
+    std::array<std::int32_t, 3> at{};
+    std::uint32_t facing = 0;
+  };
+  static constexpr std::int32_t kFarthest = (1 << 19) - 2;
+  static std::uint64_t key_of(const Place& place);
+  static Place place_of(std::uint64_t key);
   /// Number of the cell that holds the place, for surfaces that face as `normal` does (unit); 0: none could.
   std::uint64_t key(Vec3 position, Vec3 normal) const;
   /// The cell `steps` cells along an axis, for the same direction.

@@ -81,6 +81,7 @@ struct Plan {
   /// What of each state of light follows from that of what stands: "anew" (nothing), "light" (photons and points), "records" (they,
   /// too) or "time" (photons and points; records from those of the state before in the segment).
   std::string moving = "anew";
+  bool learn_lights = true;         ///< light from far away comes through openings: frame-render is to learn which way
   bool split = false;               ///< bright points are divided from the others and sampled explicitly
   bool media = false;               ///< has the scene media?
   std::vector<PlannedView> views;   ///< empty: photons are not aimed. make_plan leaves it so, it traces no rays

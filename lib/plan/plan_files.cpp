@@ -124,7 +124,8 @@ std::string plan_json(const Plan& plan, const std::string& scene_name, const std
                {"indirect", photons ? plan.indirect : "paths"},
                {"rays", plan.record_rays},
                {"moving", photons ? plan.moving : "anew"},
-               {"split", plan.split}};
+               {"split", plan.split},
+               {"learn_lights", plan.learn_lights}};
   if (!plan.environment.empty()) json["environment"] = std::filesystem::path(plan.environment).filename().string();
   json["stages"] = Json::array();
   for (const Stage& stage : plan.stages)
@@ -160,6 +161,7 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   text += "plan_moving := " + (photons ? plan.moving : "anew") + "\n";
   text += std::string("plan_method := ") + (plan.walkthrough ? "walkthrough" : "frames") + "\n";
   if (plan.split) text += "plan_split := 1\n";
+  if (plan.learn_lights) text += "plan_lights := 1\n";
   if (plan.media) text += "plan_media := 1\n";
   for (const std::string& file : scene_files)  // the empty rule: a file that is gone asks for a new plan
     text += folder + "/plan.mk: " + escaped_for_make(file) + "\n" + escaped_for_make(file) + ":\n";

@@ -14,7 +14,6 @@ namespace {
 constexpr std::size_t kMostCells = 4096;   ///< 9 MB
 constexpr std::size_t kMostPlaces = 16;    ///< of a cell
 constexpr float kAcrossSeen = 20;          ///< cells along what is seen: 15 are as good, 60 too many to learn (prototype.md 9)
-constexpr double kOpen = 0.1;              ///< share of rays from what is seen that leave the scene: rooms with windows below, streets above it
 constexpr int kPixelsPerRay = 450;         ///< of the picture, for a ray of each cell: learning is to stay a small part of a small picture
 constexpr double kLearned = 0.8;           ///< of the samples; the rest as if nothing were known
 constexpr double kFromFirst = 0.6;         ///< of the second pass' rays: by what the first one learned
@@ -225,12 +224,17 @@ std::vector<Found> joined(const std::vector<std::uint64_t>& keys, const std::vec
 
 }  // namespace
 
-std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, const CameraView& view, const LearnOptions& options) {
+std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, std::span<const CameraView> views, const LearnOptions& options) {
   if (!scene.lights.has_distant()) return nullptr;
-  const SeenPlaces seen = places_seen(scene, view, options.looks, options.seed);
+  SeenPlaces seen;
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    const SeenPlaces more = places_seen(scene, views[v], options.looks / int(views.size()), options.seed ^ v << 32);
+    seen.places.insert(seen.places.end(), more.places.begin(), more.places.end());
+    seen.beyond.insert(seen.beyond.end(), more.beyond.begin(), more.beyond.end());
+  }
   const float extent = extent_of(seen.places);
   const auto exist = std::ranges::count_if(seen.places, &SeenPlace::exists);
-  if (!(extent > 0) || double(std::ranges::count_if(seen.places, &SeenPlace::open)) > kOpen * double(exist)) return nullptr;
+  if (!(extent > 0) || double(std::ranges::count_if(seen.places, &SeenPlace::open)) > kMostOpen * double(exist)) return nullptr;
   auto grid = std::make_unique<LightGrid>(extent / kAcrossSeen, scene.lights.has_environment() ? scene.frame().environment : nullptr);
   std::vector<Place> places;
   for (const std::vector<SeenPlace>* from : {&seen.places, &seen.beyond})
@@ -240,7 +244,7 @@ std::unique_ptr<LightGrid> learn_lights(const RenderScene& scene, const CameraVi
   std::vector<std::uint64_t> keys;
   for (const std::vector<Place>& cell : cells) keys.push_back(cell.front().cell);
 
-  const int rays = int(std::clamp(std::int64_t(view.width()) * view.height() / kPixelsPerRay, std::int64_t(1), std::int64_t(options.rays)));   // 65536 x 65536 is no int
+  const int rays = int(std::clamp(std::int64_t(views[0].width()) * views[0].height() / kPixelsPerRay, std::int64_t(1), std::int64_t(options.rays)));   // 65536 x 65536 is no int
   const Learner learner(scene, options, rays, *grid);
   const bool suns = !scene.lights.suns().empty(), lamps = scene.lights.has_placed();
   const std::vector<double> parts = light_of_parts(*grid);

@@ -96,6 +96,7 @@ FileType file_type(const std::string& path) {
   if (head.starts_with("\x89TIRRC")) return FileType::irradcache;
   if (head.starts_with("\x89TRADS")) return FileType::radsamples;
   if (head.starts_with("\x89TMESH")) return FileType::meshirrad;
+  if (head.starts_with("\x89TLGRD")) return FileType::lightgrid;
   if (path == "-") return FileType::photons;   // whose reader says what is wrong
   if (head.find_first_not_of(" \t\r\n") < size && head[head.find_first_not_of(" \t\r\n")] == '{')
     return FileType::json;
@@ -119,6 +120,8 @@ Facts facts_of(const std::string& path, bool allow_nan) {
       return radsamples_facts(path);
     case FileType::meshirrad:
       return meshirrad_facts(path);
+    case FileType::lightgrid:
+      return lightgrid_facts(path);
     case FileType::image:
       return image_facts(path, allow_nan);
     case FileType::json:
@@ -145,6 +148,8 @@ Facts difference_of(const std::string& a, const std::string& b) {
       return radsamples_difference(a, b);
     case FileType::meshirrad:
       return meshirrad_difference(a, b);
+    case FileType::lightgrid:
+      return lightgrid_difference(a, b);
     case FileType::image:
       return image_difference(a, b);
     case FileType::json:
@@ -164,6 +169,7 @@ void export_points(const std::string& path, const std::string& format, Output& o
     case FileType::paths:
     case FileType::radsamples:
     case FileType::meshirrad:
+    case FileType::lightgrid:
     case FileType::image:
     case FileType::json:
       break;

@@ -99,6 +99,8 @@ constexpr ManualText kTexts[] = {
      "frame-render room.glb --frame 12 --irradcache 12.irradcache --photons s.photons --dynamic d.0012.photons -o 12.exr\n"
      "# From points alone: nothing to be placed for a camera, more noise.\n"
      "frame-render room.glb --frame 12 --size 640x360 --points 12.irradpoints -o 12.exr\n"
+     "# Which way light comes through windows: learned once for the cameras of a segment, read by its frames with --lights.\n"
+     "frame-render room.glb --frames 0-23 --size 640x360 --learn-lights -o 0000.lightgrid\n"
      "# By paths, but for the light that mirrors and glass throw: photon-trace --kinds caustic.\n"
      "frame-render glass.glb --frame 12 --size 640x360 --photons 12.photons -o 12.exr\n"
      "# A reference in two independent halves, so that its noise is known.\n"

@@ -321,6 +321,7 @@ TEST(PlanMakefile, SaysWhichPhotonsHoldForAFrameAndWhatTheyDependOn) {
             "plan_rays := 500\n"
             "plan_moving := anew\n"
             "plan_method := frames\n"
+            "plan_lights := 1\n"
             "out/plan/plan.mk: room.glb\n"
             "room.glb:\n"
             "out/plan/plan.mk: data\\ folder/room.bin\n"
