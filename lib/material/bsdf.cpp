@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lib/core/sampling.h"
 #include "lib/material/dielectric.h"
@@ -182,6 +183,11 @@ float Bsdf::specular_density(Vec3 wi, Vec3 wo, const Reflection& r) const {
   const float share = multiple_share(r);
   return (1 - share) * ggx::pdf_reflected(normalize(wi + wo), wo.z, alpha2_) +
          share * pdf_hemisphere_cos(wi.z);
+}
+
+float Bsdf::gloss_density(Vec3 wi, const Direction& wo) const {
+  const bool gloss = specular_ && !delta_ && !(transmission_ > 0) && wi.z > 0 && wo.w.z > 0;
+  return gloss ? specular_density(wi, wo.w, wo.reflected) : std::numeric_limits<float>::infinity();
 }
 
 float Bsdf::pdf_specular(Vec3 wi, const Direction& wo) const {

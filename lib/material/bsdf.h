@@ -113,6 +113,8 @@ class Bsdf {
   float pdf_specular(Vec3 wi, const Direction& wo) const;
   float pdf_diffuse(Vec3 wi, Vec3 wo) const { return pdf_diffuse(wi, along(wo)); }
   float pdf_specular(Vec3 wi, Vec3 wo) const { return pdf_specular(wi, along(wo)); }
+  /// Density of event S choosing wi once it is chosen [1/sr]; infinity of mirrors, and of all that has glass in it.
+  float gloss_density(Vec3 wi, const Direction& wo) const;
   /// Can events D and S be drawn apart: a Lambert lobe under a reflection, no glass?
   bool forks() const { return diffuse_ && specular_ && !(transmission_ > 0); }
   /// P(D), if it forks: sample() draws event D for u_lobe below it, else event S. wo above the surface.

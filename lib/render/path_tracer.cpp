@@ -121,14 +121,21 @@ void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter
   result[layer] += throughput * scene.lights.environment_at(place) * weight;
 }
 
-/// What a path knows of the light beyond its last event D: a Lambert lobe or a collision.
+/// What a path knows of the light beyond its last event D, a Lambert lobe or a collision; and how wide it looks.
 struct Beyond {
   bool matte = false;            ///< there was such an event
   bool caustic_known = false;    ///< what arrives there by events S
   bool indirect_known = false;   ///< what arrives there by events D
   bool specular = false;         ///< events S since then
-  float distance = 0;            ///< m along the path since then
   bool low = false;              ///< bright points were sampled explicitly there: a matte hit brings the rest
+  /// m: how wide the rays of the scatterings so far have spread, measured as by the way from a Lambert lobe: that way itself since the last
+  /// event D, nothing as long as there was none but smooth mirrors and glass.
+  float width = 0;
+  float spread = 0;              ///< growth of `width`, m/m
+
+  void advance(float way) { width += spread * way; }
+  /// By gloss of this density [1/sr]. A Lambert lobe has 1/pi in its middle: its rays spread by a metre a metre.
+  void widen(float density) { spread = std::max(spread, std::min(1.0f, 1 / std::sqrt(kPi * density))); }
 
   /// Does the light count that the path meets now?
   bool light_counts() const { return !(matte && specular && caustic_known); }
@@ -144,12 +151,13 @@ struct KnownHere {
 KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, const Beyond& beyond, const Rgb& throughput,
                           const EyePath& path, float u, const PathRandom& random, Layers& result, RayCounts& counts) {
   KnownHere here;
-  if (beyond.low && !beyond.specular) here.left = known.left(x.surface, x.normal_geometric, beyond.distance, u);
+  if (beyond.low && !beyond.specular) here.left = known.left(x.surface, x.normal_geometric, beyond.width, u);
   // f_D's total for light from everywhere is rho (1 - A_S(wo)): see bsdf.h
   const Rgb reflected = throughput * x.bsdf.diffuse_reflectance(x.wo_local.z) * (kInvPi * here.left);
   const Layer layer = path.after(true).after(true).layer();   // indirect; or that of what the path saw before
-  if (beyond.matte) {
-    if (const std::optional<KnownLight::Told> told = known.told(x.surface, x.normal_geometric, beyond.distance, u)) {
+  // Beside bright points those of known.told() hold the rest alone: then gloss, which has not sampled them, goes on.
+  if (beyond.matte || (beyond.spread > 0 && !known.bright)) {
+    if (const std::optional<KnownLight::Told> told = known.told(x.surface, x.normal_geometric, beyond.width, u)) {
       ++counts.points_read;
       result[layer] += reflected * told->irradiance;
       return {true, told->direct, true, false, here.left};
@@ -251,9 +259,13 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
   if (next.transmitted ? !x.sees_beyond(wi) : !x.sees(wi)) return false;
   walk.throughput *= next.weight * (1 / times);
   walk.path.scatter(next.diffuse);
-  if (next.diffuse) walk.throughput *= here.left;
-  if (next.diffuse) walk.beyond = {true, here.caustic, here.indirect, false, 0, here.low};
-  else walk.beyond.specular = true;
+  if (next.diffuse) {
+    walk.throughput *= here.left;
+    walk.beyond = {true, here.caustic, here.indirect, false, here.low, 0, 1};
+  } else {
+    walk.beyond.specular = true;
+    walk.beyond.widen(x.bsdf.gloss_density(next.wi, x.eye));
+  }
   const bool front = dot(x.surface.normal_geometric, walk.ray.direction) < 0;
   if (!next.diffuse && is_solid_glass(material)) walk.inside.scatter(x.surface.material, front, next.transmitted);
   if (!survives(walk, kLargestSurvival)) return false;
@@ -274,7 +286,7 @@ bool EyeTracer::scatter(const ShadingPoint& x, const SurfaceMaterial& material, 
 /// Scattering in a medium: light of a lamp, roulette, a new ray. False if the path ends there.
 bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
   walk.path.scatter_in_medium();
-  walk.beyond = {true, false, false, false, 0, false};
+  walk.beyond = {true, false, false, false, false, 0, 1};
   walk.cone = {};
   walk.throughput *= point.albedo;
   if (is_black(walk.throughput)) return false;
@@ -364,7 +376,7 @@ void EyeTracer::follow(Walk walk) const {
     if (walk.inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
       walk.throughput *= walk.inside.transmittance_to(frame.materials, point.material, front, hit.t);
     walk.cone.advance(hit.t);
-    walk.beyond.distance += hit.t;
+    walk.beyond.advance(hit.t);
     if (walk.beyond.light_counts()) add_emission(scene_, point, wo, last, walk.throughput, path.layer(), walk.cone.width, result);
     // Only light by events S is missing then, if any.
     const bool only_specular = walk.beyond.indirect_known;

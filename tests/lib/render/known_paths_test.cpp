@@ -90,6 +90,40 @@ TEST(GatherInPixels, AFurnaceIsUniform) {
   EXPECT_LT(radiance.sigma(), 0.003);
 }
 
+/// What gloss shows is read, too, where its rays spread wider than the points' blur. A white metal plate in the furnace (2 everywhere) reflects
+/// all, so it shows 2, rough or smooth. Of 2000 rays from a rough one most end at the wall they meet: 0.02 m to 2 m away, a few radii of 0.1 m. A
+/// mirror shows the wall's own shadows and folds: from there a ray of the hemisphere goes on, at least one more to each.
+TEST(Gloss, ReadsPointsAndMirrorsDoNot) {
+  for (const float roughness : {1.0f, 0.0f}) {
+    HandMadeScene made;
+    made.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f), Rgb(1.0f)));
+    Material metal = matte(Rgb(1.0f));
+    metal.metallic = 1;
+    metal.roughness = roughness;
+    made.add_quad({-0.1f, 0, 0.1f}, {0.1f, 0, 0.1f}, {0.1f, 0, -0.1f}, {-0.1f, 0, -0.1f}, metal);
+    const Chain chain(made, 400000, 3000, 4, 16);
+    KnownLight known;
+    known.points = &chain.lookup;
+    RayCounts counts;
+    Mean radiance;
+    constexpr std::uint32_t kCount = 2000;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const Ray ray{{0.01f, 0.5f, 0.02f}, normalize(Vec3{0.02f, -1, 0.01f}), 0, INFINITY};
+      const Layers seen = trace_eye_path({chain.tracer, chain.lights}, ray, PixelRandom(3, 0, i), &known, counts);
+      EXPECT_EQ(total(seen), double(seen[Layer::specular].g));
+      radiance.add(total(seen));
+    }
+    // Light of the walls themselves is 1 by rays and shadow rays; what they reflect is 1, by points that err by 1 % (AFurnaceIsUniform).
+    EXPECT_NEAR(radiance.mean(), 2, 4 * radiance.sigma() + 0.01) << roughness;
+    if (roughness > 0) {
+      EXPECT_LT(counts.bounce, kCount * 3 / 2);
+      EXPECT_GT(counts.points_read, kCount * 3 / 4);
+    } else {
+      EXPECT_GE(counts.bounce, 2 * kCount);
+    }
+  }
+}
+
 /// A cache that has no record here takes nothing away and adds nothing: with no points the one ray of the hemisphere goes on as a
 /// path, and every layer is that of the path tracer to the bit.
 TEST(MissingRecords, LeaveThePathAsItIs) {
