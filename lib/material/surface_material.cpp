@@ -14,6 +14,10 @@ void SurfaceMaterial::read_textures(const SceneFrame& frame, SurfacePoint& point
     const Rgba colour = spot.read(textures.base_color, base_color_transfer(material));
     values.base_color *= Rgb{colour[0], colour[1], colour[2]};
   }
+  if (textures.vertex_colors) {
+    const Rgba colour = spot.vertex_color();
+    values.base_color *= Rgb{colour[0], colour[1], colour[2]};
+  }
   if (textures.metallic_roughness) {
     const Rgba share = spot.read(textures.metallic_roughness, TextureTransfer::linear);
     values.roughness *= share[1];

@@ -127,9 +127,38 @@ std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, co
   return uvs;
 }
 
+/// glTF 2.0, 3.7.2.1: RGB or RGBA, linear. Exporters write them white, too: those are left out. Marks the material.
+void read_colors(Import& import, const tinygltf::Primitive& source, const std::string& place, Primitive& primitive) {
+  const auto found = source.attributes.find("COLOR_0");
+  if (found == source.attributes.end()) return;
+  const auto accessor = std::size_t(found->second);
+  const bool rgb = accessor < import.model.accessors.size() && import.model.accessors[accessor].type == TINYGLTF_TYPE_VEC3;
+  const std::size_t components = rgb ? 3 : 4;
+  const std::vector<double> numbers = read_numbers(import, found->second, int(components), place);
+  const std::size_t count = primitive.positions.size();
+  if (numbers.size() != components * count) import.fail(place, "there are not as many colours as positions");
+  import.take_memory(count * sizeof(primitive.colors[0]), place);
+  primitive.colors.assign(count, {1, 1, 1, 1});
+  bool white = true, outside = false;
+  for (std::size_t v = 0; v < count; ++v)
+    for (std::size_t c = 0; c < components; ++c) {
+      const double number = numbers[components * v + c];
+      outside |= number < 0 || number > 1;
+      white &= (primitive.colors[v][c] = float(std::clamp(number, 0.0, 1.0))) == 1;
+    }
+  if (outside) import.ignore("what vertex colours have below 0 and above 1");
+  if (white) {
+    primitive.colors.clear();
+    return;
+  }
+  Material& material = import.scene.materials[primitive.material];
+  if (!material.textures) material.textures.emplace();
+  material.textures->vertex_colors = true;
+}
+
 void note_ignored(Import& import, const tinygltf::Primitive& source) {
   for (const auto& [name, accessor] : source.attributes) {
-    if (name == "COLOR_0") import.ignore("vertex colours");
+    if (name == "COLOR_1") import.ignore("second and further vertex colours");
     if (name == "TEXCOORD_2") import.ignore("third and further texture coordinates");
   }
 }
@@ -168,6 +197,7 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
     import.fail(place + ".material", "material " + std::to_string(source.material) + " does not exist");
   primitive.material = source.material == -1 ? std::uint32_t(import.scene.materials.size() - 1)
                                              : std::uint32_t(source.material);
+  read_colors(import, source, place + ".COLOR_0", primitive);
   read_tangents(import, source, place + ".TANGENT", primitive);
   read_targets(import, source, place, primitive);
   read_influences(import, source, place, primitive);

@@ -72,7 +72,8 @@ Rgb mean_emission_share(const SceneFrame& frame, std::uint32_t surface_index, st
         const float u = (float(i) + third) / float(cuts), v = (float(j) + third) / float(cuts);
         Rgba value{1, 1, 1, 1};
         if (emission) value = emission->read(u, v, level);
-        const double share = covers ? 1 : double(coverage(material, base_color ? base_color->read(u, v, 0)[3] : 1));
+        const float alpha = covers ? 1 : (base_color ? base_color->read(u, v, 0)[3] : 1) * TextureSpot(frame, surface_index, triangle, u, v, 0).vertex_color()[3];
+        const double share = covers ? 1 : double(coverage(material, alpha));
         sum += Rgbd(Rgb{value[0], value[1], value[2]}) * share;
       }
   constexpr float kLeast = 0.01f;

@@ -25,6 +25,7 @@ void take_vertices(Primitive& primitive, const std::vector<std::uint32_t>& sourc
   take(primitive.normals, sources);
   take(primitive.uvs, sources);
   take(primitive.uvs1, sources);
+  take(primitive.colors, sources);
   take(primitive.tangents, sources);
   take(primitive.tangent_sides, sources);
   take(primitive.influences, sources, primitive.influences_per_vertex);

@@ -56,7 +56,7 @@ struct Texture {
   bool operator==(const Texture&) const = default;
 };
 
-/// The textures of a material; each multiplies the value of its name.
+/// The textures of a material; each multiplies the value of its name. So do colours of vertices, which are read as if they were one.
 struct MaterialTextures {
   Texture base_color;                ///< sRGB; its A multiplies Material::alpha
   Texture metallic_roughness;        ///< linear: B metallic, G roughness
@@ -64,8 +64,9 @@ struct MaterialTextures {
   Texture emission;                  ///< sRGB
   Texture transmission;              ///< linear: R
   float normal_scale = 1;
+  bool vertex_colors = false;        ///< some of its primitives have Primitive::colors
 
-  bool any() const { return base_color || metallic_roughness || normal || emission || transmission; }
+  bool any() const { return base_color || metallic_roughness || normal || emission || transmission || vertex_colors; }
   bool operator==(const MaterialTextures&) const = default;
 };
 
@@ -97,6 +98,8 @@ struct Primitive {
   std::vector<Vec3> positions;                              ///< m, node space, at rest
   std::vector<Vec3> normals;                                ///< unit; empty: flat shading
   std::vector<Vec2> uvs, uvs1;                              ///< TEXCOORD_0, TEXCOORD_1; empty: none
+  /// COLOR_0, linear, in [0, 1]: multiplies base colour and alpha; between corners linear. Empty: 1.
+  std::vector<std::array<float, 4>> colors;
   /// Where the normal map's x points, and on which side of it y: +1 along normal x tangent, -1 against. Empty: as the
   /// texture coordinates say. Only of primitives with normals and a normal map.
   std::vector<Vec3> tangents;

@@ -35,8 +35,12 @@ void add_shape(Hasher& hasher, const Surface& surface) {
   add_values(hasher, surface.primitive->triangles);
 }
 
-/// Nothing for most primitives, whose hash stays what it was before tangents were read.
-void add_tangents(Hasher& hasher, const Primitive& primitive) {
+/// Nothing for most primitives, whose hash stays what it was before colours and tangents were read.
+void add_colors_and_tangents(Hasher& hasher, const Primitive& primitive) {
+  if (!primitive.colors.empty()) {
+    hasher.add(std::string_view("vertex colours"));
+    add_values(hasher, primitive.colors);
+  }
   if (primitive.tangents.empty()) return;
   add_values(hasher, primitive.tangents);
   add_values(hasher, primitive.tangent_sides);
@@ -50,7 +54,7 @@ std::string shared_digest(const Primitive& primitive) {
   add_values(hasher, primitive.normals);
   add_values(hasher, primitive.uvs);
   if (!primitive.uvs1.empty()) add_values(hasher, primitive.uvs1);
-  add_tangents(hasher, primitive);
+  add_colors_and_tangents(hasher, primitive);
   return hasher.hex();
 }
 
@@ -109,7 +113,7 @@ std::string geometry_hash(const Scene& scene, Vec3d origin, std::span<const Surf
     add_values(hasher, surface.normals);
     add_values(hasher, surface.primitive->uvs);
     if (!surface.primitive->uvs1.empty()) add_values(hasher, surface.primitive->uvs1);
-    add_tangents(hasher, *surface.primitive);
+    add_colors_and_tangents(hasher, *surface.primitive);
     if (!surface.tangents.empty()) add_values(hasher, surface.tangents);
   }
   return hasher.hex();

@@ -55,6 +55,15 @@ Rgba TextureSpot::read(const Texture& texture, TextureTransfer transfer) const {
   return pyramid.read(uv, texture.wrap_u, texture.wrap_v, texture.nearest, level(corners, pyramid));
 }
 
+Rgba TextureSpot::vertex_color() const {
+  const auto& colors = surface_.primitive->colors;
+  if (colors.empty()) return {1, 1, 1, 1};
+  Rgba color;
+  for (std::size_t c = 0; c < 4; ++c)
+    color[c] = colors[corners_[0]][c] * (1 - u_ - v_) + colors[corners_[1]][c] * u_ + colors[corners_[2]][c] * v_;
+  return color;
+}
+
 bool TextureSpot::axes_of_tangents(Vec3 normal, Vec3& right, Vec3& up) const {
   const Primitive& primitive = *surface_.primitive;
   if (primitive.tangents.empty() || !surface_.smooth()) return false;
@@ -99,7 +108,7 @@ Vec3 TextureSpot::bend(const Texture& normal_map, float scale, Vec3 normal, Vec3
 
 bool lets_rays_pass(const Material& material) {
   if (material.alpha_mode == Material::Alpha::opaque) return false;
-  const bool textured = material.textures && material.textures->base_color;
+  const bool textured = material.textures && (material.textures->base_color || material.textures->vertex_colors);
   return textured || (material.alpha_mode == Material::Alpha::mask ? material.alpha < material.alpha_cutoff
                                                                    : material.alpha < 1);
 }
@@ -112,9 +121,10 @@ float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t 
   const Material& material = frame.materials[frame.surfaces[surface].material];
   if (!lets_rays_pass(material)) return 1;
   float alpha = 1;
-  if (material.textures && material.textures->base_color) {
+  if (material.textures) {
     const TextureSpot spot(frame, surface, triangle, u, v, 0);
-    alpha = spot.read(material.textures->base_color, base_color_transfer(material))[3];
+    if (material.textures->base_color) alpha = spot.read(material.textures->base_color, base_color_transfer(material))[3];
+    if (material.textures->vertex_colors) alpha *= spot.vertex_color()[3];
   }
   return coverage(material, alpha);
 }

@@ -27,6 +27,9 @@ class TextureSpot {
   /// texture asks for shows the corner (0, 0).
   Rgba read(const Texture& texture, TextureTransfer transfer) const;
 
+  /// Colour of the primitive's vertices there; 1 if it has none.
+  Rgba vertex_color() const;
+
   /// `normal` (unit) bent by a normal map of glTF 2.0: x along the image's rightwards axis, y along its upwards axis,
   /// both across `normal`, times scale; at least 3 degrees above the triangle's plane. The axes are the primitive's
   /// tangents, else the directions of the texture coordinates in the triangle; `normal` itself where those have none.
@@ -59,10 +62,10 @@ bool emission_varies(const Material& material);
 /// Radiance that the material emits at a point [glTF nits].
 Rgb emission_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v, float width);
 
-/// Share of rays that meet the surface at a point, by the finest level of the texture: 1 for opaque materials, alpha
-/// for BLEND, 1 or 0 for MASK.
+/// Share of rays that meet the surface at a point, by the finest level of the texture and the vertices' colour: 1 for opaque
+/// materials, alpha for BLEND, 1 or 0 for MASK.
 float coverage_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, float u, float v);
-/// The same of a material that lets rays pass, where the alpha of its texture is `texel` (1: none).
+/// The same of a material that lets rays pass, where the alpha of its texture times that of the vertices is `texel` (1: none).
 inline float coverage(const Material& material, float texel) {
   const float alpha = material.alpha * texel;
   if (material.alpha_mode == Material::Alpha::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;

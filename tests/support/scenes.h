@@ -79,6 +79,7 @@ class HandMadeScene {
   void set_media(std::shared_ptr<const Media> media) { frame_.media = std::move(media); }
   /// Texture coordinates of the surface added last, by vertex.
   void set_uvs(const std::vector<Vec2>& uvs) { primitives_.back()->uvs = uvs; }
+  void set_colors(const std::vector<std::array<float, 4>>& colors) { primitives_.back()->colors = colors; }
   const std::vector<Vec3>& last_positions() const { return primitives_.back()->positions; }
   /// The images that materials' textures name by number.
   void set_images(std::vector<EncodedImage> images) {

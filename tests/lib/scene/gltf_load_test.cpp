@@ -268,7 +268,7 @@ TEST(GltfLoad, WhatIsNotRenderedYetIsNamed) {
   maker.add_material({{"occlusionTexture", {{"index", 0}}}});
   maker.add_node({{"mesh", maker.add_triangle(0)}});
   Json& primitive = maker.json["meshes"][0]["primitives"][0];
-  primitive["attributes"]["COLOR_0"] = 0;
+  primitive["attributes"]["COLOR_1"] = 0;
   maker.json["skins"] = {{{"joints", {0}}}};
   maker.json["nodes"][0]["skin"] = 0;  // but its mesh has no JOINTS_0
   maker.add_light({{"type", "point"}, {"range", 10}});
@@ -279,9 +279,39 @@ TEST(GltfLoad, WhatIsNotRenderedYetIsNamed) {
   maker.json["animations"][0]["channels"].push_back(pointer);
   const Scene scene = maker.load();
   for (const char* part :
-       {"occlusion textures", "vertex colours", "skins of meshes without JOINTS_0",
+       {"occlusion textures", "second and further vertex colours", "skins of meshes without JOINTS_0",
         "range of lights", "animation of /materials/0"})
     EXPECT_TRUE(has_warning(scene, part)) << part;
+}
+
+/// Bytes count 255ths, float colours stay what they are, RGB has alpha 1; the material is told that it varies, no other is.
+TEST(GltfLoad, ColoursOfVertices) {
+  GltfMaker maker;
+  for (int i = 0; i < 4; ++i) maker.add_material(Json::object());
+  const int bytes = maker.add_accessor<std::uint8_t>({255, 0, 51, 102, 0, 255, 0, 255, 0, 0, 255, 0}, 5121, "VEC4", 4);
+  maker.json["accessors"][std::size_t(bytes)]["normalized"] = true;
+  const std::vector<int> accessors{bytes, maker.add_vec3({0.5f, 0, 0, 0, 0.25f, 0, 0, 2, 1}), maker.add_vec3(std::vector<float>(9, 1))};
+  for (int m = 0; m < 3; ++m) {
+    maker.add_node({{"mesh", maker.add_triangle(m)}});
+    maker.json["meshes"][std::size_t(m)]["primitives"][0]["attributes"]["COLOR_0"] = accessors[std::size_t(m)];
+  }
+  const Scene scene = maker.load();
+  const auto colors = [&](std::size_t m) { return scene.meshes[m].primitives[0].colors; };
+  ASSERT_EQ(colors(0).size(), 3u);
+  EXPECT_EQ(colors(0)[0], (std::array<float, 4>{1, 0, 0.2f, 0.4f}));
+  EXPECT_EQ(colors(0)[2], (std::array<float, 4>{0, 0, 1, 0}));
+  ASSERT_EQ(colors(1).size(), 3u);
+  EXPECT_EQ(colors(1)[0], (std::array<float, 4>{0.5f, 0, 0, 1}));
+  EXPECT_EQ(colors(1)[2], (std::array<float, 4>{0, 1, 1, 1})) << "more than all is not reflected";
+  EXPECT_TRUE(has_warning(scene, "vertex colours"));
+  EXPECT_TRUE(colors(2).empty()) << "white says nothing";
+  EXPECT_TRUE(scene.materials[0].textures && scene.materials[0].textures->vertex_colors);
+  EXPECT_TRUE(scene.materials[1].textures);
+  EXPECT_FALSE(scene.materials[2].textures);
+  EXPECT_FALSE(scene.materials[3].textures);
+  maker.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = maker.add_vec3({1, 1, 1});
+  EXPECT_CONTAINS(load_error(write_file("bad.gltf", maker.text())), "meshes[0].primitives[0].COLOR_0");
+  EXPECT_CONTAINS(load_error(write_file("bad.gltf", maker.text())), "not as many colours as positions");
 }
 
 TEST(GltfLoad, NodesComeParentsFirstAndOnlyFromTheDefaultScene) {

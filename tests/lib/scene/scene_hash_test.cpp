@@ -162,6 +162,9 @@ TEST(SceneHash, GeometryChangesItsOwnPart) {
   other.json.erase("animations");
   other.animate(2, "translation", {0, 1}, {0, 0, 0, 2, 0, 0});
   EXPECT_EQ(changed(hashes(room()), hashes(other)), Names{"moving"});
+  GltfMaker coloured = room();   // the square that stands is the one that moves
+  coloured.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = coloured.add_vec3({1, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1});
+  EXPECT_EQ(changed(hashes(room()), hashes(coloured)), (Names{"static", "moving"}));
 }
 
 TEST(SceneHash, FramesDifferInWhatMovesOnly) {
