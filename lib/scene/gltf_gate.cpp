@@ -293,6 +293,7 @@ void approve_buffer(Json& buffer, std::size_t index, const std::string& path, co
     return;
   } else {
     range.path = resolved(uri, path, place + ".uri", options);
+    require_file(range.path, path, place + ".uri");
     const File file(range.path);
     if (file.size() > options.max_file_bytes)
       fail(range.path, "size",
@@ -378,6 +379,12 @@ std::vector<unsigned char> read_range(const ByteRange& range) {
   std::vector<unsigned char> bytes(range.length);
   File(range.path).read(range.offset, bytes.data(), range.length);
   return bytes;
+}
+
+void require_file(const std::string& named, const std::string& path, const std::string& place) {
+  if (::access(named.c_str(), F_OK) != 0)
+    fail(path, place, named + " cannot be opened: " + std::strerror(errno) +
+                          "; copy all files of the scene, or export it as one .glb");
 }
 
 std::vector<unsigned char> read_whole(const std::string& path, std::uint64_t max_bytes) {

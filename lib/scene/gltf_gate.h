@@ -63,6 +63,8 @@ Gated pass_gate(const std::string& path, const GltfOptions& options);
 
 /// Reads a range; throws InputError if the file ends first.
 std::vector<unsigned char> read_range(const ByteRange& range);
+/// Throws InputError, with the scene's path and the place in it, unless the file that it names there is there.
+void require_file(const std::string& named, const std::string& path, const std::string& place);
 /// Reads a whole regular file of at most `max_bytes`; InputError otherwise.
 std::vector<unsigned char> read_whole(const std::string& path, std::uint64_t max_bytes);
 

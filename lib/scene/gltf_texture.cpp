@@ -31,6 +31,7 @@ std::vector<unsigned char> image_bytes(Import& import, const GatedImage& image, 
     if (!decoded) import.fail(place, "holds characters that are not base64");
     return std::move(*decoded);
   }
+  require_file(image.path, import.scene.path, place);
   std::vector<unsigned char> bytes = read_whole(image.path, import.options->max_file_bytes);
   std::vector<std::string>& files = import.scene.files;
   if (std::find(files.begin(), files.end(), image.path) == files.end()) files.push_back(image.path);

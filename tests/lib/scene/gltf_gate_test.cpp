@@ -134,7 +134,7 @@ TEST(GltfGate, OtherUrisAreRefused) {
        {Case{"http://example.org/a.bin", "is not a relative path"},
         Case{"file:///etc/hostname", "is not a relative path"}, Case{"", "is empty"},
         Case{"a%zz.bin", "hexadecimal"}, Case{"a%", "hexadecimal"}, Case{"a%00.bin", "zero byte"},
-        Case{"none.bin", "cannot be opened"}, Case{".", "not a regular file"},
+        Case{"none.bin", "buffers[0].uri: "}, Case{"none.bin", "cannot be opened"}, Case{".", "not a regular file"},
         Case{"data:text/html,hello", "must be base64"}, Case{"data:a/b;base64,!!!!", "not base64"},
         Case{"data:a/b;base64,AAAA", "decodes to 3 bytes"}})
     EXPECT_CONTAINS(error_of(with_buffer({{"byteLength", 36}, {"uri", c.uri}})), c.part);

@@ -66,7 +66,8 @@ TEST(GltfTexture, WhatCannotBeUsedIsRefused) {
   const std::string png = small_png();
   std::string bomb = png;
   bomb[16] = bomb[20] = 0, bomb[17] = bomb[21] = 1;   // 65538 x 65538
-  for (const Case& c : {Case{{{"uri", "none.png"}}, "cannot be opened"},
+  for (const Case& c : {Case{{{"uri", "none.png"}}, "bad.gltf: images[0]: "},
+                        Case{{{"uri", "none.png"}}, "none.png cannot be opened: No such file or directory; copy all files of the scene"},
                         Case{{{"uri", "http://example.org/a.png"}}, "not a relative path"},
                         Case{{{"uri", "data:image/png,abc"}}, "must be base64"},
                         Case{{{"uri", "data:image/png;base64,!!!!"}}, "not base64"},
