@@ -8,3 +8,8 @@ $(if $(filter auto on off,$(SPLIT)),,$(error SPLIT=$(SPLIT): auto, on or off))
 $(if $(filter gather textures,$(SURFACES)),,$(error SURFACES=$(SURFACES): gather or textures))
 $(if $(filter draft final,$(QUALITY)),,$(error QUALITY=$(QUALITY): draft or final))
 $(if $(shell echo '$(SIZE)' | grep -xE '[1-9][0-9]*x[1-9][0-9]*'),,$(error SIZE=$(SIZE): WIDTHxHEIGHT in pixels))
+# A variable that nothing reads is a mistyped one: with scene=my.glb the demo would be rendered. Known are names in capitals that the makefiles hold, comments
+# too (DESTDIR is cmake's), of others those that they expand, and what programs behind them take from the environment.
+outside = SHELL CC CXX CFLAGS CXXFLAGS LDFLAGS CMAKE_% NINJA_% CCACHE_% TEMPOLUX_%
+$(foreach v,$(.VARIABLES),$(if $(filter command,$(origin $v)),$(if $(filter $(outside),$v)$(shell case '$v' in (*[a-z]*) p='[$$][(]$v[:)]' ;; (*) p='\<$v\>' ;; esac; \
+  grep -lE "$$p" $(MAKEFILE_LIST) $(pipelines)*.mk),,$(error $v=$($v): nothing reads $v; the first lines of $(firstword $(MAKEFILE_LIST)) have the names))))

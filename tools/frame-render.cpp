@@ -14,6 +14,7 @@
 
 #include "formats/error.h"
 #include "lib/image/exr_io.h"
+#include "lib/material/smooth_material.h"
 #include "lib/render/coverage_channel.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/render/influence_channels.h"
@@ -70,11 +71,21 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
   if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
 }
 
+/// A reference that cannot hold some light is no measure of frames that do. No path meets a lamp without extent where a mirror sends it.
+void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
+  const std::uint32_t smooth = frame.lights.empty() ? kNone : first_smooth_material(frame);
+  if (smooth == kNone) return;
+  const std::string& name = frame.materials[smooth].name;
+  tool.warn(frame.scene->path + ": materials" + (name.empty() ? "" : " \"" + name + "\"") +
+            ": what point, spot and sun lights send by way of mirrors and smooth glass is missing: no path finds it; photons do (--photons)");
+}
+
 void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing) {
   tools::FrameOutputs outputs(tools::frame_name(options.output, number), options.frame.halves,
                               tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
+  if (options.integrator == "path" && number == tool.common().frames.front()) warn_of_missing_light(tool, frame);
   const int camera = input.scene().camera_node(tool.common().camera);
   const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
   const MotionFrame next(input, options, camera, number + 1), previous(input, options, camera, number - 1);

@@ -19,6 +19,23 @@ scene["nodes"].append(camera)
 scene["scenes"][0]["nodes"].append(len(scene["nodes"]) - 1)
 json.dump(scene, open("mirror.gltf", "w"))
 END
+# The same mirror, smooth, and a point lamp: what it sends there no path finds.
+"${PYTHON:-python3}" - <<'END' || bad 'lamp.gltf'
+import json
+scene = json.load(open("mirror.gltf"))
+scene["materials"][-1]["pbrMetallicRoughness"]["roughnessFactor"] = 0
+json.dump(scene, open("smooth.gltf", "w"))
+scene["extensionsUsed"] = scene.get("extensionsUsed", []) + ["KHR_lights_punctual"]
+scene["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point"}]}}
+scene["nodes"].append({"translation": [0, 1, 0], "extensions": {"KHR_lights_punctual": {"light": 0}}})
+scene["scenes"][0]["nodes"].append(len(scene["nodes"]) - 1)
+json.dump(scene, open("lamp.gltf", "w"))
+scene["materials"][-1]["pbrMetallicRoughness"]["roughnessFactor"] = 0.3
+json.dump(scene, open("gloss.gltf", "w"))
+END
+for scene in smooth gloss; do expect 0 '' frame-render $scene.gltf --integrator path --size 16x9 --spp 1 -o made.exr; done
+expect 0 'lamp.gltf: materials "Mirror": what point, spot and sun lights send by way of mirrors and smooth glass is missing' \
+  frame-render lamp.gltf --integrator path --size 16x9 --spp 1 -o made.exr
 tiny="--size 16x9 --rays 8" point="--point-count 200" frame="--size 16x9 --spp 2 --pixel-error 0"
 for kinds in direct indirect caustic caustic,indirect; do
   photon-trace mirror.gltf --photons 5k --kinds $kinds -o "mirror.$kinds" -q || bad "photons: $kinds"

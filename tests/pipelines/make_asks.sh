@@ -31,6 +31,9 @@ refuses() { what=$1; shift; demo "$@" && bad "$*: not refused"; says "$what" || 
 refuses "no goal 'dmeo'; .*help. lists them" dmeo
 demo help && says 'QUALITY=draft' && says 'Further goals: estimate' || bad 'help'
 refuses 'QUALITY=drft' demo QUALITY=drft
+refuses 'FRAME=3: nothing reads FRAME; ' demo FRAME=3
+refuses 'scene=my.glb: nothing reads scene; ' demo scene=my.glb
+demo -n demo TEMPOLUX_THREADS=1 DESTDIR=/x CXX=g++ plan_rays=40 || bad 'variables that are read'
 refuses 'VOLUME=' demo VOLUME='my smoke.vdb'
 refuses 'SIZE=32:' demo SIZE=32
 refuses 'SCENE=.my scene.glb' demo SCENE='my scene.glb'
