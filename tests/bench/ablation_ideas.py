@@ -36,6 +36,8 @@ IDEAS = (
           ("lib/render/path_tracer.cpp", "times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye)", "times * (next.diffuse ? 0.0f"))),
     Idea("gloss forks", "under a gloss both lobes are followed at the first surface", "frames",
          (("lib/render/path_tracer.cpp", "const bool forks = known_ && ", "const bool forks = known_ && walk.bounce > 1000 && "),)),
+    Idea("gloss reads points", "what a rough gloss shows is told by points, as what rays of the hemisphere meet", "frames",
+         (("lib/render/path_tracer.cpp", "(beyond.spread > 0 && !known.bright)", "(beyond.spread > 1000 && !known.bright)"),)),
     # ---- numbers of samples
     Idea("parts apart", "light samples, rays onward and camera rays have numbers of their own", "frames",
          (("lib/render/pixel_noise.cpp",
