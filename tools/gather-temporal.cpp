@@ -25,7 +25,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> inputs;   // final SCENE
-  std::string points, high, previous, output, cache, dynamic, age_weight = "2";
+  std::string points, high, previous, output, cache, dynamic, age_weight = "2", refresh_rule = "adaptive";
   int width = 640, height = 360;
   bool resume = false, free_radii = false;
   GatherOptions gather;
@@ -76,6 +76,7 @@ void count(tools::Tool& tool, const TemporalCounts& counts, int frame, bool firs
   set("cells_moved", counts.moved);
   set("cells_lost", counts.lost);
   set("cells_unanchored", counts.unanchored);
+  set("cells_near", counts.near);
   set("cells_aged", counts.aged);
   set("cells_scaled", counts.scaled);
   set("birth_rays", counts.birth.rays);
@@ -88,7 +89,7 @@ void count(tools::Tool& tool, const TemporalCounts& counts, int frame, bool firs
   if (cells > 0) tool.stats().set("mean_age." + std::to_string(frame), ages / cells);
   if (!first && counts.cells > 0)
     tool.stats().set("retraced_share." + std::to_string(frame),
-                     double(counts.moved + counts.lost + counts.unanchored + counts.aged) / double(counts.cells));
+                     double(counts.moved + counts.lost + counts.unanchored + counts.near + counts.aged) / double(counts.cells));
 }
 
 /// One frame, after that in `chain`, which receives it.
@@ -121,8 +122,14 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   const Tracer tracer(frame, standing);
   const Lights lights(frame, input.emission(frame.frame));
   const PointLookup lookup(points.read.points, points.read.spacing, point_clearance(tracer));
+  const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width, options.height);
+  const auto eye = [&](Vec3 place) -> std::optional<Vec3> {
+    const auto at = view.project(place);
+    if (!at) return std::nullopt;
+    return view.ray(float((*at)[0]), float((*at)[1])).origin;
+  };
   const TemporalScene scene{tracer, lights, lookup, points.read.points, points.anchored, chain.before ? &*chain.before : nullptr,
-                            points.high_shares, points.high_hash};
+                            points.high_shares, points.high_hash, eye};
   GatherOptions rays = options.gather;
   rays.seed = tool.common().seed_for_frame(number);
   std::optional<BrightPoints> bright;
@@ -131,7 +138,6 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
     rays.bright = &*bright;
   }
   const TemporalGather gather(scene, rays, options.placement, options.temporal, tools::sample_unit(frame));
-  const CameraView view(frame.camera(input.scene().camera_node(tool.common().camera)), frame.origin, options.width, options.height);
   const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
     seen_through(tracer, view, looks, seen);
   };
@@ -181,8 +187,10 @@ void add_options(tools::Tool& tool, Options& options) {
                  "gather rays per record, one a cell; up to 72 times as many cells where neighbours found light uneven or small")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
   app.add_option("--refresh", options.temporal.refresh, "share of the cells of records whose light changed that get a ray in a frame: what moves comes first, the others are drawn by age, "
-                 "a quarter of this share at least")
+                 "a quarter of this share at least (--refresh-rule)")
       ->capture_default_str()->check(tools::number_between(0, 1));
+  app.add_option("--refresh-rule", options.refresh_rule, "adaptive: cells traced for a reason count towards --refresh; fixed: that share of the others is drawn by age, whatever moves")
+      ->capture_default_str()->check(CLI::IsMember({"adaptive", "fixed"}));
   app.add_option("--age-weight", options.age_weight, "cells get new rays with probability as their age, 1, or its square, 2; or the oldest first")
       ->capture_default_str()->check(CLI::IsMember({"1", "2", "oldest"}));
   app.add_option("--error-bound", options.placement.error_bound,
@@ -212,6 +220,7 @@ int main(int argc, char** argv) {
     const std::vector<int>& frames = tool.common().frames;
     check(tool.app(), options, frames);
     options.placement.clamp_neighbours = !options.free_radii;
+    options.temporal.rule = options.refresh_rule == "fixed" ? RefreshRule::fixed : RefreshRule::adaptive;
     options.temporal.age_weight = options.age_weight == "1"   ? AgeWeight::linear
                                   : options.age_weight == "2" ? AgeWeight::square
                                                               : AgeWeight::oldest;

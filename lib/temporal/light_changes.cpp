@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/core/random.h"
+
 namespace tempolux {
 namespace {
 
+constexpr std::uint64_t kTurns = 8;   ///< updates in which each near hit is traced again once (table in docs/methods/temporal.md)
 constexpr float kLargestRatio = 2;   ///< of an anchor's light: beyond, and below its inverse, cells are traced again
 
 Box3 grown(const Box3& box, float by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
+/// Of the updates of a record, in which is it a cell's turn? Follows from no light, so it brings no bias.
+bool is_its_turn(const formats::RadsamplesRecord& record, std::uint32_t cell) { return (mix64(record.key + cell) + record.updates) % kTurns == 0; }
 bool holds(const Box3& box, Vec3 p) {
   return min(p, box.lower) == box.lower && max(p, box.upper) == box.upper;
 }
@@ -68,7 +73,10 @@ bool mark_cells(const KeptHemisphere& kept, const LightChanges& changes, const G
       if (directions.aim(c, kept.draw_of(c), ray, key) && meets(ray, distance, box)) marks[c] = moved;
     });
   }
-  return std::any_of(marks.begin(), marks.end(), [](std::uint8_t mark) { return mark != unmarked; });
+  if (std::none_of(marks.begin(), marks.end(), [](std::uint8_t mark) { return mark != unmarked; })) return false;
+  for (std::uint32_t c = 0; c < cells; ++c)
+    if (marks[c] <= scaled && (kept.samples[c].flags & formats::sample_near) && is_its_turn(kept.record, c)) marks[c] = near;
+  return true;
 }
 
 bool near_a_mover(const KeptHemisphere& kept, const LightChanges& changes) {

@@ -10,7 +10,7 @@
 namespace tempolux {
 
 /// What becomes of a cell: it stays, it is scaled as its anchor's light, or why it is traced.
-enum Mark : std::uint8_t { unmarked = 0, scaled, moved, lost, unanchored, aged, all };
+enum Mark : std::uint8_t { unmarked = 0, scaled, moved, lost, unanchored, near, aged, all };
 inline bool is_traced(std::uint8_t mark) { return mark > scaled; }
 
 /// What has changed between the frame that was kept and the scene's.

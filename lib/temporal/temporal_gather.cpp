@@ -17,6 +17,7 @@ constexpr int kSteps = 27;             ///< of strata: 8 x 9 times the rays, in 
 constexpr int kStepForEvenness = 1;    ///< 2^(1/4): at equal rays noise is 9 % more, worth 19 % of them (docs/methods/temporal.md)
 constexpr std::uint32_t kFixed = 0xffffffff;
 constexpr int kFadingFrames = 4;
+constexpr float kLeastOfHidden = 1.0f / 64;   ///< of the smallest radius: radii stay above 0
 constexpr std::uint32_t kAhead = 12;   ///< cells: of the light that is fetched from memory
 constexpr float kLeastAged = 0.25f;    ///< of `refresh`: drawn by age however many cells are traced anyway
 
@@ -41,7 +42,7 @@ bool deforms(const SceneFrame& frame, std::uint32_t surface) {
 }
 
 void add(const TemporalCounts& from, TemporalCounts& to) {
-  to.moved += from.moved, to.lost += from.lost, to.unanchored += from.unanchored, to.aged += from.aged;
+  to.moved += from.moved, to.lost += from.lost, to.unanchored += from.unanchored, to.near += from.near, to.aged += from.aged;
   to.scaled += from.scaled, to.explicit_only += from.explicit_only;
   to.update += from.update;
 }
@@ -137,6 +138,16 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
   }
 }
 
+/// Is the smallest radius, which lets a record cover pixels around it, no longer this record's due: something has come close, and hidden it? Behind a lamp that
+/// glides along a ceiling it is dark; it would darken what is seen beside the lamp.
+bool TemporalGather::outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before, const IrradianceRecord& made) const {
+  const float smallest = placement_.min_radius_px * before.footprint;
+  const bool had_its_own = std::abs(before.radius - smallest) > 1e-4f * smallest;
+  if (!scene_.eye || !had_its_own || made.radius > smallest || made.radius_unclamped >= smallest) return false;
+  const std::optional<Vec3> eye = scene_.eye(place.position);
+  return !eye || scene_.tracer.occluded(spawn_shadow_ray(place, *eye, 0));
+}
+
 /// The record that the samples make.
 void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born, GatherCounts& counts) const {
   float further = kept.record.further_share;
@@ -144,7 +155,14 @@ void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, boo
   made.further_share = further;
   const float expected = made.expected_share;
   gather_.add_explicit(place, kept.record.key, made, counts);
+  const IrradianceRecord unlimited = made;
   limit_radius(made, kept.record.footprint, placement_);
+  if (!born && outlived(place, kept.record, made)) {
+    made = unlimited;
+    PlacementOptions least = placement_;
+    least.min_radius_px *= kLeastOfHidden;
+    limit_radius(made, kept.record.footprint, least);
+  }
   made.clearance = result_of(kept.record).clearance;
   if (look_again || made.radius * Clearance::kPerRadius > made.clearance.reach) gather_.look_around(place, made);
   keep_result(made, kept.record);
@@ -219,7 +237,7 @@ void TemporalGather::update(KeptHemisphere& kept, const LightChanges& changes, d
   std::array<std::size_t, all + 1> numbers{};
   for (const std::uint8_t mark : marks) ++numbers[mark];
   counts.scaled += numbers[scaled], counts.moved += numbers[moved], counts.lost += numbers[lost];
-  counts.unanchored += numbers[unanchored], counts.aged += numbers[aged];
+  counts.unanchored += numbers[unanchored], counts.near += numbers[near], counts.aged += numbers[aged];
   for (std::uint32_t c = 0; c < marks.size(); ++c) {
     const std::uint32_t ahead = std::min<std::uint32_t>(c + kAhead, std::uint32_t(marks.size()) - 1);
     if (marks[ahead] == scaled) __builtin_prefetch(&changes.ratios[kept.anchors[ahead]]);
@@ -254,7 +272,8 @@ void TemporalGather::update_all(KeptHemispheres& kept, const LightChanges& chang
     counts.cells += cells, (changes.divided ? counts.explicit_only : counts.kept) += unmoved, traced += here, others += all - here;
   });
   const double refresh = double(options_.refresh), cells = double(traced + others);
-  const double aged_share = others > 0 ? std::max((refresh * cells - double(traced)) / double(others), refresh * double(kLeastAged)) : 0;
+  const double left = others > 0 ? (refresh * cells - double(traced)) / double(others) : 0;
+  const double aged_share = options_.rule == RefreshRule::fixed ? refresh : std::max(left, refresh * double(kLeastAged));
   parallel_chunks(marked.size(), 16, [&](std::size_t first, std::size_t last) {
     TemporalCounts local;
     for (std::size_t i = first; i < last; ++i) {

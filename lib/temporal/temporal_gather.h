@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,19 +14,22 @@
 
 namespace tempolux {
 
+/// How many cells are drawn by age, with a share to be refreshed: so many that those with a reason and these make up the share, a quarter of it at
+/// least; or the share of all cells without a reason.
+enum class RefreshRule { adaptive, fixed };
+
 struct TemporalOptions {
-  /// Of the cells of the records whose light changed in a frame: that are traced. Those that must be count: so many others are drawn by age
-  /// as are left, a quarter of this share at least.
-  float refresh = 0.05f;
+  float refresh = 0.05f;                      ///< share, of the cells of the records whose light changed in a frame
+  RefreshRule rule = RefreshRule::adaptive;
   AgeWeight age_weight = AgeWeight::square;   ///< of cells that get a new ray
 };
 
 /// rays of gather: of new records and their continuations. Cells that were traced again: `moved` along their old ray, as what moves was
 /// or is in the way; `lost`: their anchor's light is more than twice or less than half of what it was; `unanchored`: nothing stands for
-/// what they met; `aged` got a new ray. `scaled` read their anchor's new light; `kept` records had no reason to change; of `explicit_only` none of the
+/// what they met; `near`: it was the turn of a hit near by; `aged` got a new ray. `scaled` read their anchor's new light; `kept` records had no reason to change; of `explicit_only` none of the
 /// cells had.
 struct TemporalCounts {
-  std::uint64_t cells = 0, moved = 0, lost = 0, unanchored = 0, aged = 0, scaled = 0;
+  std::uint64_t cells = 0, moved = 0, lost = 0, unanchored = 0, near = 0, aged = 0, scaled = 0;
   std::uint64_t records = 0, kept = 0, explicit_only = 0, born = 0, fading = 0, removed = 0, deforming = 0;
   GatherCounts update, birth;
   std::vector<std::uint64_t> ages;            ///< cells by age, after the frame
@@ -41,6 +46,8 @@ struct TemporalScene {
   /// With GatherOptions::bright: the share of each point's light that is sampled explicitly, and a hash of them all; without: empty.
   std::span<const float> high_shares = {};
   std::string high_hash = {};
+  /// From where the camera looks at a place; nothing if it looks away. Records that something comes close to keep the smallest radius if it sees them; empty: all do.
+  std::function<std::optional<Vec3>(Vec3)> eye = {};
 };
 
 struct LightChanges;   // lib/temporal/light_changes.h
@@ -61,6 +68,7 @@ class TemporalGather {
   /// - the point that stands for what it met has other light now: the cell's radiance is scaled by the ratio, per channel, or
   ///   traced again along its old direction beyond 1/2 to 2;
   /// - no point stands for what it met (mirrors, corners): traced again alike.
+  /// Of a record that changes, cells whose radiance is more than one point's light (hits near by) are traced again alike in turn, each in every eighth update.
   /// Of a record that changes, further cells get a new ray in their place of the hemisphere, drawn by age: see TemporalOptions::refresh.
   /// Where bright points are sampled explicitly, cells that met one have no anchor, as what is left of its light follows from the distance, too; and if anything has
   /// changed the explicit part of every record is sampled anew, with the record's random numbers.
@@ -73,6 +81,7 @@ class TemporalGather {
  private:
   const GatherStrata& strata_of(int rings, int sectors) const;
   struct Marked;
+  bool outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before, const IrradianceRecord& made) const;
   bool look(KeptHemisphere& kept, const LightChanges& changes, Marked& marked) const;
   void update(KeptHemisphere& kept, const LightChanges& changes, double aged_share, Marked& marked, TemporalCounts& counts) const;
   void update_all(KeptHemispheres& kept, const LightChanges& changes, const std::vector<bool>& gone, TemporalCounts& counts) const;

@@ -9,13 +9,15 @@ rays from the same points, over N seeds. Flicker: RMS of the change from one fra
 the phase `records`, median over the frames after a segment's first. `--pixels`: frames too, as Makefile.example renders them, photons and points anew, and what whole
 frames cost on both sides, what stands and a segment's first records counted by 1/24; `--paths SPP`: a frame by path
 tracing, its error and that of the chain against 64 SPP samples. `--split`: both sides take the points of photonmap-split, --high; the reference of an error is that of
-the whole points.
+the whole points. WORK/records.svg: records by frame, and how many there would be if none of those taken out in a segment had gone.
 """
 import argparse
 import json
 import statistics
 import subprocess
 from pathlib import Path
+
+from plot import chart
 
 SEGMENT = 24
 parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -114,8 +116,8 @@ def costs():
             (options.work / f"s.{f - 1:04}.radsamples").unlink(missing_ok=True)
         fresh, over = stats("f.json"), stats("t.json")
         row = {"frame": f, "first": previous(f) is None, "fresh": phase("f.json"), "time": phase("t.json"), "fresh_all": fresh["cpu_s"], "time_all": over["cpu_s"],
-               "fresh_records": fresh["counts"]["records"], "time_records": over["counts"]["records"], "fresh_rays": fresh["counts"]["gather_rays"],
-               **{k: over["counts"][k] for k in ("cells", "cells_moved", "cells_lost", "cells_unanchored", "cells_aged", "birth_rays", "update_rays")}}
+               "fresh_records": fresh["counts"]["records"], "time_records": over["counts"]["records"], "removed": over["counts"]["records_removed"], "fresh_rays": fresh["counts"]["gather_rays"],
+               **{k: over["counts"][k] for k in ("cells", "cells_moved", "cells_lost", "cells_unanchored", "cells_near", "cells_aged", "birth_rays", "update_rays")}}
         if options.pixels and f % 8 == 1:
             pixels(f"t.{name}.irradcache", f, "pixels.exr", "--spp", 4, "--pixel-error", 0.016, "--learn-lights")
             row["pixels"] = stats("r.json")["cpu_s"]
@@ -129,34 +131,53 @@ def compared(test, reference, at):
     return stats("e.json")
 
 
-def judge(f):
-    """RMSE, bias, flicker of frame f: anew with one seed, anew with a seed for each frame, over time."""
-    found = {"fixed": [], "frame": [], "time": []}
+def judge(judged):
+    """RMSE, bias, flicker of these frames: anew with one seed, anew with a seed for each frame, over time. Each seed is one run over all of the frames."""
+    found = {(f, side): [] for f in judged for side in ("fixed", "frame", "time")}
     layer = ("--spp", 1, "--pixel-error", 0, "--channels", "RGBA,layers")
-    first = f // SEGMENT * SEGMENT
-    both = [g for g in (f - 1, f) if g >= 0]
-    for g in both:
+    first = min(judged) // SEGMENT * SEGMENT
+    seen = sorted({g for f in judged for g in (f - 1, f) if g >= 0})
+    for g in seen:
         anew(g, "r.irradcache", "--rays", 8000, "--seed", 1000, whole=True)
         pixels("r.irradcache", g, f"reference.{g:04}.exr", *layer)
     for seed in range(options.seeds):
-        run("gather-temporal", "final", scene, "--frames", f"{first}-{f}", *divided("####"), *size, "--refresh", options.refresh, "--seed", seed,
+        run("gather-temporal", "final", scene, "--frames", f"{first}-{max(judged)}", *divided("####"), *size, "--refresh", options.refresh, "--seed", seed,
             "-o", "j.####.radsamples", "--cache", "jtime.####.irradcache")
-        for g in range(first, f + 1):
+        for g in range(first, max(judged) + 1):
             (options.work / f"j.{g:04}.radsamples").unlink()
-        if first == f:   # the frame before is another segment's last: its records are made anew
-            anew(f - 1, f"jtime.{f - 1:04}.irradcache", "--seed", seed)
-        for g in both:
+        for g in seen:
             anew(g, f"jfixed.{g:04}.irradcache", "--seed", seed)
             anew(g, f"jframe.{g:04}.irradcache", "--seed", 100 * seed + g % 2 + 10)
-            for side in found:
+            for side in ("fixed", "frame", "time"):
                 pixels(f"j{side}.{g:04}.irradcache", g, f"{side}.{g:04}.exr", *layer)
-        for side in found:
-            total = compared(f"{side}.####.exr", "reference.####.exr", f"{both[0]}-{f}")
+        for f, side in found:
+            total = compared(f"{side}.####.exr", "reference.####.exr", f"{max(f - 1, 0)}-{f}")
             last = total["frames"][-1]
-            found[side].append((last["rmse"], last["bias"], total["total"]["flicker"]))
-    for side, rows in found.items():
-        rms = [(sum(r[i] ** 2 for r in rows) / len(rows)) ** 0.5 for i in (0, 2)]
-        print(f"frame {f}: {side}: RMSE {rms[0]:.6f}, bias {100 * statistics.mean(r[1] for r in rows):.3f} %, flicker {rms[1]:.6f} ({len(rows)} seeds)", flush=True)
+            found[f, side].append((last["rmse"], 100 * last["bias"], total["total"]["flicker"]))
+    for f in judged:
+        told(f, {side: found[f, side] for side in ("fixed", "frame", "time")})
+
+
+def rms(values):
+    return (sum(v * v for v in values) / len(values)) ** 0.5
+
+
+def ratio(over, under):
+    """Ratio of two root mean squares over the same seeds, and its standard error with each seed left out in turn."""
+    n, whole = len(over), rms(over) / rms(under)
+    left = [rms(over[:i] + over[i + 1:]) / rms(under[:i] + under[i + 1:]) for i in range(n)] if n > 1 else []
+    return f"{whole:.3f} +- {((n - 1) / n * sum((x - whole) ** 2 for x in left)) ** 0.5:.3f}"
+
+
+def told(f, found):
+    columns = {side: list(zip(*rows)) for side, rows in found.items()}
+    for side, (errors, biases, flickers) in columns.items():
+        print(f"frame {f}: {side}: RMSE {rms(errors):.6f}, bias {statistics.mean(biases):.3f} %, flicker {rms(flickers):.6f} ({len(errors)} seeds)", flush=True)
+    time, fixed, frame = (columns[side] for side in ("time", "fixed", "frame"))
+    apart = [t - a for t, a in zip(time[1], fixed[1])]
+    spread = statistics.stdev(apart) / len(apart) ** 0.5 if len(apart) > 1 else float("nan")
+    print(f"frame {f}: over time by anew: RMSE {ratio(time[0], fixed[0])}; bias apart {statistics.mean(apart):.3f} +- {spread:.3f} %; "
+          f"flicker {ratio(time[2], frame[2])} of a seed a frame, {ratio(time[2], fixed[2])} of one seed", flush=True)
 
 
 def paths(f):
@@ -174,6 +195,12 @@ print(f"{scene.name}, {options.size}, {options.frames} frames, refresh {options.
 if spent["photons"]:
     print(f"photons {spent['photons']:.3f} s, points {spent['points']:.3f} s a frame, whole runs")
 rows = costs()
+gone = []
+for row in rows:
+    gone.append(row["removed"] + (0 if row["first"] else gone[-1]))
+(options.work / "records.svg").write_text(chart(f"Records by frame, {scene.stem}, {options.size}", "frame", "records", [
+    ("over time", [(r["frame"], r["time_records"]) for r in rows]), ("none taken out", [(r["frame"], r["time_records"] + g) for r, g in zip(rows, gone)]),
+    ("anew", [(r["frame"], r["fresh_records"]) for r in rows])]))
 later = [r for r in rows if not r["first"]]
 if later:
     def median(key):
@@ -183,10 +210,12 @@ if later:
         return 100 * sum(r[k] for r in later for k in keys) / sum(r[of] for r in later)
     print(f"records: fresh {median('fresh'):.3f} s, over time {median('time'):.3f} s: {median('fresh') / median('time'):.2f} x; "
           f"all frames {sum(r['fresh'] for r in rows) / sum(r['time'] for r in rows):.2f} x; whole runs {median('fresh_all'):.3f}, {median('time_all'):.3f} s")
-    print(f"of fresh gathering's rays: traced again {share('cells_moved', 'cells_lost', 'cells_unanchored', 'cells_aged', of='fresh_rays'):.1f} %, with births and what goes on "
+    print(f"of fresh gathering's rays: traced again {share('cells_moved', 'cells_lost', 'cells_unanchored', 'cells_near', 'cells_aged', of='fresh_rays'):.1f} %, with births and what goes on "
           f"from hits {share('update_rays', 'birth_rays', of='fresh_rays'):.1f} %; of the cells: "
-          + ", ".join(f"{k[6:]} {share(k):.2f} %" for k in ("cells_moved", "cells_lost", "cells_unanchored", "cells_aged")))
+          + ", ".join(f"{k[6:]} {share(k):.2f} %" for k in ("cells_moved", "cells_lost", "cells_unanchored", "cells_near", "cells_aged")))
     print("records by frame (fresh, over time):", *(f"{r['frame']}: {r['fresh_records']:.0f}, {r['time_records']:.0f};" for r in rows[:: max(1, len(rows) // 8)] + rows[-1:]))
+    if options.pixels and spent["photons"] and options.light == "anew":
+        spent.update(anew=spent["photons"] + spent["points"], stands=0)
     if options.pixels and spent["anew"]:
         lit = statistics.median(r["pixels"] for r in rows if "pixels" in r)
         first = statistics.median(r["time_all"] for r in rows if r["first"])
@@ -198,5 +227,5 @@ if later:
         print(f"pixels {statistics.median(r['pixels'] for r in rows if 'pixels' in r):.3f} s a frame")
 if options.paths:
     paths(rows[-1]["frame"])
-for f in options.judge:
-    judge(f)
+if options.judge:
+    judge(sorted(options.judge))

@@ -40,6 +40,18 @@ assert r["retraced_share.1"] < 0.4 and r["mean_age.4"] > 2 and r["update_rays.0"
 assert r["records.4"] < 1.3 * r["records.0"], r
 END
 
+# --refresh-rule fixed: that share of the cells without a reason is drawn by age, at most one cell a record more. A drawn cell that had a reason counts as drawn.
+range fixed --refresh 0.2 --refresh-rule fixed --stats fixed.json || bad '--refresh-rule fixed'
+"${PYTHON:-python3}" - <<'END' || bad '--refresh-rule fixed: counts'
+import json
+r = json.load(open("fixed.json"))["results"]
+for f in "1234":
+    reasons = sum(r[f"{k}.{f}"] for k in ("cells_moved", "cells_lost", "cells_unanchored", "cells_near"))
+    drawn, cells = r[f"cells_aged.{f}"], r[f"cells.{f}"]
+    assert r[f"records_unchanged.{f}"] == 0 and reasons > 0.02 * cells, r
+    assert 0.2 * (cells - reasons - drawn) <= drawn <= 0.2 * (cells - reasons) + r[f"records.{f}"], (drawn, cells, reasons)
+END
+
 # With one frame left out the next follows from the one before that; an earlier file is replaced by the one that follows from it.
 temporal --frame 2 --points p.0002.irradpoints --previous range/s.0000.radsamples -o over.radsamples --cache over.irradcache || bad 'from two frames before'
 cp range/s.0001.radsamples chain.radsamples
@@ -109,10 +121,14 @@ cmp -s killed/s.0000.radsamples range/s.0000.radsamples && bad 'files of other o
 
 # --max-memory: what does not fit is kept in a file that nobody sees. 58 MB of samples, 37 MB of which may stay; before there was such a file
 # 350 MiB were too little.
-large() { mkdir -p "$1"; gather-temporal final "$moving" -q --size 48x27 --rays 14000 --error-bound 0.5 --threads 1 --frames 0-1 --points p.####.irradpoints -o "$1/s.####.radsamples" \
-  --cache "$1/c.####.irradcache" ${2:-}; }
+large() { folder=$1; shift; mkdir -p "$folder"; gather-temporal final "$moving" -q --size 48x27 --rays 14000 --error-bound 0.5 --frames 0-1 --points p.####.irradpoints -o "$folder/s.####.radsamples" \
+  --cache "$folder/c.####.irradcache" "$@"; }
 large in-memory && large on-disk --max-memory=300MiB || bad '--max-memory'
 diff -r in-memory on-disk || bad '--max-memory: other files'
+for threads in 2 3 7; do
+  rm -r on-disk
+  large on-disk --max-memory=300MiB --threads $threads && diff -r in-memory on-disk || bad "--max-memory: other files with $threads threads"
+done
 [ "$(ls -A on-disk | wc -l)" = 4 ] || bad "--max-memory left files: $(ls -A on-disk)"
 rm -r in-memory on-disk
 for folder in range rest; do mkdir limited-$folder; done
@@ -125,7 +141,10 @@ for f in 0 1 2 3 4; do photonmap-split p.000$f.irradpoints --energy 1 --low low.
 divided() { folder=$1; shift; mkdir -p "$folder"; temporal --frames 0-4 --points low.####.irradpoints --high high.####.irradpoints -o "$folder/s.####.radsamples" --cache "$folder/c.####.irradcache" "$@"; }
 divided divided --stats divided.json || bad '--high'
 tempolux-info --check divided/* >/dev/null || bad '--high: not valid'
-divided divided3 --threads 3 && diff -r divided divided3 || bad '--high: other files with 3 threads'
+for threads in 1 2 3 7; do
+  divided divided$threads --threads $threads && diff -r divided divided$threads || bad "--high: other files with $threads threads"
+  range limited$threads --max-memory 300MiB --threads $threads && diff -r range limited$threads || bad "--max-memory: other files with $threads threads"
+done
 temporal --frame 3 --points low.0003.irradpoints --high high.0003.irradpoints --previous divided/s.0002.radsamples -o alone.radsamples --cache alone.irradcache || bad '--high: a frame alone'
 cmp alone.radsamples divided/s.0003.radsamples || bad '--high: a frame alone differs from a range'
 rm divided3/c.0003.irradcache && divided divided3 --resume && diff -r divided divided3 || bad '--high: resumed to other files'
