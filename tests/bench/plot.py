@@ -75,6 +75,7 @@ def hemispheres(title, discs, oldest):
     out = opened(title)
     size = (WIDTH - 2 * RIGHT) / len(discs)
     radius = min(size - 30, HEIGHT - TOP - BOTTOM) / 2
+    out.append('<g stroke="white" stroke-width="0.3">')
     for i, (words, rings) in enumerate(discs):
         cx, cy = RIGHT + (i + 0.5) * size, TOP + radius
         for j, ages in enumerate(rings):
@@ -84,6 +85,7 @@ def hemispheres(title, discs, oldest):
                 (x0, y0), (x1, y1), (x2, y2), (x3, y3) = ((cx + r * math.cos(t), cy + r * math.sin(t)) for r, t in ((inner, a), (outer, a), (outer, b), (inner, b)))
                 light = round(245 - 225 * (min(age, oldest) - 1) / max(1, oldest - 1))
                 out.append(f'<path d="M{x0:.1f} {y0:.1f}L{x1:.1f} {y1:.1f}A{outer:.1f} {outer:.1f} 0 0 1 {x2:.1f} {y2:.1f}L{x3:.1f} {y3:.1f}'
-                           + (f'A{inner:.1f} {inner:.1f} 0 0 0 {x0:.1f} {y0:.1f}' if inner else '') + f'Z" fill="rgb({light},{light},{min(255, light + 20)})" stroke="white" stroke-width="0.3"/>')
-        out.append(f'<text x="{cx:.1f}" y="{HEIGHT - 14}" text-anchor="middle">{words}</text>')
+                           + (f'A{inner:.1f} {inner:.1f} 0 0 0 {x0:.1f} {y0:.1f}' if inner else '') + f'Z" fill="#{light:02x}{light:02x}{min(255, light + 20):02x}"/>')
+    out.append("</g>")
+    out += [f'<text x="{RIGHT + (i + 0.5) * size:.1f}" y="{HEIGHT - 14}" text-anchor="middle">{words}</text>' for i, (words, _) in enumerate(discs)]
     return "\n".join(out + ["</svg>\n"])
