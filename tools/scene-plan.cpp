@@ -97,26 +97,40 @@ CausticPilot aimed_caustics(const Tracer& tracer, tools::SceneInput& input, cons
   return pilot_caustics({tracer, lights}, view, 0);
 }
 
-/// Decides how indirect light is to be found: as asked, or by a pilot of the middle one of the frames asked for.
+/// Decides how indirect light is to be found by a pilot of a frame; not if surfaces scatter no light there and `unless_dark`: false.
+bool decide_by_pilot(tools::SceneInput& input, const Options& options, int camera, int number, bool unless_dark, Plan& plan) {
+  const SceneFrame frame = input.at(number);
+  const CameraView view(frame.camera(camera), frame.origin, options.run.width, options.run.height);
+  const Tracer tracer(frame);
+  const Lights lights(frame, input.emission(frame.frame));
+  const IndirectPilot pilot = pilot_indirect({tracer, lights}, view, options.pixel_error, 0);
+  if (unless_dark && !(pilot.scattered > 0)) return false;
+  plan.record_rays = record_rays(pilot, options.rays);
+  plan.learn_lights = lights.has_distant() && pilot.open_share <= kMostOpen;
+  const IndirectChoice choice = choose_indirect(pilot);
+  const std::string method = kIndirectMethods[std::size_t(choice.method)];
+  if (plan.media && method == "paths") {
+    use_indirect(plan, "gather", "photons light the media, points read them, too");
+  } else if (choice.method != IndirectMethod::paths || plan.photon_kinds.find("caustic") == std::string::npos) {
+    use_indirect(plan, method, choice.because);
+  } else {
+    const CausticChoice caustics = choose_caustics(pilot, aimed_caustics(tracer, input, view));
+    use_indirect(plan, method, choice.because + "; " + caustics.because, caustics.map);
+  }
+  return true;
+}
+
+/// Decides how indirect light is to be found: as asked, or by a pilot of the middle one of the frames asked for; if that is dark, of the first or last.
 void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options& options, int camera, Plan& plan) {
   plan.learn_lights = !plan.photon_kinds.empty();
   if (plan.photon_kinds.empty()) return;
   plan.record_rays = options.rays;
   if (options.indirect != "auto") return use_indirect(plan, options.indirect, "--indirect " + options.indirect);
   tool.stats().phase("pilot", true);
-  const SceneFrame frame = input.at(plan.frames[plan.frames.size() / 2]);
-  const CameraView view(frame.camera(camera), frame.origin, options.run.width, options.run.height);
-  const Tracer tracer(frame);
-  const Lights lights(frame, input.emission(frame.frame));
-  const IndirectPilot pilot = pilot_indirect({tracer, lights}, view, options.pixel_error, 0);
-  plan.record_rays = record_rays(pilot, options.rays);
-  plan.learn_lights = lights.has_distant() && pilot.open_share <= kMostOpen;
-  const IndirectChoice choice = choose_indirect(pilot);
-  const std::string method = kIndirectMethods[std::size_t(choice.method)];
-  if (plan.media && method == "paths") return use_indirect(plan, "gather", "photons light the media, points read them, too");
-  if (choice.method != IndirectMethod::paths || plan.photon_kinds.find("caustic") == std::string::npos) return use_indirect(plan, method, choice.because);
-  const CausticChoice caustics = choose_caustics(pilot, aimed_caustics(tracer, input, view));
-  use_indirect(plan, method, choice.because + "; " + caustics.because, caustics.map);
+  const int middle = plan.frames[plan.frames.size() / 2];
+  for (const int number : {middle, plan.frames.front(), plan.frames.back()})
+    if (decide_by_pilot(input, options, camera, number, plan.frames.size() > 1, plan)) return;
+  decide_by_pilot(input, options, camera, middle, false, plan);
 }
 
 /// Decides what of a frame's light follows from that of what stands: as asked, or by a pilot. What it then costs is noted for the

@@ -119,6 +119,7 @@ IndirectPilot pilot_indirect(const RenderScene& scene, const CameraView& view, d
     all.places += sum.places;
     all.open += sum.open;
   }
+  pilot.scattered = all.all / (kPlaces * kPathsEach);
   pilot.indirect_share = all.all > 0 ? all.indirect / all.all : 0;
   pilot.open_share = all.places > 0 ? double(all.open) / all.places : 0;
   pilot.lamp_share = all.lights > 0 ? all.lamps / all.lights : 1;

@@ -16,7 +16,8 @@ inline constexpr const char* kIndirectMethods[] = {"records", "gather", "paths"}
 
 /// What a pilot saw of the surfaces that a camera sees.
 struct IndirectPilot {
-  double indirect_share = 0;   ///< of the light that they scatter: layer indirect over direct, caustic and indirect
+  double scattered = 0;        ///< mean radiance of the light that they scatter
+  double indirect_share = 0;   ///< of that: layer indirect over direct, caustic and indirect
   double open_share = 0;       ///< of the rays of their hemispheres: leave the scene
   double lamp_share = 0;       ///< of the light that comes straight from lights: not from the sky or a sun
   int places = 0;              ///< seen; 0: nothing is

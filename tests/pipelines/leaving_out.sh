@@ -93,6 +93,11 @@ tool photon-trace "$work/mirror.glb" --photons 5k --kinds caustic,indirect -o "$
 [ "$(count specular_rays "$work/mirror.json")" -gt 0 ] || bad 'a mirror: no specular ray is counted'
 [ "$(kinds "$work/mirror.photons")" = 'caustic indirect ' ] || bad "a mirror: photons of kinds $(kinds "$work/mirror.photons")"
 
+# A lamp that is off in the middle of the frames: the pilot looks where it is on.
+edit $scene "$work/off.glb" event lamp-off
+tool scene-plan "$work/off.glb" --frames 3-5 -o "$work/off"
+grep -q '^plan_indirect := records$' "$work/off/plan.mk" || bad 'planned by a dark frame'
+
 # Where paths find indirect light the mirror's caustics alone are left to photons, or nothing is.
 tool scene-plan "$work/mirror.glb" --frames 0 --indirect paths -o "$work/paths"
 grep -q '^plan_kinds := $' "$work/paths/plan.mk" || bad 'paths asked for: photons planned all the same'
