@@ -127,10 +127,11 @@ void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options&
   plan.record_rays = options.rays;
   if (options.indirect != "auto") return use_indirect(plan, options.indirect, "--indirect " + options.indirect);
   tool.stats().phase("pilot", true);
-  const int middle = plan.frames[plan.frames.size() / 2];
-  for (const int number : {middle, plan.frames.front(), plan.frames.back()})
-    if (decide_by_pilot(input, options, camera, number, plan.frames.size() > 1, plan)) return;
-  decide_by_pilot(input, options, camera, middle, false, plan);
+  std::vector<int> numbers{plan.frames[plan.frames.size() / 2]};
+  for (const int number : {plan.frames.front(), plan.frames.back()})
+    if (std::ranges::find(numbers, number) == numbers.end()) numbers.push_back(number);
+  for (const int number : numbers)
+    if (decide_by_pilot(input, options, camera, number, number != numbers.back(), plan)) return;
 }
 
 /// Decides what of a frame's light follows from that of what stands: as asked, or by a pilot. What it then costs is noted for the

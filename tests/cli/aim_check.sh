@@ -1,8 +1,6 @@
 # Photons of sun and sky are aimed where the cameras look: a view file where it helps and none elsewhere, the same bytes for any
 # number of threads, what is no view file refused, too few photons said.
 . "$HERE/expect.sh"
-failed=0
-bad() { echo "$*"; failed=1; }
 scenes=$HERE/../../pipelines/scenes
 python3 -B - "$HERE/../bench" <<'EOF' || bad 'scenes'
 import sys

@@ -1,5 +1,7 @@
 # expect CODE WORDS COMMAND...: exits so, and says these words in its one line of at most $longest bytes; "" for no word
-# at all. Nothing stays of what is refused: no file made.*. For tests that source this file; bad() says what failed.
+# at all. Nothing stays of what is refused: no file made.*. For tests that source this file and end with `exit $failed`; bad WORDS says what failed.
+failed=0
+bad() { echo "$*"; failed=1; }
 expect() {
   code=$1 words=$2; shift 2
   rm -f made.*

@@ -1,6 +1,4 @@
 # Light textures: a furnace by them, what is refused, the same bytes for any number of threads.
-failed=0
-bad() { echo "$*"; failed=1; }
 . "$HERE/expect.sh"
 furnace=$HERE/../data/units/U5_furnace_closed.gltf
 python=${PYTHON:-python3}

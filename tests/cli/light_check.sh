@@ -1,7 +1,5 @@
 # Light that a scene has is not left out without a word: kinds of photons, parts of maps, records that are missing,
 # frames that others are built upon.
-failed=0
-bad() { echo "$*"; failed=1; }
 scenes=$HERE/../../pipelines/scenes
 matte=$scenes/S1_cornell.glb moving=$scenes/S2_cornell_moving.glb
 . "$HERE/expect.sh"

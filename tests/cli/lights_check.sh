@@ -1,8 +1,6 @@
 # What frame-render learns of light from far away as a file: the same picture as learning it in the frame, the same bytes for any number
 # of threads, the plan names it where there is something to learn, what is no such file is refused.
 . "$HERE/expect.sh"
-failed=0
-bad() { echo "$*"; failed=1; }
 scenes=$HERE/../../pipelines/scenes
 python3 -B - "$HERE/../bench" <<'EOF' || bad 'scene'
 import sys

@@ -1,6 +1,4 @@
 # Options: limits are said in words and checked; what a run would not do is refused; messages are for people.
-failed=0
-bad() { echo "$*"; failed=1; }
 scenes=$HERE/../../pipelines/scenes
 scene=$scenes/S1_cornell.glb
 longest=300

@@ -1,6 +1,4 @@
 # st-filter: what it refuses, by one line that names the file and the remedy; frames of others; a range and its frames alone.
-failed=0
-bad() { echo "$*"; failed=1; }
 . "$HERE/expect.sh"
 scene=$HERE/../../pipelines/scenes/S2_cornell_moving.glb
 render() { frame-render "$scene" -q --size 48x27 --spp 1 --integrator path --seed-mode frame --channels RGBA,layers,Z,N,id,albedo,motion,coverage,samples "$@"; }

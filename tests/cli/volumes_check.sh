@@ -1,6 +1,4 @@
 # Media from files: what is read, what is refused, answers known on paper, the same bytes for any number of threads.
-failed=0
-bad() { echo "$*"; failed=1; }
 . "$HERE/expect.sh"
 command -v make-vdb > /dev/null || { echo 'built without volumes'; exit 77; }
 units=$HERE/../data/units

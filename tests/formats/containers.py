@@ -151,6 +151,20 @@ def save(path, data):
     os.replace(path + ".tmp", path)
 
 
+def damages(good, end, block):
+    """(name, bytes) of a good file of one block that is damaged in ways any container may be. end: bytes of its end block; block: so many bytes off, the
+    file ends inside of the block."""
+    yield "copied-as-text", good.replace(b"\r\n", b"\n", 1)
+    yield "major-version-2", good[:8] + b"\2" + good[9:]
+    yield "end-checksum", good[:-1] + bytes([good[-1] ^ 1])
+    yield "no-end-block", good[:-end]
+    yield "ends-inside-block", good[:-block]
+    yield "ends-inside-header", good[:30]
+    yield "empty-file", b""
+    yield "bytes-after-end", good + b"\0"
+    yield "two-files-in-one", good + good
+
+
 def second_reader(doc, read, numbers, write):
     """The main of a second reader: FILE [COPY]. Prints numbers of FILE as JSON, writes it again to COPY; of a bad file the reason, exit 2."""
     if len(sys.argv) not in (2, 3):

@@ -9,6 +9,7 @@ import os
 import struct
 import sys
 
+from containers import damages
 from read_lightgrid import KEYS, encode
 
 folder = sys.argv[1]
@@ -59,13 +60,6 @@ save("refuse/cells-descend", encoded([SECOND, FIRST]))
 save("refuse/end-count", encoded(end=3))
 save("refuse/magic", encoded(magic=b"\x89TLGRX\r\n"))
 save("refuse/block-mark-unknown", encoded(mark=b"CELX"))
-save("refuse/copied-as-text", GOOD.replace(b"\r\n", b"\n", 1))
-save("refuse/major-version-2", GOOD[:8] + b"\2" + GOOD[9:])
 save("refuse/block-checksum", GOOD.replace(struct.pack("<2f", 0.25, 1), struct.pack("<2f", 0.5, 1), 1))
-save("refuse/end-checksum", GOOD[:-1] + bytes([GOOD[-1] ^ 1]))
-save("refuse/no-end-block", GOOD[:-16])
-save("refuse/ends-inside-block", GOOD[:-30])
-save("refuse/ends-inside-header", GOOD[:30])
-save("refuse/empty-file", b"")
-save("refuse/bytes-after-end", GOOD + b"\0")
-save("refuse/two-files-in-one", GOOD + GOOD)
+for name, data in damages(GOOD, 16, 30):
+    save("refuse/" + name, data)

@@ -10,7 +10,7 @@ import struct
 import sys
 import zlib
 
-from containers import encode_container
+from containers import damages, encode_container
 from read_meshirrad import END, KEYS, MAGIC, MARK, RECORD
 
 folder = sys.argv[1]
@@ -84,13 +84,6 @@ save("refuse/end-count", encoded(end=(3, 3)))
 save("refuse/end-photons", encoded(end=(2, 4)))
 save("refuse/magic", encoded(magic=b"\x89TMESX\r\n"))
 save("refuse/block-mark-unknown", encoded(mark=b"MESX"))
-save("refuse/copied-as-text", GOOD.replace(b"\r\n", b"\n", 1))
-save("refuse/major-version-2", GOOD[:8] + b"\2" + GOOD[9:])
 save("refuse/block-checksum", GOOD.replace(struct.pack("<3q", 4, 2, 1), struct.pack("<3q", 4, 2, 2)))
-save("refuse/end-checksum", GOOD[:-1] + bytes([GOOD[-1] ^ 1]))
-save("refuse/no-end-block", GOOD[:-24])
-save("refuse/ends-inside-block", GOOD[:-40])
-save("refuse/ends-inside-header", GOOD[:30])
-save("refuse/empty-file", b"")
-save("refuse/bytes-after-end", GOOD + b"\0")
-save("refuse/two-files-in-one", GOOD + GOOD)
+for name, data in damages(GOOD, 24, 40):
+    save("refuse/" + name, data)

@@ -35,12 +35,7 @@ Facts lightgrid_facts(const std::string& path) {
 }
 
 Facts lightgrid_difference(const std::string& a, const std::string& b) {
-  const LightgridFile file_a = load_lightgrid(a), file_b = load_lightgrid(b);
-  const ComparedFile of_a{a, digest_of(file_a), header_facts(file_a.header)}, of_b{b, digest_of(file_b), header_facts(file_b.header)};
-  Facts facts = difference_of_headers("lightgrid", of_a, of_b);
-  add_differing_records(file_a.cells, file_b.cells, facts);
-  facts["digests"] = {of_a.digest, of_b.digest};
-  return facts;
+  return difference_of_files("lightgrid", a, b, load_lightgrid, header_facts, &LightgridFile::cells);
 }
 
 }  // namespace tempolux::tools

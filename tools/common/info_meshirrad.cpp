@@ -59,12 +59,7 @@ Facts meshirrad_facts(const std::string& path) {
 }
 
 Facts meshirrad_difference(const std::string& a, const std::string& b) {
-  const MeshirradFile file_a = load_meshirrad(a), file_b = load_meshirrad(b);
-  const ComparedFile of_a{a, digest_of(file_a), header_facts(file_a.header)}, of_b{b, digest_of(file_b), header_facts(file_b.header)};
-  Facts facts = difference_of_headers("meshirrad", of_a, of_b);
-  add_differing_records(file_a.elements, file_b.elements, facts);
-  facts["digests"] = {of_a.digest, of_b.digest};
-  return facts;
+  return difference_of_files("meshirrad", a, b, load_meshirrad, header_facts, &MeshirradFile::elements);
 }
 
 }  // namespace tempolux::tools

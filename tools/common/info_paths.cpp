@@ -39,12 +39,7 @@ Facts paths_facts(const std::string& path) {
 }
 
 Facts paths_difference(const std::string& a, const std::string& b) {
-  const PathsFile file_a = load_paths(a), file_b = load_paths(b);
-  const ComparedFile of_a{a, digest_of(file_a), header_facts(file_a.header)}, of_b{b, digest_of(file_b), header_facts(file_b.header)};
-  Facts facts = difference_of_headers("paths", of_a, of_b);
-  add_differing_records(file_a.paths, file_b.paths, facts);
-  facts["digests"] = {of_a.digest, of_b.digest};
-  return facts;
+  return difference_of_files("paths", a, b, load_paths, header_facts, &PathsFile::paths);
 }
 
 }  // namespace tempolux::tools

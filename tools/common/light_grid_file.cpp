@@ -7,6 +7,7 @@
 namespace tempolux::tools {
 
 using formats::LightgridCell;
+static_assert(LightgridCell::kFarthest == LightGrid::kFarthest, "every place of a grid has its place in the file");
 
 void write_light_grid(Tool& tool, const LightGrid* grid, const SceneFrame& frame, Output& output) {
   formats::LightgridFile file;

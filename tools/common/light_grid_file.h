@@ -10,7 +10,7 @@
 
 namespace tempolux::tools {
 
-/// Writes what was learned in `frame`; nullptr: no cells. frame_number: for the history.
+/// Writes what was learned in `frame`; nullptr: no cells.
 void write_light_grid(Tool& tool, const LightGrid* grid, const SceneFrame& frame, Output& output);
 
 /// Reads a grid for `frame`; nullptr if it has no cells. One of another scene costs noise only, so it is taken as it is; InputError if its lattice is
