@@ -38,7 +38,7 @@ struct Options {
   FrameOptions frame;
   tools::IndirectLightOptions light;
   double pixel_error = -1;
-  bool half_float = false, learn_lights = false;
+  bool half_float = false, learn_lights = false, keep_outliers = false;
   int width = 640, height = 360;
 
   bool only_learns() const { return output.ends_with(".lightgrid"); }
@@ -68,6 +68,7 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
   stats.count("points_read", double(rendered.rays.points_read));
   stats.set("samples_per_pixel", rendered.samples_per_pixel);
   stats.set("mean_radiance", rendered.mean_radiance);
+  stats.set("spread", rendered.spread);
   if (rendered.own_rmse >= 0) stats.set("own_rmse", rendered.own_rmse);
 }
 
@@ -118,6 +119,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("render", true);
   frame_options.seed = tool.common().seed_for_frame(number);
   if (options.integrator != "path") frame_options.known = &light.get();
+  frame_options.spread_outliers = !options.keep_outliers && options.integrator != "path";
   frame_options.sample_halves = wants_sample_halves(options.channels);
   frame_options.progress = [&](double fraction) { tool.progress(fraction); };
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
@@ -279,6 +281,9 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
   app.add_flag("--for-filter", options.frame.for_filter,
                "the frame will be filtered by st-filter: --pixel-error counts noise of the layer specular alone, which passes it");
+  app.add_flag("--keep-outliers", options.keep_outliers,
+               "leave light that one sample alone claims where it is: with --pixel-error it is spread over the pixels around, which keeps each layer's sum; "
+               "so does --integrator path, and a frame with --mask");
   add_light_options(tool, options);
   app.add_flag("--learn-lights", options.learn_lights,
                "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that; with -o FILE.lightgrid "

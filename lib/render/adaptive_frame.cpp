@@ -1,6 +1,7 @@
 #include "lib/render/adaptive_frame.h"
 
 #include "lib/render/pixel_noise.h"
+#include "lib/render/spread_outliers.h"
 
 namespace tempolux {
 namespace {
@@ -12,6 +13,20 @@ void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& 
   join(sum.onward, first.onward, count.onward, means.onward);
 }
 
+double spread_outliers_of(const PixelNoise& noise, const PartCounts& first, const std::vector<PartCounts>& missing, ParallelArray<PathParts>& parts,
+                       ParallelArray<BrightestSamples>& brightest, LayerImage& image) {
+  std::vector<PartCounts> counts(missing.size());
+  std::vector<float> errors(missing.size());
+  parallel_chunks(std::size_t(image.height), 1, [&](std::size_t y, std::size_t) {
+    for (std::size_t x = 0; x < std::size_t(image.width); ++x) {
+      const std::size_t p = y * std::size_t(image.width) + x;
+      counts[p] = {first.own + missing[p].own, first.lit + missing[p].lit, first.onward + missing[p].onward};
+      errors[p] = float(noise.error_at(int(x), int(y)));
+    }
+  });
+  return spread_outliers({image.width, image.height, parts, counts, brightest, errors}, image.pixels);
+}
+
 }  // namespace
 
 void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
@@ -21,22 +36,35 @@ void render_adaptive(const RenderScene& scene, const CameraView& view, const Fra
   FrameOptions around = options;
   around.mask = noise.looked_at();
   ParallelArray<PathParts> parts(image.pixels.size());
+  const bool spreads = options.spread_outliers && options.mask.empty();
+  ParallelArray<BrightestSamples> brightest(spreads ? image.pixels.size() : 0);
   for_each_pixel(view, around, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     PixelSum half[2];
     half[0].for_filter = half[1].for_filter = options.for_filter;
     const std::uint64_t before = counts.onward;
     for_each_sample(scene, view, options.seed, options.known, pixel, x, y, {}, first, image.halves_of(pixel), counts,
-                    [&](int s, const PathParts& sample) { half[s < noise.first_half() ? 0 : 1].add(sample); });
+                    [&](int s, const PathParts& sample) {
+                      half[s < noise.first_half() ? 0 : 1].add(sample);
+                      if (spreads) brightest[pixel].note(sample, options.for_filter);
+                    });
     noise.note(pixel, half[0], half[1], counts.onward - before);
     join_parts(half[0] + half[1], {}, first, parts[pixel]);
   });
   const std::vector<PartCounts> missing = noise.missing_samples();
   for_each_pixel(view, around, frame.rays, options.progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     const PartCounts& more = missing[pixel];
-    if (more.own > 0 && (options.mask.empty() || options.mask[pixel]))
-      join_parts(sample_pixel(scene, view, options.seed, options.known, pixel, x, y, first, more, image.halves_of(pixel), counts), first, more, parts[pixel]);
+    if (more.own > 0 && (options.mask.empty() || options.mask[pixel])) {
+      PixelSum sum;
+      for_each_sample(scene, view, options.seed, options.known, pixel, x, y, first, more, image.halves_of(pixel), counts,
+                      [&](int, const PathParts& sample) {
+                        sum.add(sample);
+                        if (spreads) brightest[pixel].note(sample, options.for_filter);
+                      });
+      join_parts(sum, first, more, parts[pixel]);
+    }
     image.pixels[pixel] = parts[pixel].sum();
   });
+  if (spreads) frame.spread = spread_outliers_of(noise, first, missing, parts, brightest, image);
   double further = 0;
   for (const PartCounts& count : missing) further += count.own;
   image.samples = first.own;

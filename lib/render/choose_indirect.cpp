@@ -31,7 +31,7 @@ std::string per_cent(double share) {
 /// Of a pixel's error after as many samples as PixelNoise asks for, 4 at least: they are stratified.
 double error_left(double variance, double samples) { return variance * std::pow(samples, -5.0 / 3); }
 double samples_of(double variance, double level, double picture, double pixel_error) {
-  return std::max(4.0, wanted_samples(std::sqrt(variance), 4, level, picture, pixel_error));
+  return std::max(4.0, wanted_samples(std::sqrt(variance), 4, allowed_error(level, picture, pixel_error)));
 }
 
 /// Squared error of the indirect light of paths over that of all other light.

@@ -23,6 +23,8 @@ struct FrameOptions {
   int adaptive_limit = 1024;
   /// The frame will be filtered (lib/filter): noise that counts for pixel_error is that of light which passes the filter, layer specular.
   bool for_filter = false;
+  /// With pixel_error and without a mask: light that one sample alone claims is shared out among the pixels around (lib/render/spread_outliers.h).
+  bool spread_outliers = false;
   bool sample_halves = false;           ///< keep LayerImage::sample_halves
   const KnownLight* known = nullptr;    ///< where paths may end
   std::vector<std::uint8_t> mask;       ///< by pixel, 0: leave it out; empty: all pixels
@@ -43,6 +45,7 @@ struct RenderedFrame {
   LayerImage half[2];                   ///< empty unless halves or target_error
   RayCounts rays;
   double samples_per_pixel = 0;         ///< mean over pixels
+  double spread = 0;                    ///< share of the light that FrameOptions::spread_outliers moved
   /// RMSE of the mean over pixels and channels [radiance], estimated from the halves' difference; < 0: unknown.
   double own_rmse = -1;
   double mean_radiance = 0;             ///< over pixels and channels

@@ -16,8 +16,11 @@ constexpr int kMostLit = 2, kMostOnward = 2;
 
 double sample_variance(double n, double sum, double square) { return n > 1 ? std::max(0.0, square - sum * sum / n) / (n - 1) : 0; }
 
-double wanted_samples(double sigma, double cost, double level, double picture, double pixel_error) {
-  const double error = pixel_error * std::sqrt(std::min(level, picture) * picture + 0.01 * picture * picture);
+double allowed_error(double level, double picture, double pixel_error) {
+  return pixel_error * std::sqrt(std::min(level, picture) * picture + 0.01 * picture * picture);
+}
+
+double wanted_samples(double sigma, double cost, double error) {
   return error > 0 ? kTypical * std::pow(sigma / (kTypical * error) * std::sqrt(kWhole / cost), kStratified) : 0;
 }
 
@@ -108,14 +111,21 @@ PartCounts PixelNoise::missing_at(int x, int y) const {
   if (n == 0) return {};
   const double lit_variance = b > 0 ? lit_square / n * a * b / (a + b) : sample_variance(n, lit, lit_square);
   const double onward_variance = first_.onward > 1 ? within / n : sample_variance(n, onward, onward_square);
+  const double error = allowed_error(level / n, picture_, options_.pixel_error);
   const auto further = [&](double variance, double cost, int first) {
-    const double wanted = wanted_samples(std::sqrt(variance), cost, level / n, picture_, options_.pixel_error);
+    const double wanted = wanted_samples(std::sqrt(variance), cost, error);
     return std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
   };
   PartCounts more{further(own_variance(x, y), kOwn, first_.own), further(lit_variance, kLit, first_.lit),
                   further(onward_variance, std::max(kLeastOnward, rays / n), first_.onward)};
   more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
   return more;
+}
+
+double PixelNoise::error_at(int x, int y) const {
+  double n = 0, level = 0;
+  for_each_neighbour(x, y, kNear, [&](const Pixel& pixel) { ++n, level += pixel.mean; });
+  return allowed_error(n > 0 ? level / n : picture_, picture_, options_.pixel_error);
 }
 
 std::vector<PartCounts> PixelNoise::missing_samples() {

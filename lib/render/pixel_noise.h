@@ -11,9 +11,11 @@ namespace tempolux {
 
 /// Variance of what n, sum and sum of squares are of; 0 of one.
 double sample_variance(double n, double sum, double square);
-/// Samples of a part of a pixel's light that are to leave the pixel the error e = pixel_error sqrt(l picture + (picture / 10)^2), l = min(level, picture), if sigma is the
-/// noise of one, `cost` what it costs in rays, level the radiance around the pixel and picture the picture's mean (docs/pixels.md); 0 if no error is asked for.
-double wanted_samples(double sigma, double cost, double level, double picture, double pixel_error);
+/// By what a pixel may err: e = pixel_error sqrt(l picture + (picture / 10)^2), l = min(level, picture); level is the radiance around the pixel, picture the picture's
+/// mean (docs/pixels.md).
+double allowed_error(double level, double picture, double pixel_error);
+/// Samples of a part of a pixel's light that are to leave the pixel the error e, if sigma is the noise of one and `cost` what it costs in rays (docs/pixels.md); 0 of e = 0.
+double wanted_samples(double sigma, double cost, double error);
 
 /// Noise of a picture whose pixels have their first samples, and what more they need: docs/pixels.md derives it.
 class PixelNoise {
@@ -31,6 +33,8 @@ class PixelNoise {
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
   /// By pixel, once all are noted.
   std::vector<PartCounts> missing_samples();
+  /// By what a pixel may err (pixel_error of wanted_samples) [W/m^2/sr], by the light around. After missing_samples().
+  double error_at(int x, int y) const;
 
  private:
   struct Pixel {

@@ -1,0 +1,171 @@
+#include "lib/render/spread_outliers.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/parallel.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kNear = 2;               ///< pixels: light around is that of 24
+
+/// What is taken from a pixel and how far it goes.
+struct Excess {
+  std::size_t pixel;
+  Layer layer;
+  int level;        ///< boxes reach 2^level pixels
+  Rgbd radiance;
+};
+
+/// Mean light of a layer in the pixels around (x, y).
+double around(const std::vector<Layers>& pixels, int width, int height, int x, int y, Layer layer) {
+  double sum = 0;
+  int n = 0;
+  for (int j = std::max(0, y - kNear); j <= std::min(height - 1, y + kNear); ++j)
+    for (int i = std::max(0, x - kNear); i <= std::min(width - 1, x + kNear); ++i) {
+      if (i == x && j == y) continue;
+      sum += channel_mean(Rgbd(pixels[std::size_t(j) * std::size_t(width) + std::size_t(i)][layer]));
+      ++n;
+    }
+  return n > 0 ? sum / n : 0;
+}
+
+/// The widest box: three of them then reach over 3/8 of the picture's shorter side.
+int last_level(int width, int height) {
+  int level = 0;
+  while (4 * ((2 << (level + 1)) + 1) <= std::min(width, height)) ++level;
+  return level;
+}
+
+/// The narrowest at which a pixel keeps at most `error` of its excess. Of a box of b values thrice the middle has (3 b^2 + 1) / (4 b^3).
+int level_of(double excess, double error, int last) {
+  int level = 0;
+  for (; level < last; ++level) {
+    const double box = (2 << level) + 1, middle = (3 * box * box + 1) / (4 * box * box * box);
+    if (excess * middle * middle <= error) break;
+  }
+  return level;
+}
+
+/// Mean over 2 r + 1 values on either side, thrice, mirrored at the ends: what it takes from one place it gives to others.
+/// Values are `step` apart.
+void blur_line(double* values, int count, std::size_t step, int r, std::vector<double>& sums, std::vector<double>& line) {
+  const auto mirrored = [count](int i) {
+    while (i < 0 || i >= count) i = i < 0 ? -1 - i : 2 * count - 1 - i;
+    return i;
+  };
+  sums.resize(std::size_t(count + 2 * r + 1));
+  line.resize(std::size_t(count));
+  for (int i = 0; i < count; ++i) line[std::size_t(i)] = values[std::size_t(i) * step];
+  for (int pass = 0; pass < 3; ++pass) {
+    sums[0] = 0;
+    for (int i = 0; i < count + 2 * r; ++i) sums[std::size_t(i) + 1] = sums[std::size_t(i)] + line[std::size_t(mirrored(i - r))];
+    for (int i = 0; i < count; ++i) line[std::size_t(i)] = (sums[std::size_t(i + 2 * r + 1)] - sums[std::size_t(i)]) / (2 * r + 1);
+  }
+  for (int i = 0; i < count; ++i) values[std::size_t(i) * step] = line[std::size_t(i)];
+}
+
+void blur(std::vector<double>& image, int width, int height, int r) {
+  constexpr std::size_t kLines = 16;
+  parallel_chunks(std::size_t(height), kLines, [&](std::size_t first, std::size_t last) {
+    std::vector<double> sums, line;
+    for (std::size_t y = first; y < last; ++y) blur_line(image.data() + y * std::size_t(width), width, 1, r, sums, line);
+  });
+  parallel_chunks(std::size_t(width), kLines, [&](std::size_t first, std::size_t last) {
+    std::vector<double> sums, line;
+    for (std::size_t x = first; x < last; ++x) blur_line(image.data() + x, height, std::size_t(width), r, sums, line);
+  });
+}
+
+/// Spreads what `excess` names (one level of one layer): w blur(excess / blur(w)), whose sum is that of `excess` for any weights w.
+void spread(std::span<const Excess> excess, int width, int height, const std::vector<double>& weight, const std::vector<double>& blurred,
+            std::vector<Layers>& pixels) {
+  const int r = 1 << excess.front().level;
+  const std::size_t layer = std::size_t(excess.front().layer);
+  for (int c = 0; c < 3; ++c) {
+    std::vector<double> given(weight.size());
+    bool any = false;
+    for (const Excess& e : excess) {
+      given[e.pixel] += e.radiance[c] / blurred[e.pixel];
+      any = any || e.radiance[c] != 0;
+    }
+    if (!any) continue;
+    blur(given, width, height, r);
+    for (std::size_t p = 0; p < pixels.size(); ++p)
+      if (weight[p] > 0) pixels[p].value[layer][c] = float(double(pixels[p].value[layer][c]) + weight[p] * std::max(0.0, given[p]));
+  }
+}
+
+void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, int x, int y, int last, std::vector<Excess>& found) {
+  const std::size_t pixel = std::size_t(y) * std::size_t(samples.width) + std::size_t(x);
+  const BrightestSamples& brightest = samples.brightest[pixel];
+  const PartCounts& counts = samples.counts[pixel];
+  const double error = double(samples.error[pixel]);
+  const auto look = [&](const BrightestSample& sample, const Layers& mean, int count) {
+    const double claimed = channel_mean(Rgbd(sample.radiance)) / count;
+    if (!(claimed > error)) return;
+    const double others = count > 1 ? (channel_mean(Rgbd(mean[sample.layer])) - claimed) * count / (count - 1) : 0;
+    const double allowed = error + std::max(others, around(pixels, samples.width, samples.height, x, y, sample.layer));
+    if (!(claimed > allowed) || !std::isfinite(claimed)) return;
+    found.push_back({pixel, sample.layer, level_of(claimed - allowed, error, last), Rgbd(sample.radiance) * ((1 - allowed / claimed) / count)});
+  };
+  const PathParts& means = samples.parts[pixel];
+  look(brightest.own, means.own, counts.own);
+  look(brightest.lit, means.lit, counts.lit);
+  look(brightest.onward, means.onward, counts.onward);
+}
+
+double light_of(const std::vector<Layers>& pixels) {
+  double sum = 0;
+  for (const Layers& pixel : pixels)
+    for (const Rgb& radiance : pixel.value) sum += channel_mean(Rgbd(radiance));
+  return sum;
+}
+
+}  // namespace
+
+void BrightestSample::note(const Layers& sample, bool specular_alone) {
+  for (const Layer of : {Layer::specular, Layer::direct, Layer::caustic, Layer::indirect, Layer::volume}) {
+    if (specular_alone && of != Layer::specular) continue;
+    if (channel_sum(sample[of]) > channel_sum(radiance)) {
+      radiance = sample[of];
+      layer = of;
+    }
+  }
+}
+
+double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels) {
+  const int width = samples.width, height = samples.height, last = last_level(width, height);
+  std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
+  parallel_chunks(std::size_t(height), 1, [&](std::size_t y, std::size_t) {
+    for (int x = 0; x < width; ++x) excess_of(samples, pixels, x, int(y), last, by_row[y]);
+  });
+  std::vector<Excess> all;
+  for (const std::vector<Excess>& row : by_row) all.insert(all.end(), row.begin(), row.end());
+  if (all.empty()) return 0;
+  const double light = light_of(pixels);
+  double moved = 0;
+  std::vector<double> weight(pixels.size());
+  for (std::size_t p = 0; p < pixels.size(); ++p) weight[p] = pixels[p].coverage > 0 ? double(samples.error[p]) : 0;
+  for (const Excess& e : all) {
+    moved += channel_mean(e.radiance);
+    for (int c = 0; c < 3; ++c) {
+      float& value = pixels[e.pixel][e.layer][c];
+      value = float(double(value) - e.radiance[c]);
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) { return a.level != b.level ? a.level < b.level : a.layer < b.layer; });
+  std::vector<double> blurred;
+  for (std::size_t first = 0, end; first < all.size(); first = end) {
+    for (end = first; end < all.size() && all[end].level == all[first].level && all[end].layer == all[first].layer;) ++end;
+    if (first == 0 || all[first].level != all[first - 1].level) {
+      blurred = weight;
+      blur(blurred, width, height, 1 << all[first].level);
+    }
+    spread({all.data() + first, end - first}, width, height, weight, blurred, pixels);
+  }
+  return light > 0 ? moved / light : 0;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,157 @@
+// Light that one sample alone claims: how much is taken, where it goes, what stays.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lib/render/spread_outliers.h"
+#include "tests/support/frames.h"
+
+namespace tempolux {
+namespace {
+
+constexpr float kError = 0.05f;
+
+/// A picture of four samples a pixel, part onward, all of indirect radiance 1.
+struct Even {
+  int width, height;
+  std::vector<PathParts> parts;
+  std::vector<PartCounts> counts;
+  std::vector<BrightestSamples> brightest;
+  std::vector<float> error;
+  Even(int w, int h)
+      : width(w), height(h), parts(std::size_t(w * h)), counts(parts.size(), PartCounts{4, 4, 4}), brightest(parts.size()), error(parts.size(), kError) {
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      parts[p].own.coverage = 1;
+      set(p, {Rgb(1.0f), Rgb(1.0f), Rgb(1.0f), Rgb(1.0f)});
+    }
+  }
+  void set(std::size_t pixel, const std::array<Rgb, 4>& samples, Layer layer = Layer::indirect) {
+    brightest[pixel] = {};
+    parts[pixel].onward = {};
+    for (const Rgb& radiance : samples) {
+      PathParts sample;
+      sample.onward[layer] = radiance;
+      brightest[pixel].note(sample, false);
+      parts[pixel].onward[layer] += radiance * 0.25f;
+    }
+  }
+  std::vector<Layers> sums() const {
+    std::vector<Layers> pixels;
+    for (const PathParts& part : parts) pixels.push_back(part.sum());
+    return pixels;
+  }
+  std::vector<Layers> spread() const {
+    std::vector<Layers> pixels = sums();
+    spread_outliers({width, height, parts, counts, brightest, error}, pixels);
+    return pixels;
+  }
+};
+
+double sum_of(const std::vector<Layers>& pixels, Layer layer, int channel) {
+  double sum = 0;
+  for (const Layers& pixel : pixels) sum += double(pixel[layer][channel]);
+  return sum;
+}
+
+/// A sample of 1000 among ones: its pixel shows 250.75, of which it may keep the error .05 and the 1 around beside the .75 of its other samples. The other
+/// 248.95 go to so many pixels that none gets more than .05; the sum stays, by float rounding of 96000 pixels near 1: 6e-8 each.
+TEST(SpreadOutliers, WhatOneSampleClaimsIsSharedOutBelowTheError) {
+  Even even(320, 300);
+  const std::size_t middle = 150 * 320 + 160;
+  even.set(middle, {Rgb(1.0f), Rgb(1000.0f), Rgb(1.0f), Rgb(1.0f)});
+  const std::vector<Layers> pixels = even.spread();
+  for (std::size_t p = 0; p < pixels.size(); ++p) {
+    const float left = p == middle ? 1.8f : 1.0f, now = pixels[p][Layer::indirect].g;
+    ASSERT_GE(now, left - 1e-4f) << p;
+    ASSERT_LE(now, left + kError + 1e-4f) << p;
+  }
+  EXPECT_GT(pixels[middle + 40][Layer::indirect].g, 1.005f);   // boxes of 65 pixels, as 33 would leave it 249 x .5625 / 33^2 = .13
+  EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(even.sums(), Layer::indirect, 1), 96000 * 6e-8);
+}
+
+/// In a corner, of a picture so small that all is near a border, beside pixels that show nothing, and with errors that differ: the sum stays and nothing arrives where nothing is seen.
+/// A red sample gives no green.
+TEST(SpreadOutliers, SumsStayAtBordersAndBesideNothing) {
+  Even even(37, 23);
+  for (std::size_t p = 0; p < even.parts.size(); ++p) {
+    even.error[p] = kError * float(1 + p % 7);
+    if (p % 37 > 30) {
+      even.parts[p] = {};
+      even.brightest[p] = {};
+    }
+  }
+  for (const std::size_t p : {std::size_t(0), std::size_t(36 * 23 / 2), std::size_t(22 * 37 + 30)})
+    even.set(p, {Rgb(1.0f), Rgb(500.0f, 1.0f, 1.0f), Rgb(1.0f), Rgb(1.0f)});
+  const std::vector<Layers> before = even.sums(), pixels = even.spread();
+  EXPECT_LT(pixels[0][Layer::indirect].r, 10);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum_of(pixels, Layer::indirect, c), sum_of(before, Layer::indirect, c), 1e-6 * sum_of(before, Layer::indirect, c)) << c;
+  for (std::size_t p = 0; p < pixels.size(); ++p) {
+    if (p % 37 > 30) {
+      EXPECT_EQ(pixels[p][Layer::indirect].r, 0) << p;
+    } else {
+      EXPECT_GE(pixels[p][Layer::indirect].r, 0.99f) << p;
+    }
+  }
+}
+
+/// Light that a pixel's samples agree on, that the pixels around show too, or that the camera itself sees is none that one sample alone claims.
+TEST(SpreadOutliers, WhatOthersSeeTooStays) {
+  Even agreed(64, 48), line(64, 48), lamp(64, 48);
+  agreed.set(24 * 64 + 32, {Rgb(50.0f), Rgb(52.0f), Rgb(48.0f), Rgb(50.0f)});
+  for (std::size_t x = 0; x < 64; ++x)   // every fourth sample of a line is bright: 5 of the 24 around are of it
+    line.set(24 * 64 + x, {Rgb(0.0f), Rgb(4.0f), Rgb(1.0f), Rgb(1.0f)});
+  lamp.set(24 * 64 + 32, {Rgb(0.0f), Rgb(1000.0f), Rgb(0.0f), Rgb(0.0f)}, Layer::emission);
+  for (const Even* even : {&agreed, &line, &lamp}) {
+    const std::vector<Layers> before = even->sums(), pixels = even->spread();
+    for (std::size_t p = 0; p < pixels.size(); ++p)
+      for (std::size_t l = 0; l < kLayerCount; ++l) ASSERT_EQ(pixels[p].value[l].g, before[p].value[l].g) << p;
+  }
+}
+
+/// For a frame that a filter takes the light it filters is left alone.
+TEST(SpreadOutliers, ForAFilterMirrorsAlone) {
+  PathParts sample;
+  sample.onward[Layer::indirect] = Rgb(9.0f);
+  sample.own[Layer::specular] = Rgb(3.0f);
+  sample.own[Layer::direct] = Rgb(5.0f);
+  BrightestSamples all, mirrors;
+  all.note(sample, false);
+  mirrors.note(sample, true);
+  EXPECT_EQ(all.own.layer, Layer::direct);
+  EXPECT_EQ(all.onward.radiance.g, 9);
+  EXPECT_EQ(mirrors.own.layer, Layer::specular);
+  EXPECT_EQ(mirrors.own.radiance.g, 3);
+  EXPECT_EQ(mirrors.onward.radiance.g, 0);
+}
+
+/// A room by paths, two samples a pixel, one onward: each layer's sum is that without spreading, to float rounding, and the squared error of
+/// indirect light against 256 samples is less.
+TEST(SpreadOutliers, AFrameKeepsItsLayersAndErrsLess) {
+  const test::Cornell c;
+  FrameOptions options;
+  options.samples = 256;
+  const RenderedFrame reference = render_frame(c.render_scene(), c.view, options);
+  options.samples = 2;
+  options.pixel_error = 0.02;
+  options.adaptive_limit = 2;
+  const RenderedFrame kept = render_frame(c.render_scene(), c.view, options);
+  options.spread_outliers = true;
+  const RenderedFrame spread = render_frame(c.render_scene(), c.view, options);
+  EXPECT_GT(spread.spread, 0);
+  double before = 0, after = 0;
+  for (std::size_t p = 0; p < kept.mean.pixels.size(); ++p) {
+    const auto error = [&](const RenderedFrame& frame) {
+      return std::pow(double(frame.mean.pixels[p][Layer::indirect].g) - double(reference.mean.pixels[p][Layer::indirect].g), 2);
+    };
+    before += error(kept);
+    after += error(spread);
+  }
+  EXPECT_LT(after, 0.9 * before);
+  for (std::size_t l = 0; l < kLayerCount; ++l) {
+    const double sum = sum_of(kept.mean.pixels, Layer(l), 1);
+    EXPECT_NEAR(sum_of(spread.mean.pixels, Layer(l), 1), sum, 1e-5 * sum) << l;
+  }
+}
+
+}  // namespace
+}  // namespace tempolux
