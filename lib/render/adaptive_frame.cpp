@@ -13,18 +13,11 @@ void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& 
   join(sum.onward, first.onward, count.onward, means.onward);
 }
 
-double spread_outliers_of(const PixelNoise& noise, const PartCounts& first, const std::vector<PartCounts>& missing, ParallelArray<PathParts>& parts,
-                       ParallelArray<BrightestSamples>& brightest, LayerImage& image) {
-  std::vector<PartCounts> counts(missing.size());
-  std::vector<float> errors(missing.size());
-  parallel_chunks(std::size_t(image.height), 1, [&](std::size_t y, std::size_t) {
-    for (std::size_t x = 0; x < std::size_t(image.width); ++x) {
-      const std::size_t p = y * std::size_t(image.width) + x;
-      counts[p] = {first.own + missing[p].own, first.lit + missing[p].lit, first.onward + missing[p].onward};
-      errors[p] = float(noise.error_at(int(x), int(y)));
-    }
-  });
-  return spread_outliers({image.width, image.height, parts, counts, brightest, errors}, image.pixels);
+double spread_outliers_of(const PixelNoise& noise, const PartCounts& first, const std::vector<PartCounts>& missing, std::span<const PathParts> parts,
+                          std::span<const BrightestSamples> brightest, LayerImage& image) {
+  std::vector<PartCounts> counts(missing);
+  for (PartCounts& count : counts) count = {first.own + count.own, first.lit + count.lit, first.onward + count.onward};
+  return spread_outliers({image.width, image.height, parts, counts, brightest, [&](double level) { return noise.error_at(level); }}, image.pixels);
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ PartCounts PixelNoise::missing_at(int x, int y) const {
   if (n == 0) return {};
   const double lit_variance = b > 0 ? lit_square / n * a * b / (a + b) : sample_variance(n, lit, lit_square);
   const double onward_variance = first_.onward > 1 ? within / n : sample_variance(n, onward, onward_square);
-  const double error = allowed_error(level / n, picture_, options_.pixel_error);
+  const double error = error_at(level / n);
   const auto further = [&](double variance, double cost, int first) {
     const double wanted = wanted_samples(std::sqrt(variance), cost, error);
     return std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
@@ -120,12 +120,6 @@ PartCounts PixelNoise::missing_at(int x, int y) const {
                   further(onward_variance, std::max(kLeastOnward, rays / n), first_.onward)};
   more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
   return more;
-}
-
-double PixelNoise::error_at(int x, int y) const {
-  double n = 0, level = 0;
-  for_each_neighbour(x, y, kNear, [&](const Pixel& pixel) { ++n, level += pixel.mean; });
-  return allowed_error(n > 0 ? level / n : picture_, picture_, options_.pixel_error);
 }
 
 std::vector<PartCounts> PixelNoise::missing_samples() {

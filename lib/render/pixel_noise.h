@@ -33,8 +33,8 @@ class PixelNoise {
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
   /// By pixel, once all are noted.
   std::vector<PartCounts> missing_samples();
-  /// By what a pixel may err (pixel_error of wanted_samples) [W/m^2/sr], by the light around. After missing_samples().
-  double error_at(int x, int y) const;
+  /// By what a pixel may err, around which there is radiance `level` [W/m^2/sr]. After missing_samples().
+  double error_at(double level) const { return allowed_error(level, picture_, options_.pixel_error); }
 
  private:
   struct Pixel {

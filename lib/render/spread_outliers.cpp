@@ -18,23 +18,40 @@ struct Excess {
   Rgbd radiance;
 };
 
-/// Mean light of a layer in the pixels around (x, y).
-double around(const std::vector<Layers>& pixels, int width, int height, int x, int y, Layer layer) {
+double radiance_of(const Layers& pixel) {
+  double sum = 0;
+  for (const Rgb& radiance : pixel.value) sum += channel_mean(Rgbd(radiance));
+  return sum;
+}
+
+/// Mean of value(pixel) over the pixels around (x, y), itself left out.
+template <class Value>
+double around(const std::vector<Layers>& pixels, int width, int height, int x, int y, const Value& value) {
   double sum = 0;
   int n = 0;
   for (int j = std::max(0, y - kNear); j <= std::min(height - 1, y + kNear); ++j)
     for (int i = std::max(0, x - kNear); i <= std::min(width - 1, x + kNear); ++i) {
       if (i == x && j == y) continue;
-      sum += channel_mean(Rgbd(pixels[std::size_t(j) * std::size_t(width) + std::size_t(i)][layer]));
+      sum += value(pixels[std::size_t(j) * std::size_t(width) + std::size_t(i)]);
       ++n;
     }
   return n > 0 ? sum / n : 0;
 }
 
-/// The widest box: three of them then reach over 3/8 of the picture's shorter side.
+/// By which each pixel may err.
+std::vector<double> errors_of(const SampledPixels& samples, const std::vector<Layers>& pixels) {
+  std::vector<double> errors(pixels.size());
+  parallel_chunks(pixels.size() / std::size_t(samples.width), 1, [&](std::size_t y, std::size_t) {
+    for (int x = 0; x < samples.width; ++x)
+      errors[y * std::size_t(samples.width) + std::size_t(x)] = samples.error(around(pixels, samples.width, samples.height, x, int(y), radiance_of));
+  });
+  return errors;
+}
+
+/// The widest box, no wider than the picture: three of them leave what is nearly even.
 int last_level(int width, int height) {
   int level = 0;
-  while (4 * ((2 << (level + 1)) + 1) <= std::min(width, height)) ++level;
+  while ((2 << (level + 1)) + 1 <= std::max(width, height)) ++level;
   return level;
 }
 
@@ -97,16 +114,15 @@ void spread(std::span<const Excess> excess, int width, int height, const std::ve
   }
 }
 
-void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, int x, int y, int last, std::vector<Excess>& found) {
+void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, double error, int x, int y, int last, std::vector<Excess>& found) {
   const std::size_t pixel = std::size_t(y) * std::size_t(samples.width) + std::size_t(x);
   const BrightestSamples& brightest = samples.brightest[pixel];
   const PartCounts& counts = samples.counts[pixel];
-  const double error = double(samples.error[pixel]);
   const auto look = [&](const BrightestSample& sample, const Layers& mean, int count) {
     const double claimed = channel_mean(Rgbd(sample.radiance)) / count;
     if (!(claimed > error)) return;
     const double others = count > 1 ? (channel_mean(Rgbd(mean[sample.layer])) - claimed) * count / (count - 1) : 0;
-    const double allowed = error + std::max(others, around(pixels, samples.width, samples.height, x, y, sample.layer));
+    const double allowed = error + std::max(others, around(pixels, samples.width, samples.height, x, y, [&](const Layers& p) { return channel_mean(Rgbd(p[sample.layer])); }));
     if (!(claimed > allowed) || !std::isfinite(claimed)) return;
     found.push_back({pixel, sample.layer, level_of(claimed - allowed, error, last), Rgbd(sample.radiance) * ((1 - allowed / claimed) / count)});
   };
@@ -118,8 +134,7 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
 
 double light_of(const std::vector<Layers>& pixels) {
   double sum = 0;
-  for (const Layers& pixel : pixels)
-    for (const Rgb& radiance : pixel.value) sum += channel_mean(Rgbd(radiance));
+  for (const Layers& pixel : pixels) sum += radiance_of(pixel);
   return sum;
 }
 
@@ -138,16 +153,15 @@ void BrightestSample::note(const Layers& sample, bool specular_alone) {
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels) {
   const int width = samples.width, height = samples.height, last = last_level(width, height);
   std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
-  parallel_chunks(std::size_t(height), 1, [&](std::size_t y, std::size_t) {
-    for (int x = 0; x < width; ++x) excess_of(samples, pixels, x, int(y), last, by_row[y]);
+  const std::vector<double> errors = errors_of(samples, pixels);
+  parallel_chunks(by_row.size(), 1, [&](std::size_t y, std::size_t) {
+    for (int x = 0; x < width; ++x) excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), last, by_row[y]);
   });
   std::vector<Excess> all;
   for (const std::vector<Excess>& row : by_row) all.insert(all.end(), row.begin(), row.end());
   if (all.empty()) return 0;
   const double light = light_of(pixels);
   double moved = 0;
-  std::vector<double> weight(pixels.size());
-  for (std::size_t p = 0; p < pixels.size(); ++p) weight[p] = pixels[p].coverage > 0 ? double(samples.error[p]) : 0;
   for (const Excess& e : all) {
     moved += channel_mean(e.radiance);
     for (int c = 0; c < 3; ++c) {
@@ -155,6 +169,9 @@ double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels
       value = float(double(value) - e.radiance[c]);
     }
   }
+  std::vector<double> weight = errors_of(samples, pixels);   // of what is left: a dot is not to light up the way around it
+  for (std::size_t p = 0; p < pixels.size(); ++p)
+    if (!(pixels[p].coverage > 0)) weight[p] = 0;
   std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) { return a.level != b.level ? a.level < b.level : a.layer < b.layer; });
   std::vector<double> blurred;
   for (std::size_t first = 0, end; first < all.size(); first = end) {

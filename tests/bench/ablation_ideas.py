@@ -49,6 +49,8 @@ IDEAS = (
          (("lib/render/pixel_noise.cpp", "(options_.samples == 1 ? 1 : kBetween)", "(options_.samples == 1 ? 1 : 0 * kBetween)"),)),
     Idea("packets of camera rays", "three and more rays of a pixel are traced as a packet", "frames",
          (("lib/render/pixel_samples.h", "kFewest = 3;", "kFewest = 1000;"),)),
+    Idea("outliers spread", "light that one sample alone claims goes to the pixels around", "frames",
+         (("tools/frame-render.cpp", "frame_options.spread_outliers = !options.keep_outliers &&", "frame_options.spread_outliers = false &&"),)),
     # ---- photons and points
     Idea("photons by importance", "photons of suns and skies start where cameras look", "photons",
          (("lib/render/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),

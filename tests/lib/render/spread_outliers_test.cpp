@@ -17,9 +17,9 @@ struct Even {
   std::vector<PathParts> parts;
   std::vector<PartCounts> counts;
   std::vector<BrightestSamples> brightest;
-  std::vector<float> error;
+  std::function<double(double)> error = [](double) { return double(kError); };
   Even(int w, int h)
-      : width(w), height(h), parts(std::size_t(w * h)), counts(parts.size(), PartCounts{4, 4, 4}), brightest(parts.size()), error(parts.size(), kError) {
+      : width(w), height(h), parts(std::size_t(w * h)), counts(parts.size(), PartCounts{4, 4, 4}), brightest(parts.size()) {
     for (std::size_t p = 0; p < parts.size(); ++p) {
       parts[p].own.coverage = 1;
       set(p, {Rgb(1.0f), Rgb(1.0f), Rgb(1.0f), Rgb(1.0f)});
@@ -73,8 +73,8 @@ TEST(SpreadOutliers, WhatOneSampleClaimsIsSharedOutBelowTheError) {
 /// A red sample gives no green.
 TEST(SpreadOutliers, SumsStayAtBordersAndBesideNothing) {
   Even even(37, 23);
+  even.error = [](double level) { return 0.05 * std::sqrt(level); };
   for (std::size_t p = 0; p < even.parts.size(); ++p) {
-    even.error[p] = kError * float(1 + p % 7);
     if (p % 37 > 30) {
       even.parts[p] = {};
       even.brightest[p] = {};
