@@ -1,5 +1,5 @@
 #!/bin/sh
-# Make the pictures of docs/methods/split.md, dynamic.md and caustics.md again, into docs/images: sh docs/make_method_pictures.sh [BIN]
+# Make the pictures of docs/methods/split.md, dynamic.md, caustics.md and outliers.md again, into docs/images: sh docs/make_method_pictures.sh [BIN]
 # Run at the top of the tree; BIN is the folder with the tools. Takes about a CPU minute.
 bin=${1:-build/release/bin} out=docs/images
 work=$(mktemp -d) || exit 3
@@ -59,4 +59,17 @@ if [ -f $glass ]; then
   "$info" --sheet $out/caustics-paths.png --columns 2 --tile 320 "$work/glass.png" "$work/glassmap.png"
 else
   echo "skipped: caustics-paths.png, $glass is not there"
+fi
+
+# Light that one sample alone claims, left and spread.
+window=../shared/scenes/made/S8_window_room.glb
+if [ -f $window ]; then
+  for keep in '' ' --keep-outliers'; do
+    make -s -f Makefile.example BIN="$(realpath "$bin")" OUT="$work/window" SCENE=$window FRAMES=17 SIZE=320x180 CAMERA=auto \
+      TIME='--light-units spec --environment-color 1.1,1.5,2' PIXELS="--spp 4 --pixel-error 0.016 --learn-lights$keep" "$work/window/frames/0017.exr"
+    "$info" --png "$work/window${keep:+kept}.png" "$work/window/frames/0017.exr"
+  done
+  "$info" --sheet $out/outliers.png --columns 2 --tile 480 "$work/windowkept.png" "$work/window.png"
+else
+  echo "skipped: outliers.png, $window is not there"
 fi

@@ -283,7 +283,7 @@ void add_options(tools::Tool& tool, Options& options) {
                "the frame will be filtered by st-filter: --pixel-error counts noise of the layer specular alone, which passes it");
   app.add_flag("--keep-outliers", options.keep_outliers,
                "leave light that one sample alone claims where it is: with --pixel-error it is spread over the pixels around, which keeps each layer's sum; "
-               "so does --integrator path, and a frame with --mask");
+               "so does --integrator path");
   add_light_options(tool, options);
   app.add_flag("--learn-lights", options.learn_lights,
                "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that; with -o FILE.lightgrid "

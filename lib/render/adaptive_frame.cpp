@@ -14,10 +14,10 @@ void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& 
 }
 
 double spread_outliers_of(const PixelNoise& noise, const PartCounts& first, const std::vector<PartCounts>& missing, std::span<const PathParts> parts,
-                          std::span<const BrightestSamples> brightest, LayerImage& image) {
+                          std::span<const BrightestSamples> brightest, std::span<const std::uint8_t> mask, LayerImage& image) {
   std::vector<PartCounts> counts(missing);
   for (PartCounts& count : counts) count = {first.own + count.own, first.lit + count.lit, first.onward + count.onward};
-  return spread_outliers({image.width, image.height, parts, counts, brightest, [&](double level) { return noise.error_at(level); }}, image.pixels);
+  return spread_outliers({image.width, image.height, parts, counts, brightest, mask, [&](double level) { return noise.error_at(level); }}, image.pixels);
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ void render_adaptive(const RenderScene& scene, const CameraView& view, const Fra
   FrameOptions around = options;
   around.mask = noise.looked_at();
   ParallelArray<PathParts> parts(image.pixels.size());
-  const bool spreads = options.spread_outliers && options.mask.empty();
+  const bool spreads = options.spread_outliers;
   ParallelArray<BrightestSamples> brightest(spreads ? image.pixels.size() : 0);
   for_each_pixel(view, around, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     PixelSum half[2];
@@ -57,7 +57,7 @@ void render_adaptive(const RenderScene& scene, const CameraView& view, const Fra
     }
     image.pixels[pixel] = parts[pixel].sum();
   });
-  if (spreads) frame.spread = spread_outliers_of(noise, first, missing, parts, brightest, image);
+  if (spreads) frame.spread = spread_outliers_of(noise, first, missing, parts, brightest, options.mask, image);
   double further = 0;
   for (const PartCounts& count : missing) further += count.own;
   image.samples = first.own;

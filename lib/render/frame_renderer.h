@@ -23,7 +23,7 @@ struct FrameOptions {
   int adaptive_limit = 1024;
   /// The frame will be filtered (lib/filter): noise that counts for pixel_error is that of light which passes the filter, layer specular.
   bool for_filter = false;
-  /// With pixel_error and without a mask: light that one sample alone claims is shared out among the pixels around (lib/render/spread_outliers.h).
+  /// With pixel_error: light that one sample alone claims is shared out among the pixels around, of a masked frame those of the mask (lib/render/spread_outliers.h).
   bool spread_outliers = false;
   bool sample_halves = false;           ///< keep LayerImage::sample_halves
   const KnownLight* known = nullptr;    ///< where paths may end

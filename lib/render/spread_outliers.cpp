@@ -116,6 +116,7 @@ void spread(std::span<const Excess> excess, int width, int height, const std::ve
 
 void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, double error, int x, int y, int last, std::vector<Excess>& found) {
   const std::size_t pixel = std::size_t(y) * std::size_t(samples.width) + std::size_t(x);
+  if (!samples.takes_part(pixel)) return;
   const BrightestSamples& brightest = samples.brightest[pixel];
   const PartCounts& counts = samples.counts[pixel];
   const auto look = [&](const BrightestSample& sample, const Layers& mean, int count) {
@@ -171,7 +172,7 @@ double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels
   }
   std::vector<double> weight = errors_of(samples, pixels);   // of what is left: a dot is not to light up the way around it
   for (std::size_t p = 0; p < pixels.size(); ++p)
-    if (!(pixels[p].coverage > 0)) weight[p] = 0;
+    if (!(pixels[p].coverage > 0) || !samples.takes_part(p)) weight[p] = 0;
   std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) { return a.level != b.level ? a.level < b.level : a.layer < b.layer; });
   std::vector<double> blurred;
   for (std::size_t first = 0, end; first < all.size(); first = end) {

@@ -34,7 +34,9 @@ struct SampledPixels {
   std::span<const PathParts> parts;              ///< means
   std::span<const PartCounts> counts;            ///< samples of each part, at least one
   std::span<const BrightestSamples> brightest;
+  std::span<const std::uint8_t> mask;            ///< 0: gives nothing and gets nothing; empty: all do
   std::function<double(double)> error;           ///< by which a pixel may err, > 0, of the radiance around it [W/m^2/sr]; thread-safe
+  bool takes_part(std::size_t pixel) const { return mask.empty() || mask[pixel] != 0; }
 };
 
 /// Energy-preserving filter of outliers [Rushmeier, Ward: Energy preserving non-linear filters, SIGGRAPH 1994]: docs/methods/outliers.md.

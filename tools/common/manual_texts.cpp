@@ -92,7 +92,8 @@ constexpr ManualText kTexts[] = {
      "Traces the pixels of a frame: direct light is sampled at the lights, indirect light is read from an irradiance "
      "cache or estimated from photons, caustics from photons; or everything is path traced, which is unbiased and "
      "slow. What no file tells paths find: without photons they look for caustics, where a record is missing one ray of "
-     "the hemisphere takes its place, which ends at the points if there are any. Points alone will do, too.",
+     "the hemisphere takes its place, which ends at the points if there are any. Points alone will do, too. Light that one sample "
+     "alone claims for its pixel is spread over the pixels around, without a change of any layer's sum, but in path tracing.",
      "frame .exr: colour, depth, normals, ids (formats/frames/frames.md)",
      "frame-render room.glb --frame 12 --size 640x360 --irradcache 12.irradcache --points 12.irradpoints -o 12.exr\n"
      "# Caustic light where something moves: of what stands, and what movers change.\n"

@@ -17,6 +17,7 @@ struct Even {
   std::vector<PathParts> parts;
   std::vector<PartCounts> counts;
   std::vector<BrightestSamples> brightest;
+  std::vector<std::uint8_t> mask;
   std::function<double(double)> error = [](double) { return double(kError); };
   Even(int w, int h)
       : width(w), height(h), parts(std::size_t(w * h)), counts(parts.size(), PartCounts{4, 4, 4}), brightest(parts.size()) {
@@ -42,7 +43,7 @@ struct Even {
   }
   std::vector<Layers> spread() const {
     std::vector<Layers> pixels = sums();
-    spread_outliers({width, height, parts, counts, brightest, error}, pixels);
+    spread_outliers({width, height, parts, counts, brightest, mask, error}, pixels);
     return pixels;
   }
 };
@@ -92,6 +93,24 @@ TEST(SpreadOutliers, SumsStayAtBordersAndBesideNothing) {
       EXPECT_GE(pixels[p][Layer::indirect].r, 0.99f) << p;
     }
   }
+}
+
+/// Of a masked frame the pixels of the mask share among themselves; one alone keeps what it has.
+TEST(SpreadOutliers, MaskedPixelsShareAmongThemselves) {
+  Even even(64, 48);
+  even.mask.assign(even.parts.size(), 0);
+  const std::size_t alone = 10 * 64 + 10, inside = 30 * 64 + 40;
+  even.mask[alone] = 1;
+  for (std::size_t y = 25; y < 36; ++y)
+    for (std::size_t x = 35; x < 46; ++x) even.mask[y * 64 + x] = 1;
+  for (const std::size_t p : {alone, inside}) even.set(p, {Rgb(1.0f), Rgb(13.0f), Rgb(1.0f), Rgb(1.0f)});   // 4: 2.2 too much
+  const std::vector<Layers> before = even.sums(), pixels = even.spread();
+  EXPECT_NEAR(pixels[alone][Layer::indirect].g, 4, 0.2);   // its place and the sheet are boxes of 9 apart
+  EXPECT_LT(pixels[inside][Layer::indirect].g, 2);
+  EXPECT_GT(pixels[inside + 3][Layer::indirect].g, 1.005f);
+  EXPECT_NEAR(sum_of(pixels, Layer::indirect, 1), sum_of(before, Layer::indirect, 1), 64 * 48 * 6e-8);
+  for (std::size_t p = 0; p < pixels.size(); ++p)
+    if (!even.mask[p]) { EXPECT_EQ(pixels[p][Layer::indirect].g, 1) << p; }
 }
 
 /// Light that a pixel's samples agree on, that the pixels around show too, or that the camera itself sees is none that one sample alone claims.
