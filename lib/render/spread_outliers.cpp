@@ -121,7 +121,7 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
   const PartCounts& counts = samples.counts[pixel];
   const auto look = [&](const BrightestSample& sample, const Layers& mean, int count) {
     const double claimed = channel_mean(Rgbd(sample.radiance)) / count;
-    if (!(claimed > error)) return;
+    if (!(claimed > error) || !(error > 0)) return;
     const double others = count > 1 ? (channel_mean(Rgbd(mean[sample.layer])) - claimed) * count / (count - 1) : 0;
     const double allowed = error + std::max(others, around(pixels, samples.width, samples.height, x, y, [&](const Layers& p) { return channel_mean(Rgbd(p[sample.layer])); }));
     if (!(claimed > allowed) || !std::isfinite(claimed)) return;

@@ -35,7 +35,7 @@ struct SampledPixels {
   std::span<const PartCounts> counts;            ///< samples of each part, at least one
   std::span<const BrightestSamples> brightest;
   std::span<const std::uint8_t> mask;            ///< 0: gives nothing and gets nothing; empty: all do
-  std::function<double(double)> error;           ///< by which a pixel may err, > 0, of the radiance around it [W/m^2/sr]; thread-safe
+  std::function<double(double)> error;           ///< by which a pixel may err, of the radiance around it [W/m^2/sr]; where it is 0 nothing is taken; thread-safe
   bool takes_part(std::size_t pixel) const { return mask.empty() || mask[pixel] != 0; }
 };
 

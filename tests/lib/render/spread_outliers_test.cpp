@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "lib/render/spread_outliers.h"
 #include "tests/support/frames.h"
@@ -125,6 +126,18 @@ TEST(SpreadOutliers, WhatOthersSeeTooStays) {
     for (std::size_t p = 0; p < pixels.size(); ++p)
       for (std::size_t l = 0; l < kLayerCount; ++l) ASSERT_EQ(pixels[p].value[l].g, before[p].value[l].g) << p;
   }
+}
+
+/// A picture whose lattice of first samples was black says nothing of errors: all stays, and nothing is divided by 0. So does what is not finite.
+TEST(SpreadOutliers, WithoutAnErrorNothingMoves) {
+  Even black(64, 48), wild(64, 48);
+  black.error = [](double) { return 0.0; };
+  black.set(77, {Rgb(0.0f), Rgb(1000.0f), Rgb(0.0f), Rgb(0.0f)});
+  wild.set(77, {Rgb(0.0f), Rgb(std::numeric_limits<float>::infinity()), Rgb(0.0f), Rgb(0.0f)});
+  EXPECT_EQ(black.spread()[77][Layer::indirect].g, 250);
+  const std::vector<Layers> pixels = wild.spread();
+  for (std::size_t p = 0; p < pixels.size(); ++p)
+    if (p != 77) { EXPECT_TRUE(std::isfinite(pixels[p][Layer::indirect].g)) << p; }
 }
 
 /// For a frame that a filter takes the light it filters is left alone.
