@@ -87,14 +87,20 @@ void write_plan(tools::Tool& tool, const Plan& plan, const std::vector<std::stri
   tool.stats().count("state_files_changed", double(changed));
 }
 
-/// Of photons that are aimed where the camera looks, as photon-trace aims them.
-CausticPilot aimed_caustics(const Tracer& tracer, tools::SceneInput& input, const CameraView& view) {
+/// Paths, beside a map of caustic photons if that pays, or gathering if paths do not find what indirect light there is.
+void decide_beside_paths(const Tracer& tracer, tools::SceneInput& input, const CameraView& view, const IndirectPilot& paths, const IndirectChoice& choice, Plan& plan) {
   EmissionTable emission = input.emission(tracer.frame().frame);
   std::vector<WeighedPlace> places;
   add_seen_places(tracer, view, 0, places);
   emission.aim = tools::spheres_in_scene(spheres_around(places, emission.sphere_radius), tracer.frame().origin);
-  const Lights lights(tracer.frame(), emission);
-  return pilot_caustics({tracer, lights}, view, 0);
+  const Lights lights(tracer.frame(), emission);   // photons are aimed where the camera looks, as photon-trace aims them
+  const SeenPhotons caustic = see_photons({tracer, lights}, view, "caustic", 0);
+  const CausticChoice map = choose_caustics(paths, caustic);
+  if (map.map) {
+    const IndirectChoice beside = choose_beside_caustics(paths, caustic, see_photons({tracer, lights}, view, "indirect", 0));
+    if (beside.method != IndirectMethod::paths) return use_indirect(plan, kIndirectMethods[std::size_t(beside.method)], beside.because);
+  }
+  use_indirect(plan, "paths", choice.because + "; " + map.because, map.map);
 }
 
 /// Decides how indirect light is to be found by a pilot of a frame; not if surfaces scatter no light there and `unless_dark`: false.
@@ -114,8 +120,7 @@ bool decide_by_pilot(tools::SceneInput& input, const Options& options, int camer
   } else if (choice.method != IndirectMethod::paths || plan.photon_kinds.find("caustic") == std::string::npos) {
     use_indirect(plan, method, choice.because);
   } else {
-    const CausticChoice caustics = choose_caustics(pilot, aimed_caustics(tracer, input, view));
-    use_indirect(plan, method, choice.because + "; " + caustics.because, caustics.map);
+    decide_beside_paths(tracer, input, view, pilot, choice, plan);
   }
   return true;
 }

@@ -61,15 +61,21 @@ SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const forma
           cell((*at)[1], view.height(), kRows) * kColumns + cell((*at)[0], view.width(), kColumns)};
 }
 
+/// Of one path's light of a kind, of which paths found the mean `found` with the variance `seen`: at least that of light that none of them met.
+double variance(const IndirectPilot& paths, double found, double seen, const SeenPhotons& photons) {
+  const double missed = photons.mean - found;
+  return std::max(seen, missed > 0 ? paths.paths * std::max(0.0, missed * missed - kSure * kSure * photons.mean_error * photons.mean_error) : 0);
+}
+
 }  // namespace
 
-CausticPilot pilot_caustics(const RenderScene& scene, const CameraView& view, std::uint64_t seed) {
-  const std::vector<formats::Photon> photons = pilot_photons(scene.tracer, scene.lights, "caustic", kPaths, seed ^ 0x63617573746963ull);
+SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const char* kind, std::uint64_t seed) {
+  const std::vector<formats::Photon> photons = pilot_photons(scene.tracer, scene.lights, kind, kPaths, seed ^ 0x63617573746963ull);
   std::vector<SeenFlux> seen(photons.size());
   parallel_chunks(photons.size(), 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) seen[i] = seen_flux(scene, view, photons[i]);
   });
-  CausticPilot pilot;
+  SeenPhotons pilot;
   std::vector<double> cells(kRows * kColumns, 0.0);
   double squares = 0;
   for (const SeenFlux& one : seen) {
@@ -82,16 +88,26 @@ CausticPilot pilot_caustics(const RenderScene& scene, const CameraView& view, st
   return pilot;
 }
 
-CausticChoice choose_caustics(const IndirectPilot& paths, const CausticPilot& photons) {
-  const double missed = photons.mean - paths.caustic;
-  const double unseen = missed > 0 ? paths.paths * std::max(0.0, missed * missed - kSure * kSure * photons.mean_error * photons.mean_error) : 0;
-  const double by_paths = std::max(paths.caustic_variance, unseen) / std::max(1.0, paths.samples);
+CausticChoice choose_caustics(const IndirectPilot& paths, const SeenPhotons& photons) {
+  const double by_paths = variance(paths, paths.caustic, paths.caustic_variance, photons) / std::max(1.0, paths.samples);
   const double left = paths.rest_noise + by_paths, with_map = paths.rest_noise + kMapError2 * photons.square;
   char text[200];
   if (!(left > 0)) return {false, "no light is seen that mirrors, glass or gloss send onto matte surfaces"};
   std::snprintf(text, sizeof text, "of the squared error that paths would leave %.0f %% is light that mirrors, glass and gloss send onto matte surfaces",
                 100 * by_paths / left);
   return {left > kCosts * with_map, text};
+}
+
+IndirectChoice choose_beside_caustics(const IndirectPilot& paths, const SeenPhotons& caustic, const SeenPhotons& indirect) {
+  const double found = paths.indirect_share * paths.scattered, samples = std::max(1.0, paths.samples);
+  const double noise = variance(paths, found, paths.indirect_variance, indirect) / samples;
+  const double other = std::max(0.0, paths.rest_noise - paths.indirect_variance / samples) + kMapError2 * caustic.square;
+  const double direct = std::max(0.0, paths.scattered - found - paths.caustic), share = indirect.mean / (direct + caustic.mean + indirect.mean);
+  char text[200];
+  std::snprintf(text, sizeof text, "photons show indirect light, %.0f %% of what surfaces scatter, of which paths find %.0f %%", 100 * share,
+                100 * std::min(1.0, found / std::max(1e-300, indirect.mean)));
+  if (!(share >= kLittleIndirect && noise > kIndirectPays * other)) return {IndirectMethod::paths, text};
+  return {paths.open_share > kOpenScene ? IndirectMethod::gather : IndirectMethod::records, text};
 }
 
 }  // namespace tempolux

@@ -8,15 +8,15 @@
 
 namespace tempolux {
 
-/// What photons tell of the caustic light that a camera sees directly: radiance, mean of the channels, over the picture.
-struct CausticPilot {
+/// What photons of a kind tell of the light that a camera sees directly: radiance, mean of the channels, over the picture.
+struct SeenPhotons {
   double mean = 0, mean_error = 0;   ///< and its standard error
   double square = 0;                 ///< mean of the square, of 32 x 18 parts of the picture
 };
 
-/// 32768 photon paths, and a camera ray to each caustic photon: some hundredths of a second. The scene's lights may aim photons where the
-/// camera looks. What mirrors show is not counted. Same result for any number of threads.
-CausticPilot pilot_caustics(const RenderScene& scene, const CameraView& view, std::uint64_t seed);
+/// Kind: "caustic" or "indirect". 32768 photon paths, and a camera ray to each photon of that kind: some hundredths of a second. The scene's lights may aim
+/// photons where the camera looks. What mirrors show is not counted. Same result for any number of threads.
+SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const char* kind, std::uint64_t seed);
 
 struct CausticChoice {
   bool map;
@@ -26,6 +26,11 @@ struct CausticChoice {
 /// A map where it lowers the picture's squared error by more than it costs. Paths find a caustic by hitting the mirror or glass that
 /// sends it, and in it a lamp: of a small one that is so rare that a few paths in a picture carry all of it, as dots; and none can hit a
 /// point lamp in a mirror. So the variance of the paths that were tried says too little; docs/methods/caustics.md derives what is used.
-CausticChoice choose_caustics(const IndirectPilot& paths, const CausticPilot& photons);
+CausticChoice choose_caustics(const IndirectPilot& paths, const SeenPhotons& photons);
+
+/// Where paths were chosen and a map of caustics pays: light that paths do not find directly they do not find after a bounce either, so they know neither how
+/// much indirect light there is nor how rarely. A room with a pane of glass before the sun. Gathering if photons show that this is at least 5 % of what surfaces scatter
+/// and that its noise by paths would be more than 5 times that of all other light; derived as for caustics.
+IndirectChoice choose_beside_caustics(const IndirectPilot& paths, const SeenPhotons& caustic, const SeenPhotons& indirect);
 
 }  // namespace tempolux

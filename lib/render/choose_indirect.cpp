@@ -14,10 +14,7 @@ namespace tempolux {
 namespace {
 
 constexpr int kPlaces = 2048, kPathsEach = 4, kLightsEach = 4;
-constexpr double kLittle = 0.05;   ///< of the light
-constexpr double kOpen = 0.35;     ///< of the rays: between rooms (0 to .15) and the open air (.4 and more)
 
-constexpr double kPays = 5;        ///< times the noise of all other light: photons, points and looking them up cost 3 to 5 times as much
 constexpr double kShare = 0.1;     ///< of the pixels' other squared error, that records may add
 /// Squared error of records is this x a path's variance / rays: .052, .035, .036 in S2, S1, S4 (docs/pixels.md).
 constexpr double kRaysPerPath = 0.04;
@@ -138,15 +135,14 @@ IndirectChoice choose_indirect(const IndirectPilot& pilot) {
   if (pilot.places == 0) return {IndirectMethod::paths, "no surface with a Lambert lobe is seen"};
   const std::string indirect = "indirect light is " + per_cent(pilot.indirect_share) + " of what surfaces scatter";
   const std::string open = per_cent(pilot.open_share) + " of the rays from what is seen leave the scene";
-  if (pilot.indirect_share < kLittle) return {IndirectMethod::paths, indirect};
-  const std::string lamps = per_cent(pilot.lamp_share) + " of the light comes from lamps";
-  if (pilot.open_share > kOpen) {
-    if (pilot.lamp_share < 0.5) return {IndirectMethod::paths, open + ", " + lamps};
+  if (pilot.indirect_share < kLittleIndirect) return {IndirectMethod::paths, indirect};
+  if (pilot.open_share > kOpenScene) {
+    if (pilot.lamp_share < 0.5) return {IndirectMethod::paths, open + ", " + per_cent(pilot.lamp_share) + " of the light comes from lamps"};
     const double noise = indirect_noise(pilot);
     const std::string of_error = "the noise of its paths is " + per_cent(noise) + " of that of all other light";
-    return {noise > kPays ? IndirectMethod::gather : IndirectMethod::paths, indirect + ", " + of_error + ", " + open};
+    return {noise > kIndirectPays ? IndirectMethod::gather : IndirectMethod::paths, indirect + ", " + of_error + ", " + open};
   }
-  return {pilot.lamp_share < 0.5 ? IndirectMethod::gather : IndirectMethod::records, indirect + ", " + open + ", " + lamps};
+  return {IndirectMethod::records, indirect + ", " + open};
 }
 
 }  // namespace tempolux

@@ -38,14 +38,19 @@ IndirectPilot pilot_indirect(const RenderScene& scene, const CameraView& view, d
 /// docs/pixels.md has the measurements.
 int record_rays(const IndirectPilot& pilot, int most);
 
+inline constexpr double kLittleIndirect = 0.05;   ///< share of what surfaces scatter below which paths do
+inline constexpr double kOpenScene = 0.35;        ///< of the rays from what is seen, that leave the scene: between rooms (0 to .15) and the open air (.4 and more)
+/// Noise of paths' indirect light over that of all other light above which gathering pays: photons, points and looking them up cost 3 to 5 times as much.
+inline constexpr double kIndirectPays = 5;
+
 struct IndirectChoice {
   IndirectMethod method;
   std::string because;
 };
 
 /// Paths where indirect light is little or most rays leave the scene: what photons, points and records cost is then more than
-/// they save. But not under lamps if the noise of paths is mostly that of indirect light, as bounces that land beside a point lamp make it: gathering. Else records where lamps light the scene: from a few bright patches, which rays of single pixels seldom find; and
-/// gathering in the pixel where its light comes through openings. docs/pixels.md has the measurements that the limits are from.
+/// they save. But not under lamps if the noise of paths is mostly that of indirect light, as bounces that land beside a point lamp make it: gathering. Else records:
+/// light comes from a few bright patches, lamps or what sun and sky light through openings, which rays of single pixels seldom find. docs/pixels.md has the measurements that the limits are from.
 IndirectChoice choose_indirect(const IndirectPilot& pilot);
 
 }  // namespace tempolux

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "lib/core/parallel.h"
 
@@ -26,24 +27,33 @@ double radiance_of(const Layers& pixel) {
 
 /// Mean of value(pixel) over the pixels around (x, y), itself left out.
 template <class Value>
-double around(const std::vector<Layers>& pixels, int width, int height, int x, int y, const Value& value) {
+double around(int width, int height, int x, int y, const Value& value) {
   double sum = 0;
   int n = 0;
   for (int j = std::max(0, y - kNear); j <= std::min(height - 1, y + kNear); ++j)
     for (int i = std::max(0, x - kNear); i <= std::min(width - 1, x + kNear); ++i) {
       if (i == x && j == y) continue;
-      sum += value(pixels[std::size_t(j) * std::size_t(width) + std::size_t(i)]);
+      sum += value(std::size_t(j) * std::size_t(width) + std::size_t(i));
       ++n;
     }
   return n > 0 ? sum / n : 0;
 }
 
+std::vector<double> radiances_of(const std::vector<Layers>& pixels) {
+  std::vector<double> radiances(pixels.size());
+  parallel_chunks(pixels.size(), 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) radiances[p] = radiance_of(pixels[p]);
+  });
+  return radiances;
+}
+
 /// By which each pixel may err.
-std::vector<double> errors_of(const SampledPixels& samples, const std::vector<Layers>& pixels) {
-  std::vector<double> errors(pixels.size());
-  parallel_chunks(pixels.size() / std::size_t(samples.width), 1, [&](std::size_t y, std::size_t) {
+std::vector<double> errors_of(const SampledPixels& samples, const std::vector<double>& radiances) {
+  std::vector<double> errors(radiances.size());
+  parallel_chunks(radiances.size() / std::size_t(samples.width), 1, [&](std::size_t y, std::size_t) {
     for (int x = 0; x < samples.width; ++x)
-      errors[y * std::size_t(samples.width) + std::size_t(x)] = samples.error(around(pixels, samples.width, samples.height, x, int(y), radiance_of));
+      errors[y * std::size_t(samples.width) + std::size_t(x)] =
+          samples.error(around(samples.width, samples.height, x, int(y), [&](std::size_t p) { return radiances[p]; }));
   });
   return errors;
 }
@@ -123,7 +133,7 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
     const double claimed = channel_mean(Rgbd(sample.radiance)) / count;
     if (!(claimed > error) || !(error > 0)) return;
     const double others = count > 1 ? (channel_mean(Rgbd(mean[sample.layer])) - claimed) * count / (count - 1) : 0;
-    const double allowed = error + std::max(others, around(pixels, samples.width, samples.height, x, y, [&](const Layers& p) { return channel_mean(Rgbd(p[sample.layer])); }));
+    const double allowed = error + std::max(others, around(samples.width, samples.height, x, y, [&](std::size_t p) { return channel_mean(Rgbd(pixels[p][sample.layer])); }));
     if (!(claimed > allowed) || !std::isfinite(claimed)) return;
     found.push_back({pixel, sample.layer, level_of(claimed - allowed, error, last), Rgbd(sample.radiance) * ((1 - allowed / claimed) / count)});
   };
@@ -131,12 +141,6 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
   look(brightest.own, means.own, counts.own);
   look(brightest.lit, means.lit, counts.lit);
   look(brightest.onward, means.onward, counts.onward);
-}
-
-double light_of(const std::vector<Layers>& pixels) {
-  double sum = 0;
-  for (const Layers& pixel : pixels) sum += radiance_of(pixel);
-  return sum;
 }
 
 }  // namespace
@@ -154,23 +158,26 @@ void BrightestSample::note(const Layers& sample, bool specular_alone) {
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels) {
   const int width = samples.width, height = samples.height, last = last_level(width, height);
   std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
-  const std::vector<double> errors = errors_of(samples, pixels);
+  std::vector<double> radiances = radiances_of(pixels);
+  const std::vector<double> errors = errors_of(samples, radiances);
   parallel_chunks(by_row.size(), 1, [&](std::size_t y, std::size_t) {
     for (int x = 0; x < width; ++x) excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), last, by_row[y]);
   });
   std::vector<Excess> all;
   for (const std::vector<Excess>& row : by_row) all.insert(all.end(), row.begin(), row.end());
   if (all.empty()) return 0;
-  const double light = light_of(pixels);
+  const double light = std::accumulate(radiances.begin(), radiances.end(), 0.0);
   double moved = 0;
   for (const Excess& e : all) {
-    moved += channel_mean(e.radiance);
+    const double taken = channel_mean(e.radiance);
+    moved += taken;
+    radiances[e.pixel] = std::max(0.0, radiances[e.pixel] - taken);
     for (int c = 0; c < 3; ++c) {
       float& value = pixels[e.pixel][e.layer][c];
       value = float(double(value) - e.radiance[c]);
     }
   }
-  std::vector<double> weight = errors_of(samples, pixels);   // of what is left: a dot is not to light up the way around it
+  std::vector<double> weight = errors_of(samples, radiances);   // of what is left: a dot is not to light up the way around it
   for (std::size_t p = 0; p < pixels.size(); ++p)
     if (!(pixels[p].coverage > 0) || !samples.takes_part(p)) weight[p] = 0;
   std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) { return a.level != b.level ? a.level < b.level : a.layer < b.layer; });

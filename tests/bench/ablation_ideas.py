@@ -51,6 +51,9 @@ IDEAS = (
          (("lib/render/pixel_samples.h", "kFewest = 3;", "kFewest = 1000;"),)),
     Idea("outliers spread", "light that one sample alone claims goes to the pixels around", "frames",
          (("tools/frame-render.cpp", "frame_options.spread_outliers = !options.keep_outliers &&", "frame_options.spread_outliers = false &&"),)),
+    Idea("records by windows", "records, not gathering in the pixels, where light comes into a room through openings", "photons",
+         (("lib/render/choose_indirect.cpp", "return {IndirectMethod::records, indirect + \", \" + open};",
+           "return {pilot.lamp_share < 0.5 ? IndirectMethod::gather : IndirectMethod::records, indirect + \", \" + open};"),)),
     # ---- photons and points
     Idea("photons by importance", "photons of suns and skies start where cameras look", "photons",
          (("lib/render/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),

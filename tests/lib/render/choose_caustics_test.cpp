@@ -18,7 +18,7 @@ Material mirror(float roughness) {
 
 struct Pilots {
   IndirectPilot paths;
-  CausticPilot photons;
+  SeenPhotons photons, indirect;
 };
 /// A wall 4 m wide, z = 0, seen whole by an orthographic camera of 3.2 x 1.8 m, and a floor before it.
 Pilots pilots_of(test::HandMadeScene& scene, const Material& floor) {
@@ -33,7 +33,7 @@ Pilots pilots_of(test::HandMadeScene& scene, const Material& floor) {
   camera.camera.ymag_m = 0.9f;
   camera.scene_from_camera.translation = {2, 1.5f, 7};
   const CameraView view(camera, {}, 64, 36);
-  return {pilot_indirect({tracer, lights}, view, 0.016, 0), pilot_caustics({tracer, lights}, view, 0)};
+  return {pilot_indirect({tracer, lights}, view, 0.016, 0), see_photons({tracer, lights}, view, "caustic", 0), see_photons({tracer, lights}, view, "indirect", 0)};
 }
 
 /// A point lamp 2 m before the wall and as high, I = 1 W/sr, over a mirror: it lights the wall once more from 2 m below the floor. The mean
@@ -42,7 +42,7 @@ Pilots pilots_of(test::HandMadeScene& scene, const Material& floor) {
 TEST(ChooseCaustics, APointLampInAMirrorNeedsAMap) {
   test::HandMadeScene scene;
   scene.add_point_light({2, 2, 2}, Rgb(1.0f));
-  const auto [paths, photons] = pilots_of(scene, mirror(0));
+  const auto [paths, photons, indirect] = pilots_of(scene, mirror(0));
   double expected = 0;
   for (int i = 0; i < 64; ++i)
     for (int j = 0; j < 36; ++j) {
@@ -53,13 +53,15 @@ TEST(ChooseCaustics, APointLampInAMirrorNeedsAMap) {
   EXPECT_NEAR(photons.mean / expected, 1, 0.1);
   EXPECT_NEAR(photons.mean_error / expected, 0.05, 0.02);
   EXPECT_TRUE(choose_caustics(paths, photons).map);
+  EXPECT_EQ(indirect.mean, 0) << "a single wall lights nothing";
+  EXPECT_EQ(choose_beside_caustics(paths, photons, indirect).method, IndirectMethod::paths);
 }
 
 /// A ceiling that shines, over gloss: paths that leave the wall for the floor meet it, and its light hardly differs from path to path.
 TEST(ChooseCaustics, AWideLampInGlossNeedsNone) {
   test::HandMadeScene scene;
   scene.add_quad({-4, 6, 0}, {8, 6, 0}, {8, 6, 8}, {-4, 6, 8}, test::matte(Rgb(0.0f), Rgb(1.0f)));
-  const auto [paths, photons] = pilots_of(scene, mirror(0.6f));
+  const auto [paths, photons, indirect] = pilots_of(scene, mirror(0.6f));
   EXPECT_NEAR(photons.mean / paths.caustic, 1, 0.1) << "both find the same light";
   EXPECT_FALSE(choose_caustics(paths, photons).map);
 }
@@ -67,7 +69,7 @@ TEST(ChooseCaustics, AWideLampInGlossNeedsNone) {
 TEST(ChooseCaustics, WithoutMirrorsThereIsNoneToFind) {
   test::HandMadeScene scene;
   scene.add_point_light({2, 2, 2}, Rgb(1.0f));
-  const auto [paths, photons] = pilots_of(scene, test::matte(Rgb(0.5f)));
+  const auto [paths, photons, indirect] = pilots_of(scene, test::matte(Rgb(0.5f)));
   EXPECT_EQ(paths.caustic, 0);
   EXPECT_EQ(photons.mean, 0);
   EXPECT_FALSE(choose_caustics(paths, photons).map);
@@ -88,6 +90,26 @@ TEST(ChooseCaustics, FollowsFromBothErrors) {
   EXPECT_FALSE(choose_caustics(paths, {0.125, 0, 0}).map) << "paths found it";
   paths.caustic_variance = 32;
   EXPECT_TRUE(choose_caustics(paths, {0.125, 0, 0}).map) << "but some of them all of it";
+}
+
+/// Light of radiance 1 that mirrors bring, 16 samples a pixel and 1600 paths that met nothing of the .2 that it sends on: 1600 x .04 / 16 = 4 is what they would
+/// err by, a map 1/25. Not if that is less than 5 % of all, if photons know it badly, if other light is as noisy, or if paths found it.
+TEST(ChooseCaustics, GathersWhatPathsDoNotFindAfterABounce) {
+  IndirectPilot paths;
+  paths.paths = 1600;
+  paths.samples = 16;
+  const SeenPhotons caustic{1, 0, 1}, indirect{0.2, 0, 0};
+  const auto method = [&](const SeenPhotons& seen) { return choose_beside_caustics(paths, caustic, seen).method; };
+  EXPECT_EQ(method(indirect), IndirectMethod::gather);
+  EXPECT_EQ(method({0.05, 0, 0}), IndirectMethod::paths) << "1 / 21 of all";
+  EXPECT_EQ(method({0.2, 0.066, 0}), IndirectMethod::paths) << "three errors";
+  paths.rest_noise = 0.8;
+  EXPECT_EQ(method(indirect), IndirectMethod::paths) << "4 / .84";
+  paths.rest_noise = 0.7;
+  EXPECT_EQ(method(indirect), IndirectMethod::gather) << "4 / .74";
+  paths.scattered = 0.2;
+  paths.indirect_share = 1;
+  EXPECT_EQ(method(indirect), IndirectMethod::paths) << "found";
 }
 
 }  // namespace
