@@ -102,12 +102,14 @@ IndirectChoice choose_beside_caustics(const IndirectPilot& paths, const SeenPhot
   const double found = paths.indirect_share * paths.scattered, samples = std::max(1.0, paths.samples);
   const double noise = variance(paths, found, paths.indirect_variance, indirect) / samples;
   const double other = std::max(0.0, paths.rest_noise - paths.indirect_variance / samples) + kMapError2 * caustic.square;
-  const double direct = std::max(0.0, paths.scattered - found - paths.caustic), share = indirect.mean / (direct + caustic.mean + indirect.mean);
+  const double sure = std::max(0.0, indirect.mean - kSure * indirect.mean_error);
+  const double share = sure / std::max(1e-300, std::max(0.0, paths.scattered - found - paths.caustic) + caustic.mean + sure);
   char text[200];
-  std::snprintf(text, sizeof text, "photons show indirect light, %.0f %% of what surfaces scatter, of which paths find %.0f %%", 100 * share,
+  std::snprintf(text, sizeof text, "photons show indirect light, at least %.0f %% of what surfaces scatter; paths find %.0f %% of what photons do", 100 * share,
                 100 * std::min(1.0, found / std::max(1e-300, indirect.mean)));
-  if (!(share >= kLittleIndirect && noise > kIndirectPays * other)) return {IndirectMethod::paths, text};
-  return {paths.open_share > kOpenScene ? IndirectMethod::gather : IndirectMethod::records, text};
+  if (share < kLittleIndirect) return {IndirectMethod::paths, text};
+  if (paths.open_share <= kOpenScene) return {IndirectMethod::records, text};
+  return {noise > kIndirectPays * other ? IndirectMethod::gather : IndirectMethod::paths, text};
 }
 
 }  // namespace tempolux

@@ -29,8 +29,8 @@ struct CausticChoice {
 CausticChoice choose_caustics(const IndirectPilot& paths, const SeenPhotons& photons);
 
 /// Where paths were chosen and a map of caustics pays: light that paths do not find directly they do not find after a bounce either, so they know neither how
-/// much indirect light there is nor how rarely. A room with a pane of glass before the sun. Gathering if photons show that this is at least 5 % of what surfaces scatter
-/// and that its noise by paths would be more than 5 times that of all other light; derived as for caustics.
+/// much indirect light there is nor how rarely. A room with a pane of glass before the sun. So photons say whether it is 5 % of what surfaces scatter: then records in
+/// closed scenes; in open ones gathering if its noise by paths, derived as for caustics, would be more than 5 times that of all other light.
 IndirectChoice choose_beside_caustics(const IndirectPilot& paths, const SeenPhotons& caustic, const SeenPhotons& indirect);
 
 }  // namespace tempolux

@@ -98,11 +98,12 @@ TEST(ChooseCaustics, GathersWhatPathsDoNotFindAfterABounce) {
   IndirectPilot paths;
   paths.paths = 1600;
   paths.samples = 16;
+  paths.open_share = 0.5;
   const SeenPhotons caustic{1, 0, 1}, indirect{0.2, 0, 0};
   const auto method = [&](const SeenPhotons& seen) { return choose_beside_caustics(paths, caustic, seen).method; };
   EXPECT_EQ(method(indirect), IndirectMethod::gather);
   EXPECT_EQ(method({0.05, 0, 0}), IndirectMethod::paths) << "1 / 21 of all";
-  EXPECT_EQ(method({0.2, 0.066, 0}), IndirectMethod::paths) << "three errors";
+  EXPECT_EQ(method({0.2, 0.05, 0}), IndirectMethod::paths) << "perhaps .05";
   paths.rest_noise = 0.8;
   EXPECT_EQ(method(indirect), IndirectMethod::paths) << "4 / .84";
   paths.rest_noise = 0.7;
@@ -110,6 +111,8 @@ TEST(ChooseCaustics, GathersWhatPathsDoNotFindAfterABounce) {
   paths.scattered = 0.2;
   paths.indirect_share = 1;
   EXPECT_EQ(method(indirect), IndirectMethod::paths) << "found";
+  paths.open_share = 0.2;
+  EXPECT_EQ(method(indirect), IndirectMethod::records) << "a room";
 }
 
 }  // namespace
