@@ -105,7 +105,7 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   });
 }
 
-/// Spreads what `excess` names (one level of one layer): w blur(excess / blur(w)), whose sum is that of `excess` for any weights w.
+/// Spreads what `excess` names (one level of one layer): w blur(excess / blur(w)), whose sum is that of `excess` for any weights w, here 0 and 1.
 void spread(std::span<const Excess> excess, int width, int height, const std::vector<double>& weight, const std::vector<double>& blurred,
             std::vector<Layers>& pixels) {
   const int r = 1 << excess.front().level;
@@ -158,8 +158,7 @@ void BrightestSample::note(const Layers& sample, bool specular_alone) {
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels) {
   const int width = samples.width, height = samples.height, last = last_level(width, height);
   std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
-  std::vector<double> radiances = radiances_of(pixels);
-  const std::vector<double> errors = errors_of(samples, radiances);
+  const std::vector<double> radiances = radiances_of(pixels), errors = errors_of(samples, radiances);
   parallel_chunks(by_row.size(), 1, [&](std::size_t y, std::size_t) {
     for (int x = 0; x < width; ++x) excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), last, by_row[y]);
   });
@@ -169,17 +168,14 @@ double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels
   const double light = std::accumulate(radiances.begin(), radiances.end(), 0.0);
   double moved = 0;
   for (const Excess& e : all) {
-    const double taken = channel_mean(e.radiance);
-    moved += taken;
-    radiances[e.pixel] = std::max(0.0, radiances[e.pixel] - taken);
+    moved += channel_mean(e.radiance);
     for (int c = 0; c < 3; ++c) {
       float& value = pixels[e.pixel][e.layer][c];
       value = float(double(value) - e.radiance[c]);
     }
   }
-  std::vector<double> weight = errors_of(samples, radiances);   // of what is left: a dot is not to light up the way around it
-  for (std::size_t p = 0; p < pixels.size(); ++p)
-    if (!(pixels[p].coverage > 0) || !samples.takes_part(p)) weight[p] = 0;
+  std::vector<double> weight(pixels.size());
+  for (std::size_t p = 0; p < pixels.size(); ++p) weight[p] = pixels[p].coverage > 0 && samples.takes_part(p) ? 1 : 0;
   std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) { return a.level != b.level ? a.level < b.level : a.layer < b.layer; });
   std::vector<double> blurred;
   for (std::size_t first = 0, end; first < all.size(); first = end) {
