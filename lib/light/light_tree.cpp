@@ -6,7 +6,6 @@
 
 #include "lib/core/check.h"
 #include "lib/core/sampling.h"
-#include "lib/light/spherical_triangle.h"
 
 namespace tempolux {
 namespace {
@@ -59,7 +58,6 @@ LightBounds join(LightBounds a, const LightBounds& b) {
   a.weight += b.weight;
   a.cos_reach = std::min(a.cos_reach, b.cos_reach);
   if (!(a.shell == b.shell)) a.shell = {};
-  a.corners.reset();
   a.two_sided = a.two_sided || b.two_sided;
   return a;
 }
@@ -114,9 +112,7 @@ LightTree::LightTree(const std::vector<LightBounds>& lights) {
   for (const LightBounds& b : lights) whole_ += b.weight;
   std::vector<Item> items;
   items.reserve(lights.size());
-  corners_.resize(lights.size());
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    if (lights[i].corners) corners_[i] = *lights[i].corners;
     items.push_back({lights[i], lights[i].box.centre(), std::uint32_t(i)});
     LightBounds& b = items.back().bounds;
     b.weight /= whole_;
@@ -196,7 +192,6 @@ void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) {
   node.shell_radius2[lane] = bounds.shell.radius * bounds.shell.radius;
   node.shells = node.shells || bounds.shell.radius < INFINITY;
   node.weight[lane] = bounds.weight;
-  node.triangles = node.triangles || bounds.corners;
 }
 
 /// Where to cut [first, last), at least two items: the cheapest of 15 planes per axis, by the sum of both
@@ -247,23 +242,6 @@ std::size_t LightTree::split(std::vector<Item>& items, std::size_t first, std::s
   return middle;
 }
 
-/// A sphere's estimate of a triangle's light errs by about (radius / distance)^2: by 1/16 at the most beyond this many radii.
-constexpr float kFar = 4;
-
-void LightTree::look_closer(const Node& node, Vec3 point, Vec3 normal, const float* two_sided, float factor[kWidth]) const {
-  for (int i = 0; i < node.count; ++i) {
-    if (!node.leaf[i]) continue;
-    const Vec3 to = Vec3{node.centre[0][i], node.centre[1][i], node.centre[2][i]} - point;
-    if (length2(to) > kFar * kFar * node.radius[i] * node.radius[i]) continue;
-    const auto& [a, b, c] = corners_[node.child[i]];
-    const float area = 0.5f * length(cross(b - a, c - a));
-    if (!(area > 0)) continue;
-    const Vec3 axis{node.axis[0][i], node.axis[1][i], node.axis[2][i]};
-    if (!(two_sided[i] > 0) && !(dot(a - point, axis) < 0)) factor[i] = 0;
-    else factor[i] = float(cosine_solid_angle({a - point, b - point, c - point}, normal)) / area;
-  }
-}
-
 double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double importance[kWidth]) const {
   float factor[kWidth], within[kWidth];
   const float* two_sided = node.two_sided;
@@ -299,7 +277,6 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
     const float inside = 1 / std::max(radius * radius, 1e-18f);
     factor[i] = distance2 <= radius * radius ? inside : outside;
   }
-  if (node.triangles) look_closer(node, point, normal, two_sided, factor);
   double sum = 0;
   for (int i = 0; i < kWidth; ++i) {
     importance[i] = node.weight[i] * double(factor[i]);

@@ -5,10 +5,8 @@
 // lanes of one vector, so that a few lights cost little and many lights few levels.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "lib/light/convex_shell.h"
@@ -24,7 +22,6 @@ struct LightBounds {
   float cos_reach = 0;     ///< and shine no farther than this angle from their normal (at most pi/2)
   bool two_sided = false;  ///< some shine backwards as well
   Ball shell;              ///< backwards only to points in here
-  std::optional<std::array<Vec3, 3>> corners;  ///< if it is one triangle of one radiance
 };
 
 class LightTree {
@@ -54,9 +51,7 @@ class LightTree {
   }
   void start(Vec3 point, Vec3 normal, Start& start) const;
   bool choose(const Start& start, Vec3 point, Vec3 normal, float u, Choice& choice) const;
-  /// Walks down by the importance of both children: an upper bound of weight cos cos / distance^2, for a triangle nearby the
-  /// irradiance itself, but for shadows. `normal`:
-  /// unit, or zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at
+  /// Walks down by the importance of both children: an upper bound of weight cos cos / distance^2. `normal`: unit, or zero if lights below the surface count as well. u in [0, 1). Returns false if the walk ends at
   /// a node of which no light can reach the point.
   bool choose(Vec3 point, Vec3 normal, float u, Choice& choice) const;
   /// Probability with which choose() takes this light. [1]
@@ -73,7 +68,6 @@ class LightTree {
     std::uint32_t child[kWidth];  ///< a node, or the light of a leaf
     std::uint32_t parent;         ///< kWidth x node + lane
     std::uint8_t leaf[kWidth], count;
-    bool triangles;               ///< is one of the children a triangle?
   };
   struct Item;
   struct Pair;
@@ -84,11 +78,8 @@ class LightTree {
   static void set_child(Node& node, int lane, const LightBounds& bounds);
   /// Of all children; returns their sum.
   double importances(const Node& node, Vec3 point, Vec3 normal, double importance[kWidth]) const;
-  /// What the vector lanes' factors are for children that are triangles nearby.
-  void look_closer(const Node& node, Vec3 point, Vec3 normal, const float* two_sided, float factor[kWidth]) const;
 
   std::vector<Node> nodes_;
-  std::vector<std::array<Vec3, 3>> corners_;  ///< by light: of a triangle; all in one place for others
   std::vector<std::uint32_t> place_;  ///< by light: kWidth x node + lane
   double whole_ = 0;                  ///< sum of all weights
 };

@@ -34,7 +34,6 @@ LightBounds bounds_of(const TriangleLight& t, const Ball& shell) {
   b.weight = double(max_component(t.radiance)) * t.area;
   b.two_sided = t.two_sided;
   b.shell = shell;
-  b.corners = {t.corner, t.corner + t.edge1, t.corner + t.edge2};
   return b;
 }
 

@@ -48,21 +48,6 @@ Vec2 find_in_spherical_triangle(const SphericalTriangle& t, double solid_angle, 
   return {float(std::clamp(part / solid_angle, 0.0, 1.0)), float(whole > 0 ? std::clamp(length2(b - w) / whole, 0.0, 1.0) : 0)};
 }
 
-double solid_angle(Vec3 to0, Vec3 to1, Vec3 to2) {
-  const float l0 = length(to0), l1 = length(to1), l2 = length(to2);
-  const float opposite = std::abs(dot(to0, cross(to1, to2)));
-  return 2 * std::atan2(opposite, l0 * l1 * l2 + dot(to0, to1) * l2 + dot(to1, to2) * l0 + dot(to2, to0) * l1);
-}
-
-double cosine_solid_angle(const std::array<Vec3, 3>& to, Vec3 normal) {
-  double cosine = 1;
-  if (normal != Vec3{}) {
-    cosine = 0;
-    for (const Vec3& v : to) cosine += std::max(0.0, double(dot(v, normal)) / std::max(1e-30, double(length(v)))) / 3;
-  }
-  return solid_angle(to[0], to[1], to[2]) * std::max(kLeast, cosine);
-}
-
 BilinearWarp::BilinearWarp(std::array<double, 4> values) : w_(values) {
   const double least = std::max(1e-300, kLeast * *std::max_element(w_.begin(), w_.end()));
   for (double& w : w_) w = std::max(w, least);

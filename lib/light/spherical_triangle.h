@@ -1,4 +1,4 @@
-// lib/light/spherical_triangle.h -- a triangle as seen from a point: directions in it, and how it lights a surface there.
+// lib/light/spherical_triangle.h -- a triangle as seen from a point: directions in it.
 #pragma once
 
 #include <array>
@@ -19,11 +19,6 @@ Vec3d sample_spherical_triangle(const SphericalTriangle& t, double solid_angle, 
 /// The u that gives the unit direction w; u.x is 0 at corner 1, where it does not matter.
 Vec2 find_in_spherical_triangle(const SphericalTriangle& t, double solid_angle, Vec3d w);
 
-/// Solid angle [sr] that a triangle fills, by the vectors to its corners [m]. [Van Oosterom & Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983]
-double solid_angle(Vec3 to0, Vec3 to1, Vec3 to2);
-/// Its solid angle times about the mean cosine at a surface of this unit normal (zero: 1): what a triangle of radiance 1 gives in
-/// irradiance, within some percent where it is all above the horizon. Never 0 for what fills any: at least a hundredth.
-double cosine_solid_angle(const std::array<Vec3, 3>& to, Vec3 normal);
 
 /// A map of the unit square to itself whose density is bilinear between four values at its corners, so that what goes about as
 /// these is about the same for each sample. [Hart, Pharr, Mueller, Lopes, McGuire & Shirley, "Practical Product Sampling by Fitting

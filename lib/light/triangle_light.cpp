@@ -38,6 +38,7 @@ struct View {
     constexpr float kTangent = 0.01f;  // of half the solid angle's bound
     return adjacent > 0 ? opposite > kTangent * adjacent : opposite > -kTangent * adjacent;
   }
+  /// Van Oosterom & Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.
   float solid_angle() const { return 2 * std::atan2(opposite, adjacent); }
 
   /// For samples by solid angle: the cosines.
@@ -165,11 +166,6 @@ double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 pos
                float(std::clamp(dot(cross(edge1, at), across) / twice2, 0.0, 1.0))};
   const double pdf = view.factors(normal).density(find_in_triangle(b)) * d * d * d / (light.area * view.height);
   return pdf < INFINITY ? pdf : 0;
-}
-
-double solid_angle(const TriangleLight& light, Vec3 from) {
-  const View view(light, from);
-  return view.visible ? view.solid_angle() : 0;
 }
 
 }  // namespace tempolux

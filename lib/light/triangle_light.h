@@ -60,8 +60,4 @@ bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u,
 /// Density per solid angle of sample_triangle at `position`; 0 where it would have returned false.
 double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position);
 
-/// Solid angle [sr] that the triangle fills seen from `from`, either side. Van Oosterom & Strackee, "The
-/// Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30(2), 1983.
-double solid_angle(const TriangleLight& light, Vec3 from);
-
 }  // namespace tempolux

@@ -30,10 +30,16 @@ TEST(BilinearWarp, FollowsItsDensity) {
   EXPECT_NEAR(inverse, 1, 1e-3);
 }
 
+/// Of a triangle, by the vectors to its corners [Van Oosterom & Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983].
+double solid_angle(Vec3d a, Vec3d b, Vec3d c) {
+  const double la = length(a), lb = length(b), lc = length(c);
+  return 2 * std::atan2(std::abs(dot(a, cross(b, c))), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+}
+
 TEST(SphericalTriangle, FindsTheNumbersOfADirection) {
   for (const auto& [a, b, c] : {std::array<Vec3, 3>{Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {Vec3{-3, 1, 2}, {2, 2, 1}, {0, -1, 4}}}) {
     const SphericalTriangle t = as_seen(a, b, c);
-    const double omega = solid_angle(a, b, c);
+    const double omega = solid_angle(Vec3d(a), Vec3d(b), Vec3d(c));
     for (std::uint32_t i = 0; i < 1000; ++i) {
       const Vec2 u = sobol_owen_2d(i, 1);
       const Vec2 back = find_in_spherical_triangle(t, omega, sample_spherical_triangle(t, omega, u));
@@ -45,12 +51,13 @@ TEST(SphericalTriangle, FindsTheNumbersOfADirection) {
   }
 }
 
-/// A square lamp overhead, by a wall, small and far: the density that sample() says is that of pdf_solid_angle(), and where nothing
+/// A triangle overhead, by a wall, small and far: the density that sample() says is that of pdf_solid_angle(), and where nothing
 /// hides the lamp the samples differ little: their deviation was .15 to .6 of the mean by solid angle or area alone.
 TEST(LampsByCosine, SamplesHaveTheirDensityAndDifferLittle) {
   for (const auto& [normal, height, half] : {std::tuple{Vec3{0, 0, 1}, 1.0f, 0.5f}, {Vec3{0.8f, 0, 0.6f}, 1.0f, 0.5f}, {Vec3{0.6f, 0, 0.8f}, 5.0f, 0.2f}}) {
     LightScene scene;
-    const auto corners = square_facing_down({1.5f, 0.2f, height}, half);
+    auto corners = square_facing_down({1.5f, 0.2f, height}, half);
+    corners.pop_back();
     scene.add(corners, Rgb(1.0f));
     const Lights lights = scene.lights();
     double sum = 0, square = 0;
@@ -58,16 +65,7 @@ TEST(LampsByCosine, SamplesHaveTheirDensityAndDifferLittle) {
     for (std::uint32_t i = 0; i < kCount; ++i) {
       LightSample s;
       ASSERT_TRUE(lights.sample({0, 0, 0}, normal, sobol_owen_2d(i, 5), s));
-      double pdf = 0;   // of either triangle: the place on the border is both's
-      for (std::uint32_t t = 0; t < 2; ++t) pdf = std::max(pdf, double(lights.pdf_solid_angle({0, 0, 0}, normal, 0, t, s.position, {0, 0, -1})));
-      const double u = double(s.position.x - 1.5f) - double(s.position.y - 0.2f);
-      if (std::abs(u) > 1e-3 * half && std::abs(double(s.position.x - 1.5f) + double(s.position.y - 0.2f)) > 1e-3 * half) {
-        double nearest = 1e30;
-        for (std::uint32_t t = 0; t < 2; ++t)
-          nearest = std::min(nearest, std::abs(double(lights.pdf_solid_angle({0, 0, 0}, normal, 0, t, s.position, {0, 0, -1})) / double(s.pdf_solid_angle) - 1));
-        EXPECT_LT(nearest, 2e-3);
-      }
-      EXPECT_GT(pdf, 0);
+      EXPECT_NEAR(double(lights.pdf_solid_angle({0, 0, 0}, normal, 0, 0, s.position, {0, 0, -1})) / double(s.pdf_solid_angle), 1, 2e-3);
       const double e = double(s.radiance.r) * double(dot(normal, s.wi));
       sum += e / kCount;
       square += e * e / kCount;

@@ -101,12 +101,11 @@ TEST(AreaLight, NeedlesAreSampledUniformly) {
   EXPECT_NEAR(e.r, exact, 4 * sigma + 1e-4 * exact);
 }
 
-// The mean of 1 / pdf over the samples is the solid angle; an octant of the sphere has pi / 2.
+// Without a normal the density is one over the solid angle; an octant of the sphere has pi / 2.
 TEST(TriangleLight, HasTheSolidAngleOfAnOctant) {
   LightScene scene;
   scene.add({{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, Rgb(1.0f), true);
   const TriangleLight t(scene.frame.surfaces[0], 0, scene.frame.materials[0]);
-  EXPECT_NEAR(solid_angle(t, {0, 0, 0}), std::numbers::pi / 2, 1e-6);
   Vec3d mean;
   for (std::uint32_t i = 0; i < 1 << 14; ++i) {
     TrianglePoint p;
