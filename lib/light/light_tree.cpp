@@ -30,9 +30,8 @@ Vec3 rotate(Vec3 v, Vec3 axis, float angle) {
 
 /// Smallest cone that holds both. Widened a little for rounding.
 void join_cones(LightBounds& a, const LightBounds& b) {
-  // The lines of two-sided lights have no sign of their own; those of one shell have outside of it.
-  const bool no_sign = a.two_sided && b.two_sided && !(a.shell == b.shell && a.shell.radius < INFINITY);
-  const Vec3 axis_b = no_sign && dot(a.axis, b.axis) < 0 ? -b.axis : b.axis;
+  // The lines of two-sided lights have no sign of their own.
+  const Vec3 axis_b = a.two_sided && b.two_sided && dot(a.axis, b.axis) < 0 ? -b.axis : b.axis;
   const float angle_a = std::acos(std::clamp(a.cos_spread, -1.0f, 1.0f));
   const float angle_b = std::acos(std::clamp(b.cos_spread, -1.0f, 1.0f));
   const float between = std::atan2(length(cross(a.axis, axis_b)), dot(a.axis, axis_b));
@@ -57,7 +56,6 @@ LightBounds join(LightBounds a, const LightBounds& b) {
   a.box.add(b.box);
   a.weight += b.weight;
   a.cos_reach = std::min(a.cos_reach, b.cos_reach);
-  if (!(a.shell == b.shell)) a.shell = {};
   a.two_sided = a.two_sided || b.two_sided;
   return a;
 }
@@ -188,9 +186,6 @@ void LightTree::set_child(Node& node, int lane, const LightBounds& bounds) {
   node.sin_spread[lane] = safe_sqrt(1 - bounds.cos_spread * bounds.cos_spread);
   node.cos_reach[lane] = bounds.cos_reach - kSlack;
   node.two_sided[lane] = bounds.two_sided ? 1.0f : 0.0f;
-  for (int axis = 0; axis < 3; ++axis) node.shell[axis][lane] = bounds.shell.centre[axis];
-  node.shell_radius2[lane] = bounds.shell.radius * bounds.shell.radius;
-  node.shells = node.shells || bounds.shell.radius < INFINITY;
   node.weight[lane] = bounds.weight;
 }
 
@@ -243,15 +238,7 @@ std::size_t LightTree::split(std::vector<Item>& items, std::size_t first, std::s
 }
 
 double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double importance[kWidth]) const {
-  float factor[kWidth], within[kWidth];
-  const float* two_sided = node.two_sided;
-  if (node.shells) {
-    for (int i = 0; i < kWidth; ++i) {
-      const float x = node.shell[0][i] - point.x, y = node.shell[1][i] - point.y, z = node.shell[2][i] - point.z;
-      within[i] = x * x + y * y + z * z <= node.shell_radius2[i] ? node.two_sided[i] : 0.0f;
-    }
-    two_sided = within;
-  }
+  float factor[kWidth];
   const float no_normal = normal == Vec3{} ? 1.0f : 0.0f;
   for (int i = 0; i < kWidth; ++i) {
     const float x = node.centre[0][i] - point.x, y = node.centre[1][i] - point.y,
@@ -260,7 +247,7 @@ double LightTree::importances(const Node& node, Vec3 point, Vec3 normal, double 
     const float inverse = 1 / std::sqrt(std::max(distance2, 1e-18f));
     const float sin_size = std::min(1.0f, radius * inverse), cos_size = safe_sqrt(1 - sin_size * sin_size);
     const float along = -(node.axis[0][i] * x + node.axis[1][i] * y + node.axis[2][i] * z) * inverse;
-    const float cos_axis = two_sided[i] > 0 ? std::abs(along) : along;
+    const float cos_axis = node.two_sided[i] > 0 ? std::abs(along) : along;
     const float sin_axis = safe_sqrt(1 - cos_axis * cos_axis);
     // Angle from the nearest normal, less the angle that the box fills.
     const float cos_x = cos_difference(sin_axis, cos_axis, node.sin_spread[i], node.cos_spread[i]);

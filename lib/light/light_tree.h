@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "lib/light/convex_shell.h"
+#include "lib/core/vec.h"
 
 namespace tempolux {
 
@@ -21,7 +21,6 @@ struct LightBounds {
   float cos_spread = 1;    ///< all normals are within this angle of the axis
   float cos_reach = 0;     ///< and shine no farther than this angle from their normal (at most pi/2)
   bool two_sided = false;  ///< some shine backwards as well
-  Ball shell;              ///< backwards only to points in here
 };
 
 class LightTree {
@@ -62,8 +61,6 @@ class LightTree {
     float centre[3][kWidth], radius[kWidth];  ///< of the sphere around the child's box
     float axis[3][kWidth], cos_spread[kWidth], sin_spread[kWidth], cos_reach[kWidth];
     float two_sided[kWidth];      ///< 1 or 0
-    float shell[3][kWidth], shell_radius2[kWidth];
-    bool shells;                  ///< is there a finite one?
     double weight[kWidth];        ///< in parts of the whole tree's; 0: no child
     std::uint32_t child[kWidth];  ///< a node, or the light of a leaf
     std::uint32_t parent;         ///< kWidth x node + lane

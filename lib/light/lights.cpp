@@ -24,8 +24,7 @@ EmissionSlot::Kind slot_kind(PunctualLight::Kind kind) {
   return EmissionSlot::Kind::point;
 }
 
-/// shell: from outside of it the back is hidden.
-LightBounds bounds_of(const TriangleLight& t, const Ball& shell) {
+LightBounds bounds_of(const TriangleLight& t) {
   LightBounds b;
   b.box.add(t.corner);
   b.box.add(t.corner + t.edge1);
@@ -33,7 +32,6 @@ LightBounds bounds_of(const TriangleLight& t, const Ball& shell) {
   b.axis = t.normal;
   b.weight = double(max_component(t.radiance)) * t.area;
   b.two_sided = t.two_sided;
-  b.shell = shell;
   return b;
 }
 
@@ -89,13 +87,6 @@ Rgbd Lights::Impl::slot_flux(std::size_t slot) const {
   return punctual_flux(frame->lights[slots[slot].light].light, sphere_radius);
 }
 
-/// Of a surface both of whose sides shine.
-Ball Lights::Impl::shell_of(std::uint32_t surface) const {
-  const Material& material = frame->materials[frame->surfaces[surface].material];
-  if (!material.double_sided || lets_rays_pass(material)) return {};
-  return convex_shell(frame->surfaces[surface]).value_or(Ball{});
-}
-
 void Lights::Impl::build_tree() {
   tree_index.assign(slots.size(), kNone);
   for (std::uint32_t i = 0; i < slots.size(); ++i) {
@@ -120,16 +111,8 @@ void Lights::Impl::build_tree() {
 std::vector<LightBounds> Lights::Impl::tree_bounds() const {
   std::vector<LightBounds> bounds;
   bounds.reserve(tree_slot.size());
-  std::uint32_t of = kNone;
-  Ball shell;
-  for (const std::uint32_t slot : tree_slot) {
-    if (slot >= triangles.size()) {
-      bounds.push_back(bounds_of(frame->lights[slots[slot].light]));
-      continue;
-    }
-    if (slots[slot].surface != of) shell = shell_of(of = slots[slot].surface);
-    bounds.push_back(bounds_of(triangles[slot], shell));
-  }
+  for (const std::uint32_t slot : tree_slot)
+    bounds.push_back(slot < triangles.size() ? bounds_of(triangles[slot]) : bounds_of(frame->lights[slots[slot].light]));
   return bounds;
 }
 

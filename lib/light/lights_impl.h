@@ -40,7 +40,6 @@ struct Lights::Impl {
   Impl(const SceneFrame& frame_, const EmissionTable& table);
   void add_slots(const EmissionTable& table);
   void build_tree();
-  Ball shell_of(std::uint32_t surface) const;
 
   Rgbd slot_flux(std::size_t slot) const;   ///< W
   std::vector<LightBounds> tree_bounds() const;

@@ -27,8 +27,6 @@ IDEAS = (
            "bool sample_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec2 u, TrianglePoint& sample) {\n  normal = {};\n"),
           ("lib/light/triangle_light.cpp", "double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position) {\n",
            "double pdf_triangle(const TriangleLight& light, Vec3 from, Vec3 normal, Vec3 position) {\n  normal = {};\n"))),
-    Idea("shells", "of a closed convex lamp the backs are never chosen", "frames",
-         (("lib/light/lights.cpp", "return convex_shell(frame->surfaces[surface]).value_or(Ball{});", "return {};"),)),
     Idea("matte rays meet lamps", "a ray that leaves a matte surface counts lamps it meets, weighed against light samples", "frames",
          (("lib/render/path_tracer.cpp", "if (has_diffuse) diffuse *= mis_power(pdf, lobes.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));", ""),
           ("lib/render/path_tracer.cpp", "times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye)", "times * (next.diffuse ? 0.0f"))),
