@@ -226,14 +226,4 @@ std::size_t place_records(const FinalGather& gather, const PixelViews& views, in
   return store.records().size() - before;
 }
 
-std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height,
-                          const PlacementOptions& options, RecordStore& store, GatherCounts& counts,
-                          const std::function<void(double)>& progress) {
-  const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-    for (std::size_t i = 0; i < looks.size(); ++i)
-      seen[i] = view(looks[i].x, looks[i].y, looks[i].random ? &*looks[i].random : nullptr);
-  };
-  return place_records(gather, views, width, height, options, store, counts, progress);
-}
-
 }  // namespace tempolux

@@ -29,16 +29,13 @@ struct SeenPoint {
   bool by_choice = false;             ///< seen through a surface that could have sent the ray elsewhere
 };
 
-/// What raster position (x, y) of a picture sees; nothing if it needs no indirect light. Where the way forks
-/// (glass, gloss) it is drawn from `random`, or the likelier one without.
-using PixelView = std::function<std::optional<SeenPoint>(float x, float y, const PathRandom* random)>;
-
-/// The same of up to kLooksTogether positions, near to each other as a rule: one packet of rays.
+/// A raster position of a picture. Where the way forks (glass, gloss) it is drawn from `random`, or the likelier one without.
 struct Look {
   float x = 0, y = 0;
   std::optional<PathRandom> random;
 };
 inline constexpr std::size_t kLooksTogether = 8;
+/// What up to kLooksTogether positions see, near to each other as a rule: one packet of rays. Nothing where no indirect light is needed.
 using PixelViews = std::function<void(std::span<const Look>, std::span<std::optional<SeenPoint>> seen)>;
 
 /// Where records come from in place of FinalGather::gather, for whoever keeps what rays brought.
@@ -59,8 +56,6 @@ inline constexpr std::size_t kPlacedTogether = 256;
 /// Returns how many were added.
 std::size_t place_records(const FinalGather& gather, const PixelViews& views, int width, int height, const PlacementOptions& options, RecordStore& store,
                           GatherCounts& counts, const std::function<void(double)>& progress = {}, const RecordSource* source = nullptr);
-std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height, const PlacementOptions& options, RecordStore& store,
-                          GatherCounts& counts, const std::function<void(double)>& progress = {});
 
 /// Sets a gathered record's radius from its harmonic mean distance:
 ///

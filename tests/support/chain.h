@@ -6,6 +6,7 @@
 #include "lib/gather/irradiance_points.h"
 #include "lib/gather/place_records.h"
 #include "tests/support/photons.h"
+#include "tests/support/pixel_views.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux::test {
@@ -51,12 +52,12 @@ struct Chain {
   template <class At>
   void place(int width, int height, float footprint, const At& at) {
     GatherCounts counts;
-    const PixelView view = [&](float x, float y, const PathRandom*) -> std::optional<SeenPoint> {
+    const PixelViews views = pixel_by_pixel([&](float x, float y, const PathRandom*) -> std::optional<SeenPoint> {
       const std::optional<std::pair<SurfacePoint, Vec3>> seen = at(std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x));
       if (!seen) return std::nullopt;
       return SeenPoint{seen->first, seen->second, footprint, false};
-    };
-    place_records(gather, view, width, height, {}, store, counts);
+    });
+    place_records(gather, views, width, height, {}, store, counts);
     EXPECT_LT(counts.unanswered, counts.rays / 20);   // next to walls and where surfaces bend
   }
   /// The surface under `position`, met from h above it.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lib/core/parallel.h"
+#include "tests/support/pixel_views.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
@@ -13,6 +14,7 @@ namespace {
 
 using test::HandMadeScene;
 using test::matte;
+using test::pixel_by_pixel;
 
 /// A room of 2 m with a box in it, seen by a pinhole from a corner; every irradiance point says 1 or 3 W/m^2.
 struct Room {
@@ -58,8 +60,8 @@ struct Room {
   }
 
   std::size_t place(int width, int height, RecordStore& store, GatherCounts& counts, const PlacementOptions& options = {}) const {
-    const PixelView view = [&, width, height](float x, float y, const PathRandom*) { return see(x, y, width, height); };
-    return place_records(*gather, view, width, height, options, store, counts);
+    const PixelViews views = pixel_by_pixel([&, width, height](float x, float y, const PathRandom*) { return see(x, y, width, height); });
+    return place_records(*gather, views, width, height, options, store, counts);
   }
 };
 
@@ -113,7 +115,7 @@ TEST(PlaceRecords, SmallBrightThingsAreNotOutweighedByRecordsThatMissThem) {
   const Tracer tracer(scene.frame());
   const Lights lights(scene.frame(), EmissionTable{});
   const PointLookup lookup(points, 1);
-  const PixelView floor = [](float x, float y, const PathRandom*) {
+  const auto floor = [](float x, float y, const PathRandom*) {
     SeenPoint seen;
     seen.surface.position = {kHalf * (2 * x / kSize - 1), 0, kHalf * (2 * y / kSize - 1)};
     seen.normal = seen.surface.normal = seen.surface.normal_geometric = {0, 1, 0};
@@ -127,7 +129,7 @@ TEST(PlaceRecords, SmallBrightThingsAreNotOutweighedByRecordsThatMissThem) {
     const FinalGather gather(tracer, lights, lookup, options);
     RecordStore store;
     GatherCounts counts;
-    place_records(gather, floor, kSize, kSize, {}, store, counts);
+    place_records(gather, pixel_by_pixel(floor), kSize, kSize, {}, store, counts);
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x) {
         const Vec3 at = floor(float(x) + 0.5f, float(y) + 0.5f, nullptr)->surface.position;
@@ -165,7 +167,7 @@ TEST(PlaceRecords, PicturesOfOnePixelAndOfNothing) {
   GatherCounts counts;
   EXPECT_GE(room.place(1, 1, store, counts), 1u);
   RecordStore none;
-  const PixelView nothing = [](float, float, const PathRandom*) { return std::optional<SeenPoint>(); };
+  const PixelViews nothing = pixel_by_pixel([](float, float, const PathRandom*) { return std::optional<SeenPoint>(); });
   EXPECT_EQ(place_records(*room.gather, nothing, 32, 32, {}, none, counts), 0u);
 }
 
@@ -175,12 +177,12 @@ TEST(PlaceRecords, PixelsBehindGlassAreSampledWithin) {
   RecordStore store;
   GatherCounts counts;
   int drawn = 0;
-  const PixelView view = [&](float x, float y, const PathRandom* random) {
+  const PixelViews view = pixel_by_pixel([&](float x, float y, const PathRandom* random) {
     drawn += random != nullptr;
     auto seen = room.see(x, y, 8, 8);
     if (seen) seen->by_choice = true;
     return seen;
-  };
+  });
   const ThreadLimit limit(1);
   place_records(*room.gather, view, 8, 8, {}, store, counts);
   EXPECT_EQ(drawn, 4 * 64);
@@ -192,13 +194,13 @@ TEST(PlaceRecords, RecordsOfOneBatchServeTheNext) {
   const Room room;
   RecordStore store;
   GatherCounts counts;
-  const PixelView patch = [](float x, float y, const PathRandom*) {
+  const PixelViews patch = pixel_by_pixel([](float x, float y, const PathRandom*) {
     SeenPoint seen;
     seen.surface.position = {1e-5f * x, 0, 1e-5f * y};
     seen.normal = seen.surface.normal = seen.surface.normal_geometric = {0, 1, 0};
     seen.footprint = 1;
     return std::optional(seen);
-  };
+  });
   EXPECT_EQ(place_records(*room.gather, patch, 400, 400, {}, store, counts), 256u);
 }
 
@@ -211,14 +213,14 @@ TEST(PlaceRecords, StepsBetweenParallelPlanesAreEdges) {
     RecordStore store;
     GatherCounts counts;
     int within = 0;
-    const PixelView view = [&](float x, float y, const PathRandom* random) {
+    const PixelViews view = pixel_by_pixel([&](float x, float y, const PathRandom* random) {
       within += random != nullptr;
       SeenPoint seen;
       seen.surface.position = across * (0.01f * (x - kSize / 2)) + Vec3{0, 0, 1} * (0.01f * y) + Vec3{0, x < kSize / 2 ? step : 0, 0};
       seen.normal = seen.surface.normal = seen.surface.normal_geometric = {0, 1, 0};
       seen.footprint = 0.01f;
       return std::optional(seen);
-    };
+    });
     const ThreadLimit limit(1);
     place_records(*room.gather, view, kSize, kSize, {}, store, counts);
     return within;
