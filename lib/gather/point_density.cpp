@@ -13,18 +13,12 @@ PointDensity::PointDensity(const Tracer& tracer, std::span<const formats::Photon
                            std::uint8_t kinds, Vec3d shift)
     : options_(options),
       area_(tracer),
-      index_(photons, kinds, shift),
-      facing_(index_, limited().max_radius) {}
-
-/// The options, their radius set.
-const DensityOptions& PointDensity::limited() {
+      index_(photons, kinds, shift) {
   if (!(options_.max_radius > 0)) options_.max_radius = kSparser * photon_reach(index_, options_.neighbours, kMinCos, kFlattening, options_.where);
-  return options_;
 }
 
 /// The k nearest, or all within max_radius.
 PointDensity::Disc PointDensity::find(Vec3 position, Vec3 normal, NeighbourList& found) const {
-  if (!facing_.any_near(position, normal, kMinCos)) return {};
   const PhotonQuery query{position, normal, options_.max_radius, kMinCos, kFlattening, kAllKinds};
   index_.find_nearest(query, options_.neighbours, found);
   if (found.count() == 0) return {};

@@ -7,7 +7,6 @@
 
 #include "lib/core/random.h"
 #include "lib/density/photon_index.h"
-#include "lib/gather/facing_grid.h"
 #include "lib/gather/reachable_area.h"
 #include "lib/irradcache/points.h"
 #include "lib/trace/trace.h"
@@ -49,14 +48,12 @@ class PointDensity {
     double radius = 0;          ///< m; 0: no photon is near
     std::size_t farthest = 0;   ///< of the photons found: not summed
   };
-  const DensityOptions& limited();
   Disc find(Vec3 position, Vec3 normal, NeighbourList& found) const;
   Rgb plain(Vec3 position, Vec3 normal, float& radius, NeighbourList& found) const;
 
   DensityOptions options_;
   ReachableArea area_;
   PhotonIndex index_;
-  FacingGrid facing_;
 };
 
 }  // namespace tempolux
