@@ -105,7 +105,6 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   const RenderScene scene{tracer, lights, !yardstick && lights.has_suns()};
   const tools::IndirectLight light(tool, options.light, tracer, lights, tool.common().seed_for_frame(number), number);
 
-  if (!yardstick) lights.weigh_sky_by_cosine();
   std::unique_ptr<LightGrid> grid;
   if (!options.lights.empty()) {
     tool.stats().phase("read lights");
@@ -155,8 +154,7 @@ void learn(tools::Tool& tool, tools::SceneInput& input, const Options& options, 
   }
   tool.stats().phase("build");
   const Tracer tracer(frame);
-  Lights lights(frame, input.emission(frame.frame));
-  lights.weigh_sky_by_cosine();
+  const Lights lights(frame, input.emission(frame.frame));
   tool.stats().phase("learn lights", true);
   const std::unique_ptr<LightGrid> grid =
       learn_lights({tracer, lights, lights.has_suns()}, views, {.seed = tool.common().seed_for_frame(frame.frame)});

@@ -16,7 +16,7 @@ class Idea:
 
 IDEAS = (
     # ---- samples of light
-    Idea("sky by the cosine", "directions of the sky are drawn by its light times the surface's cosine", "frames",
+    Idea("sky by the cosine", "directions of the sky are drawn by its light times the cosine at irradiance points", "points",
          (("lib/light/lights.cpp", "if (impl_->environment_weight > 0) impl_->sky_by_normal =", "if (impl_->environment_weight < 0) impl_->sky_by_normal ="),)),
     Idea("learned lights", "a grid of what reaches places through openings, by which lights are drawn", "frames",
          (("lib/render/learn_lights.cpp", "if (!scene.lights.has_distant()) return nullptr;", "if (scene.lights.count() > 0) return nullptr;"),)),

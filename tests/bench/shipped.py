@@ -17,7 +17,7 @@ class Unfinished(Exception):
     """A run was refused or took longer than it may."""
 
 
-# The path tracer that is compared with: without what adaptive frames learn of lights or draw of the sky by the cosine.
+# The path tracer that is compared with: without what adaptive frames learn of lights, and with one ray to one of all lights.
 YARDSTICK = ["--integrator", "path"]
 
 

@@ -77,7 +77,6 @@ TEST(Environment, ASunWithARayOfItsOwnGivesTheSameLightWithLessNoise) {
   frame.lights.push_back(sun);
   const Tracer tracer(frame);
   Lights lights(frame, build_emission_table({&frame, 1}));
-  lights.weigh_sky_by_cosine();
   double deviation[2];
   for (const bool apart : {false, true}) {
     const RenderScene scene{tracer, lights, apart};
