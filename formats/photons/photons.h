@@ -163,12 +163,13 @@ class PhotonReader {
   std::unique_ptr<State> state_;
 };
 
-/// All photons of a file in one array, groups ascending; for readers that need the whole map. Columns are
-/// checked and left out. Memory: 32 bytes per photon and one block.
+/// All photons of a file in one array, groups ascending; for readers that need the whole map. The column albedo is
+/// checked and left out. Memory: 32 bytes per photon, 4 per direction, and one block.
 struct PhotonMap {
   PhotonHeader header;
   PhotonTotals totals;
   std::vector<Photon> photons;
+  std::vector<std::array<std::uint16_t, 2>> directions;   ///< of each photon, if the file has that column
 };
 PhotonMap load_photons(const std::string& path);
 /// The same with those photons only that `keep` takes; all of the file is read and checked, and totals are of all.

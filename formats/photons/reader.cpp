@@ -190,8 +190,11 @@ PhotonMap load_photons(const std::string& path) {
   map.photons.reserve(reader.photon_count_bound());
   prefer_large_pages(map.photons.data(), map.photons.capacity() * sizeof(Photon));
   PhotonBlock block;
-  while (reader.read_block(block))
+  if (map.header.columns & column_direction) map.directions.reserve(reader.photon_count_bound());
+  while (reader.read_block(block)) {
     map.photons.insert(map.photons.end(), block.photons.begin(), block.photons.end());
+    map.directions.insert(map.directions.end(), block.directions.begin(), block.directions.end());
+  }
   map.totals = reader.totals();
   return map;
 }
@@ -202,8 +205,11 @@ PhotonMap load_photons(const std::string& path, const std::function<bool(const P
   map.header = reader.header();
   PhotonBlock block;
   while (reader.read_block(block))
-    for (const Photon& photon : block.photons)
-      if (keep(map.header, photon)) map.photons.push_back(photon);
+    for (std::size_t i = 0; i < block.photons.size(); ++i) {
+      if (!keep(map.header, block.photons[i])) continue;
+      map.photons.push_back(block.photons[i]);
+      if (!block.directions.empty()) map.directions.push_back(block.directions[i]);
+    }
   map.totals = reader.totals();
   return map;
 }

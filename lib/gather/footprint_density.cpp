@@ -9,6 +9,7 @@
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
 #include "lib/density/photon_reach.h"
+#include "lib/material/seen_side.h"
 
 namespace tempolux {
 namespace {
@@ -25,10 +26,20 @@ enum : std::uint8_t { kUnknown, kWhole, kNotWhole };
 
 }  // namespace
 
-FootprintDensity::FootprintDensity(const Tracer& tracer, std::span<const formats::Photon> photons,
+float received_share(Vec3 wi, Vec3 normal, const LitSurface& at) {
+  const Vec3 axis = cross(normal, at.smooth), once = cross(axis, wi);
+  const Vec3 turned = wi + once + cross(axis, once) * (1 / std::max(kMinCos, 1 + dot(normal, at.smooth)));   // Rodrigues
+  const float cosine = dot(turned, at.shading);
+  if (!(cosine > 0)) return 0;
+  return cosine / std::max(kLooksAway, dot(wi, normal)) * (at.bsdf ? at.bsdf->arrival_weight(std::min(1.0f, cosine)) : 1);
+}
+
+FootprintDensity::FootprintDensity(const Tracer& tracer, const PhotonView& photons,
                                    const FootprintOptions& options, std::uint8_t kinds, Vec3d shift)
-    : options_(options), area_(tracer), index_(photons, kinds, shift) {
+    : options_(options), area_(tracer), index_(photons.photons, kinds, shift) {
   if (empty()) return;
+  directed_ = photons.directed();
+  if (directed_) arriving_from_.resize(index_.size());
   if (!(options_.max_radius > 0)) options_.max_radius = photon_reach(index_, options.neighbours, kMinCos, kFlattening);
   const float margin = options_.margin * options_.max_radius;
   const std::size_t leaves = (index_.size() + kLeaf - 1) / kLeaf;
@@ -44,11 +55,15 @@ FootprintDensity::FootprintDensity(const Tracer& tracer, std::span<const formats
         continue;
       }
       const Vec3 position = index_.position(i);
-      const auto n = formats::decode_normal(photons[index_.source(i)].normal);
+      const auto n = formats::decode_normal(photons.photons[index_.source(i)].normal);
       const float radius = radius_of(i, {n[0], n[1], n[2]}, found);
       leaf.x[lane] = position.x, leaf.y[lane] = position.y, leaf.z[lane] = position.z;
       leaf.nx[lane] = n[0], leaf.ny[lane] = n[1], leaf.nz[lane] = n[2];
       leaf.inverse_r2[lane] = 1 / (radius * radius);
+      if (directed_) {
+        const auto w = formats::decode_normal(photons.directions[index_.source(i)]);
+        arriving_from_[i] = {w[0], w[1], w[2]};
+      }
       const float flattening = radius / std::max(radius / kFlattening, kThin / kFlattening * area_.offset());
       leaf.flat[lane] = flattening * flattening - 1;
       leaf.narrow2[lane] = radius < kAlmost * options_.max_radius ? (radius + margin) * (radius + margin) : -1;
@@ -203,7 +218,8 @@ FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   return {2 * radius, disc(2 * radius)};
 }
 
-Rgb FootprintDensity::estimate(Vec3 position, Vec3 normal, float& smooth_over) const {
+Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const {
+  const Vec3 normal = surface.geometric;
   smooth_over = 0;
   if (empty()) return Rgb(0.0f);
   thread_local std::vector<Covering> covering;
@@ -213,8 +229,10 @@ Rgb FootprintDensity::estimate(Vec3 position, Vec3 normal, float& smooth_over) c
   for (const auto [photon, distance2] : covering) {
     const auto [radius, inverse_area] = extent_of(photon);
     smooth = smooth && radius > kAlmost * options_.max_radius;
-    const double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
+    double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
     if (!(weight > 0)) continue;   // it has become smaller
+    if (directed_) weight *= double(received_share(arriving_from_[photon], normal_of(photon), surface));
+    if (!(weight > 0)) continue;
     const Vec3 from = index_.position(photon), from_normal = normal_of(photon);
     const bool in_plane =
         inverse_area < 0 && std::abs(dot(position - from, from_normal)) < 4 * area_.offset() + kLift * radius;

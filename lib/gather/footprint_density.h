@@ -9,7 +9,9 @@
 
 #include "lib/density/box_tree.h"
 #include "lib/density/photon_index.h"
+#include "lib/density/photon_view.h"
 #include "lib/gather/reachable_area.h"
+#include "lib/material/bsdf.h"
 #include "lib/trace/trace.h"
 
 namespace tempolux {
@@ -20,10 +22,29 @@ struct FootprintOptions {
   float margin = 0;       ///< of max_radius: light counts as smooth only if no footprint narrower than that is as near as this
 };
 
+/// What light falls on. Normals are unit, on the lit side.
+struct LitSurface {
+  Vec3 geometric, smooth, shading;   ///< of the triangle; of its vertices; of a normal map
+  const Bsdf* bsdf;                  ///< how it scatters, as the Lambert lobe may lie under a coat; null: it does not
+
+  LitSurface(Vec3 geometric_normal, Vec3 smooth_normal, Vec3 shading_normal, const Bsdf* scattering = nullptr)
+      : geometric(geometric_normal), smooth(smooth_normal), shading(shading_normal), bsdf(scattering) {}
+  /// A surface that is what its triangles are.
+  explicit LitSurface(Vec3 normal) : LitSurface(normal, normal, normal) {}
+};
+
+/// What a normal map and a coat make of a photon's flux, as a share of it: light came from wi (unit) to a triangle of this normal.
+///     R wi.n_shading / wi.normal x Bsdf::arrival_weight(R wi.n_shading)
+/// R: the turn from the photon's normal to n_smooth, so that light meets the surface that it is counted for as it met its own, however
+/// that bends on the way: without a map and a coat the share is 1, and nothing is gained or lost. On a plane it is what
+/// path tracing has. 0 from behind the shading normal.
+float received_share(Vec3 wi, Vec3 normal, const LitSurface& at);
+
 /// Density of light that has edges and spots: caustics.
 ///
-///     E(x) = sum over photons i that reach x of flux_i K(d_i / r_i) / A_i,   K(t) = 2 (1 - t^2)  [Epanechnikov 1969]
+///     E(x) = sum over photons i that reach x of flux_i s_i K(d_i / r_i) / A_i,   K(t) = 2 (1 - t^2)  [Epanechnikov 1969]
 ///
+/// s_i: received_share of x if the photons have directions, by the normal map and the coat of x; 1 if not.
 /// d_i: distance from the photon in the metric of the ellipsoid r_i : r_i : r_i / kFlattening about it. r_i [m]: to its k-th
 /// neighbour, at most max_radius; at least Reach::offset(), and halved while hardly any of the ellipsoid is surface (on wires).
 /// A_i [m^2]: the area that can be reached from it (Reach, which also decides on x), weighted by K. So each photon's light is
@@ -41,16 +62,20 @@ struct FootprintOptions {
 class FootprintDensity {
  public:
   /// Of the photons of these kinds (kind_bit), moved by `shift` [m] into the scene's space.
-  FootprintDensity(const Tracer& tracer, std::span<const formats::Photon> photons, const FootprintOptions& options,
+  FootprintDensity(const Tracer& tracer, const PhotonView& photons, const FootprintOptions& options,
                    std::uint8_t kinds = kAllKinds, Vec3d shift = {});
 
   /// No photon is of these kinds.
   bool empty() const { return index_.size() == 0; }
   std::size_t photon_count() const { return index_.size(); }
 
-  /// Irradiance [W/m^2] of a place above a surface's lit side, normal: unit. Below 0 only by photons of negative flux.
+  /// Do photons have directions: does it matter how the surface bends its normals?
+  bool directed() const { return directed_; }
+  /// Irradiance [W/m^2] of a place above a surface's lit side. Below 0 only by photons of negative flux.
   /// `smooth_over`: max_radius where footprints cover the place and all that come within `margin` are as wide as that; else 0.
-  Rgb estimate(Vec3 position, Vec3 normal, float& smooth_over) const;
+  Rgb estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const;
+  /// Of a surface without bent normals or a coat.
+  Rgb estimate(Vec3 position, Vec3 normal, float& smooth_over) const { return estimate(position, LitSurface(normal), smooth_over); }
 
  private:
   static constexpr std::size_t kLeaf = 32;
@@ -83,6 +108,8 @@ class FootprintDensity {
   FootprintOptions options_;
   ReachableArea area_;
   PhotonIndex index_;
+  bool directed_ = false;
+  std::vector<Vec3> arriving_from_;          ///< wi in the index's order, if directed
   std::unique_ptr<Leaf[]> leaves_;           ///< in the index's order; unused places hold NaN, which covers nothing
   BoxTree tree_;                             ///< of footprints' boxes with their margins
   std::unique_ptr<std::atomic<Extent>[]> extents_;

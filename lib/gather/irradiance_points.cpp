@@ -141,19 +141,23 @@ bool any_bent(const SceneFrame& frame) {
 
 /// How the surface a point is on scatters: shading normal on the point's side; its lobes if the Lambert lobe lies under a coat.
 struct Scattering {
-  Vec3 normal;
+  Vec3 normal, smooth;   ///< smooth: without a normal map
   std::optional<Bsdf> coat;
+
+  LitSurface lit(Vec3 geometric) const { return {geometric, smooth, normal, coat ? &*coat : nullptr}; }
 };
 
 /// As the point's normal says, without a coat, if its surface is not found.
 Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, float offset) {
   Hit hit;
   if (!tracer.intersect({point.position + point.normal * (4 * offset), -point.normal, 0, 8 * offset, true}, hit))
-    return {point.normal, {}};
+    return {point.normal, point.normal, {}};
   SurfacePoint there = tracer.surface_point(hit);
+  const auto on_its_side = [&](Vec3 normal) { return dot(normal, point.normal) < 0 ? -normal : normal; };
+  const Vec3 smooth = on_its_side(there.normal);
   const SurfaceMaterial material(tracer.frame(), there);
   const Bsdf bsdf(material, dot(there.normal_geometric, point.normal) > 0);
-  Scattering found{dot(there.normal, point.normal) < 0 ? -there.normal : there.normal, {}};
+  Scattering found{on_its_side(there.normal), smooth, {}};
   if (bsdf.has_diffuse() && bsdf.has_specular()) found.coat = bsdf;
   return found;
 }
@@ -269,14 +273,14 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
   return sites;
 }
 
-void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,
+void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons,
                      Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points) {
   std::vector<std::uint32_t> all(points.size());
   std::iota(all.begin(), all.end(), 0u);
   estimate_points(tracer, lights, photons, photon_shift, options, all, points);
 }
 
-void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons, Vec3d photon_shift,
+void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
                      const PointOptions& options, std::span<const std::uint32_t> which, std::vector<IrradiancePoint>& points) {
   // Where photons were not aimed they are far apart: that says nothing of the places that points lie at.
   std::function<bool(Vec3)> where;
@@ -286,7 +290,7 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
     };
   const DensityOptions density{options.neighbours, options.max_radius, options.area_probes, where};
   const FootprintDensity caustic(tracer, photons, {density.neighbours, density.max_radius, 0}, kind_bit(formats::PathKind::caustic), photon_shift);
-  const PointDensity indirect(tracer, photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
+  const PointDensity indirect(tracer, photons.photons, density, kind_bit(formats::PathKind::indirect), photon_shift);
   const float offset = Reach(tracer).offset();
   const bool asks = !lights.empty() && (any_coated(tracer.frame()) || any_bent(tracer.frame()));
   const std::vector<std::uint32_t> order = in_space(points, which);
@@ -294,13 +298,23 @@ void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const
     for (std::size_t i = first; i < last; ++i) {
       IrradiancePoint& point = points[order[i]];
       const PathRandom random = point_random(options, order[i]);
-      point.direct = lights.empty()
-                         ? Rgb(0.0f)
-                         : direct_light(tracer, lights, point, offset, options.light_samples,
-                                        asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, {}}, random);
+      const Scattering scattering = asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
+      point.direct = lights.empty() ? Rgb(0.0f) : direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
       float unused;
-      point.caustic = caustic.estimate(point.position, point.normal, unused);
+      point.caustic = caustic.estimate(point.position, scattering.lit(point.normal), unused);
       point.indirect = indirect.estimate(point, random, point.radius);
+    }
+  });
+}
+
+void estimate_caustic(const Tracer& tracer, const FootprintDensity& density, std::vector<IrradiancePoint>& points) {
+  const float offset = Reach(tracer).offset();
+  parallel_chunks(points.size(), 256, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      IrradiancePoint& point = points[i];
+      const Scattering scattering = density.directed() ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
+      float unused;
+      point.caustic = density.estimate(point.position, scattering.lit(point.normal), unused);
     }
   });
 }
@@ -321,7 +335,7 @@ std::size_t update_direct(const Tracer& tracer, const Lights& lights, const Move
       IrradiancePoint& point = points[order[i]];
       if (watch && box && !watch->between(point.position, *box)) continue;
       const PathRandom random = point_random(options, order[i]);
-      const Scattering scattering = asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, {}};
+      const Scattering scattering = asks ? scattering_at(tracer, point, offset) : Scattering{point.normal, point.normal, {}};
       bool touched = !watch;
       if (watch)
         for_light_samples(lights, point, offset, options.light_samples, scattering, random,

@@ -54,17 +54,20 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
                                     std::uint64_t seed, const std::function<bool(Vec3)>& wanted);
 
 /// Fills in the irradiance of all points:
-/// - direct by light sampling, stratified shadow rays, as photons are stored: by the shading normal, under a coat times
-///   Bsdf::arrival_weight;
-/// - caustic and indirect by the density of the photons of that kind (FootprintDensity, PointDensity).
+/// - direct by light sampling, stratified shadow rays, by the shading normal at the point, under a coat times Bsdf::arrival_weight;
+/// - caustic and indirect by the density of the photons of that kind (FootprintDensity, PointDensity), caustic likewise by the normal at the
+///   point if photons have directions.
+/// Normal maps count by their finest level: points stand for what rays of gathering meet (RayCone).
 /// photon_shift is added to the photons' positions: scene space minus theirs. Same results for any number of
 /// threads.
-void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons,
+void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons,
                      Vec3d photon_shift, const PointOptions& options, std::vector<IrradiancePoint>& points);
 
 /// The same for the points of these numbers alone; each is what it would be among all.
-void estimate_points(const Tracer& tracer, const Lights& lights, std::span<const formats::Photon> photons, Vec3d photon_shift,
+void estimate_points(const Tracer& tracer, const Lights& lights, const PhotonView& photons, Vec3d photon_shift,
                      const PointOptions& options, std::span<const std::uint32_t> which, std::vector<IrradiancePoint>& points);
+/// Caustic light of all points by this density, as estimate_points has it.
+void estimate_caustic(const Tracer& tracer, const FootprintDensity& density, std::vector<IrradiancePoint>& points);
 /// Samples direct light anew, as estimate_points does, where one of a point's shadow rays meets a box of `watch`; nullptr: at all
 /// points. The others keep what they have: the same samples meet the same there. Returns how many were sampled.
 std::size_t update_direct(const Tracer& tracer, const Lights& lights, const MoverWatch* watch, const PointOptions& options,

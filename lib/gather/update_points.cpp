@@ -66,7 +66,7 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   const SceneFrame& frame = in.whole.frame();
   // Points that found fewer static photons than they wanted have the largest radius of all.
   DensityOptions density{options.neighbours, largest_radius(options, points), std::min(options.area_probes, kChangeProbes)};
-  const SignedDensity density_of_change(in.standing, in.dynamic_photons, density, in.dynamic_shift);
+  const SignedDensity density_of_change(in.standing, in.dynamic_photons.photons, density, in.dynamic_shift);
   density.max_radius = density_of_change.max_radius();
   const MovingBoxes boxes = moving_boxes(frame);
   const MoverWatch watch({boxes});
@@ -100,7 +100,7 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
 
   const PhotonMaps maps{in.static_photons, in.dynamic_photons, in.static_shift, in.dynamic_shift};
   // Beside what moves: all photons that an estimate there may ask for.
-  const std::vector<Photon> near = anew.empty() ? std::vector<Photon>{} : whole_photons(maps, [&](Vec3 place, const Photon&) {
+  const formats::PhotonBlock near = anew.empty() ? formats::PhotonBlock{} : whole_photons(maps, [&](Vec3 place, const Photon&) {
     return near_any(boxes, place, widest + density.max_radius);
   });
   std::vector<Rgb> caustic;
@@ -110,15 +110,10 @@ PointUpdateCounts update_points(const PointUpdateInput& in, const PointOptions& 
   if (!anew.empty()) estimate_points(in.whole, in.lights, near, {}, limited, anew, points);
 
   // Caustic light has footprints instead of discs: all of it anew if any is another.
-  if (any_caustic(in.dynamic_photons)) {
-    const std::vector<Photon> all = whole_photons(maps, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
+  if (any_caustic(in.dynamic_photons.photons)) {
+    const formats::PhotonBlock all = whole_photons(maps, [](Vec3, const Photon& photon) { return photon.kind == PathKind::caustic; });
     const FootprintDensity footprints(in.whole, all, {options.neighbours, options.max_radius, 0}, kind_bit(PathKind::caustic), {});
-    parallel_chunks(points.size(), 256, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        float unused;
-        points[i].caustic = footprints.estimate(points[i].position, points[i].normal, unused);
-      }
-    });
+    estimate_caustic(in.whole, footprints, points);
   } else {
     for (std::size_t i = 0; i < points.size(); ++i) points[i].caustic = caustic[i];
   }

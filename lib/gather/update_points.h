@@ -16,8 +16,8 @@ struct PointUpdateInput {
   const Tracer& whole;
   const Tracer& standing;
   const Lights& lights;                             ///< at the frame
-  std::span<const formats::Photon> static_photons;  ///< of the segment
-  std::span<const formats::Photon> dynamic_photons; ///< of the frame
+  PhotonView static_photons;                        ///< of the segment
+  PhotonView dynamic_photons;                       ///< of the frame
   Vec3d static_shift, dynamic_shift;                ///< m, added to their positions
 };
 

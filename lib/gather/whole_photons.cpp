@@ -29,30 +29,34 @@ struct PhotonHash {
 
 }  // namespace
 
-std::vector<Photon> whole_photons(const PhotonMaps& maps, const std::function<bool(Vec3, const Photon&)>& wanted) {
+formats::PhotonBlock whole_photons(const PhotonMaps& maps, const std::function<bool(Vec3, const Photon&)>& wanted) {
   std::unordered_map<Photon, int, PhotonHash> gone;
-  std::vector<Photon> photons;
-  const auto take = [&](Photon photon, Vec3 place) {
+  formats::PhotonBlock whole;
+  const auto take = [&](const PhotonView& map, std::size_t i, Vec3 place) {
+    Photon photon = map.photons[i];
     photon.position = {place.x, place.y, place.z};
-    photons.push_back(photon);
+    append(map, i, photon, whole);
   };
-  for (Photon photon : maps.dynamic) {
+  for (std::size_t i = 0; i < maps.dynamic.photons.size(); ++i) {
+    Photon photon = maps.dynamic.photons[i];
     const Vec3 place = placed(photon, maps.dynamic_shift);
     if (!wanted(place, photon)) continue;
     if (!is_negative(photon)) {
-      take(photon, place);
+      take(maps.dynamic, i, place);
       continue;
     }
     for (float& flux : photon.flux) flux = 0 - flux;
     ++gone[photon];
   }
-  for (const Photon& photon : maps.fixed) {
+  for (std::size_t i = 0; i < maps.fixed.photons.size(); ++i) {
+    const Photon& photon = maps.fixed.photons[i];
     const Vec3 place = placed(photon, maps.fixed_shift);
     if (!wanted(place, photon)) continue;
     if (const auto found = gone.find(photon); found != gone.end() && found->second > 0) --found->second;
-    else take(photon, place);
+    else take(maps.fixed, i, place);
   }
-  return photons;
+  if (whole.directions.size() != whole.photons.size()) whole.directions.clear();
+  return whole;
 }
 
 }  // namespace tempolux

@@ -22,6 +22,9 @@ struct SeenSide {
         frame(normal),
         wo_local(frame.to_local(wo)) {}
 
+  /// A normal of the surface, turned to the side that is seen.
+  Vec3 facing(Vec3 n) const { return dot(n, normal_geometric) < 0 ? -n : n; }
+
   /// Is wi on the lit side of both normals? Only then does light from it count.
   bool sees(Vec3 wi) const { return dot(wi, normal_geometric) > 0 && dot(wi, normal) > 0; }
   /// Is it beyond both of them? Then light passes through from there.

@@ -55,8 +55,12 @@ PhotonBatch difference_of(const PhotonTracer& standing, const PhotonTracer& whol
     const auto a = old.of(path), b = now.of(number_of[path]);
     std::size_t common = 0;
     while (common < std::min(a.size(), b.size()) && before.block.photons[a[common]] == after.block.photons[b[common]]) ++common;
-    for (const std::uint32_t p : a.subspan(common)) result.block.photons.push_back(negative(before.block.photons[p]));
-    for (const std::uint32_t p : b.subspan(common)) result.block.photons.push_back(after.block.photons[p]);
+    const auto take = [&](const PhotonBatch& from, std::uint32_t p, const formats::Photon& photon) {
+      result.block.photons.push_back(photon);
+      if (!from.block.directions.empty()) result.block.directions.push_back(from.block.directions[p]);
+    };
+    for (const std::uint32_t p : a.subspan(common)) take(before, p, negative(before.block.photons[p]));
+    for (const std::uint32_t p : b.subspan(common)) take(after, p, after.block.photons[p]);
     const FluxBalance &was = before.balance_of[path], &is = after.balance_of[number_of[path]];
     result.emitted += is.emitted - was.emitted;
     result.escaped += is.escaped - was.escaped;
@@ -83,6 +87,7 @@ PhotonMapResult write_dynamic_map(const PhotonTracer& standing, const PhotonTrac
   header.group_count = whole.group_count();
   header.emitted_count = whole.photon_count();
   header.kinds = options.kinds();
+  if (whole.stores_directions()) header.columns |= formats::column_direction;
   formats::PhotonWriter writer(sink, header);
   Rgbd emitted{0.0}, escaped{0.0}, absorbed{0.0};
   parallel_ordered(

@@ -1,7 +1,6 @@
 #include "lib/photon/photon_trace.h"
 
 #include <algorithm>
-#include <optional>
 #include <sstream>
 
 #include "formats/error.h"
@@ -24,7 +23,6 @@ using formats::PathKind;
 constexpr float kInPlane = 0.25f;
 constexpr int kMostPlanes = 8;               ///< that a light may be in, one upon the other
 constexpr float kStepsPerCrossing = 10;      ///< tentative collisions in a mean crossing of the media's box, at least
-constexpr float kAcross = 500;               ///< pixels that an eye has for the whole scene
 
 /// Kind of a photon by the events so far (architecture.md 3).
 PathKind kind_after(bool diffuse_seen, bool specular_seen) {
@@ -66,6 +64,12 @@ struct Arrival {
                       : bsdf.eval_diffuse(out, in) * (kPi / p);
   }
 
+  /// |wi.n| / |wi.n_g| of another normal; 0 from behind it.
+  float correction_by(Vec3 n) const {
+    const float geometric = dot(wi, normal_geometric), cosine = dot(wi, n) * std::copysign(1.0f, dot(n, normal_geometric));
+    return geometric > 0 ? std::max(0.0f, cosine) / geometric : 0;
+  }
+
   /// Do the normals differ by half a degree or more?
   bool bent() const { return !flat && dot(normal, normal_geometric) < 0.99996f; }
 
@@ -82,25 +86,15 @@ struct Arrival {
   }
 };
 
-/// The shading normal as an eye sees it that has the scene in kAcross pixels, if it may be another one than at the finest level:
-/// bumps get another share of the light than their mean normal, by which they are lit where a pixel does not tell them apart
-/// (RayCone); and photons do not know yet who will look.
-std::optional<Vec3> normal_from_afar(const SceneFrame& frame, const SurfacePoint& point) {
-  const Material& material = frame.materials[point.material];
-  if (!material.textures || !material.textures->normal) return std::nullopt;
-  return TextureSpot(frame, point.surface, point.triangle, point.u, point.v, frame.bounds.diagonal() / kAcross)
-      .bend(material.textures->normal, material.textures->normal_scale, point.normal, point.normal_geometric);
-}
-
 /// What only materials with textures or alpha need; bends the point's normal.
 struct Textured {
-  std::optional<Vec3> seen;                  ///< normal by which photons are stored, where that is another one
+  Vec3 smooth;                               ///< the point's normal without a normal map
   SurfaceMaterial material;
   Bsdf bsdf;
   float coverage;                            ///< share of photons that meet the surface there
 
   Textured(const SceneFrame& frame, SurfacePoint& point, Vec3 travel)
-      : seen(normal_from_afar(frame, point)),
+      : smooth(point.normal),
         material(frame, point),
         bsdf(material, dot(point.normal_geometric, travel) < 0),
         coverage(std::max(1e-6f, coverage_at(frame, point.surface, point.triangle, point.u, point.v))) {}
@@ -116,6 +110,14 @@ void record(Rgb flux, const SurfacePoint& point, Vec3 normal, PathKind kind, std
   photon.object = std::uint16_t(point.object);
   photon.kind = kind;
   photon.bounce = std::uint8_t(std::min(bounce, 255u));
+}
+
+/// May light by events S arrive where a normal map bends the normal of a Lambert lobe? Of all materials, whichever are in the frame: maps of what
+/// stands and of all have the same columns.
+bool normal_maps_see_caustics(const std::vector<Material>& materials) {
+  return std::any_of(materials.begin(), materials.end(), [](const Material& m) { return lobes_of(m).specular; }) &&
+         std::any_of(materials.begin(), materials.end(),
+                     [](const Material& m) { return m.textures && m.textures->normal && may_have_lambert(m); });
 }
 
 void record_direction(Vec3 wi, PhotonBatch& batch) {
@@ -167,6 +169,8 @@ PhotonTracer::PhotonTracer(const Tracer& tracer, const Lights& lights, const Pho
   }
   for (const PlacedLight& placed : tracer.frame().lights)
     has_point_lights_ |= placed.light.kind != PunctualLight::Kind::directional;
+  directions_ = options.store_volume && media_ && media_->directional();
+  directions_ |= options.store_caustic && normal_maps_see_caustics(tracer.frame().materials);
   for (const Material& material : tracer.frame().materials) {
     solid_.push_back(is_solid_glass(material));
     varies_.push_back(material.textures || lets_rays_pass(material));
@@ -329,14 +333,14 @@ std::size_t PhotonTracer::leave_planes_of_lights(const PhotonEmission* emissions
 bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const {
   if (varies_[point.material]) [[unlikely]] {
     const Textured textured(tracer_.frame(), point, path.ray.direction);
-    return scatter_at(path, point, distance, textured.bsdf, textured.coverage, textured.seen, draw, batch);
+    return scatter_at(path, point, distance, textured.bsdf, textured.coverage, textured.smooth, draw, batch);
   }
   const bool front = dot(point.normal_geometric, path.ray.direction) < 0;
-  return scatter_at(path, point, distance, bsdfs_[point.material][front], 1, std::nullopt, draw, batch);
+  return scatter_at(path, point, distance, bsdfs_[point.material][front], 1, point.normal, draw, batch);
 }
 
-bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
-                              const std::optional<Vec3>& seen, const Draw& draw, PhotonBatch& batch) const {
+bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage, Vec3 smooth,
+                              const Draw& draw, PhotonBatch& batch) const {
   const Arrival at(point, path.ray.direction);
   const bool front = dot(point.normal_geometric, at.wi) > 0;
   const bool solid = solid_[point.material];
@@ -348,20 +352,14 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
 
   // Record.
   const PathKind kind = kind_after(path.diffuse_seen, path.specular_seen);
-  float cosine = at.wi_local.z, correction = at.shading_correction;
-  if (seen) [[unlikely]] {
-    SurfacePoint there = point;
-    there.normal = *seen;
-    const Arrival smooth(there, path.ray.direction);
-    cosine = smooth.wi_local.z;
-    correction = smooth.shading_correction;
-  }
-  if (stores_[std::size_t(kind)] && bsdf.has_lambert() && correction > 0) {
-    Rgb stored = flux * (bsdf.arrival_weight(cosine) * correction);
+  float weight = bsdf.arrival_weight(at.wi_local.z) * at.shading_correction;
+  if (directions_ && kind == PathKind::caustic) [[unlikely]] weight = at.correction_by(smooth);
+  if (stores_[std::size_t(kind)] && bsdf.has_lambert() && weight > 0) {
+    Rgb stored = flux * weight;
     if (path.inside.any()) stored *= 1 / path.inside.index_squared(tracer_.frame().materials);
     if (coverage != 1) stored *= 1 / coverage;
     record(stored, point, at.normal_geometric, kind, draw.bounce, batch.block.photons);
-    if (stores_directions()) [[unlikely]] record_direction(at.wi, batch);
+    if (directions_) [[unlikely]] record_direction(at.wi, batch);
   }
 
   // Scatter, or be absorbed.

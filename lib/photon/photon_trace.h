@@ -66,8 +66,10 @@ struct PhotonBatch : FluxBalance {           ///< of all paths; if by_path see b
 ///     flux x arrival_weight(wi) x |wi.n_s| / |wi.n_g|     [W]
 /// so that  rho/pi x density  is what the Lambert lobe reflects, shading normals included [Veach 1997, 5.3]
 /// (they scatter to where the eye looks from: by the geometric normal, too, where the shading normal looks away);
-/// n_s of a normal map is what an eye sees that has the scene in 500 pixels, though scattering goes by its finest level;
-/// for a matte flat surface that is the flux that arrives. Inside solids of glass it is divided by the index
+/// for a matte flat surface that is the flux that arrives. n_s of a normal map is that of its finest level, by which rays of gathering see
+/// it (RayCone). But pixels look at caustic light through photons, and by a normal that is the mean of what they do not tell apart: where
+/// directions are stored (stores_directions) photons of kind caustic carry flux x |wi.n_v| / |wi.n_g|, n_v: the normal without a map, and who
+/// looks applies map and coat (received_share). Inside solids of glass it is divided by the index
 /// squared (bsdf.h). What solids absorb on the way counts as absorbed. Of a surface of alpha mode BLEND only the
 /// share alpha of the photons take notice: divided by alpha they stand for all that arrive. Roulette keeps the flux
 /// of a path about constant
@@ -96,8 +98,8 @@ class PhotonTracer {
   const Media* media() const { return media_ ? &*media_ : nullptr; }
   /// The majorants of flight, floor included; empty without media.
   const MajorantGrid& majorants() const;
-  /// Do records need their direction: is a phase function of the media not even?
-  bool stores_directions() const { return options_.store_volume && media_ && media_->directional(); }
+  /// Do records have their direction: is a phase function of the media not even, or may caustic light fall on normal maps?
+  bool stores_directions() const { return directions_; }
   /// Traces batch number b < batch_count(). Thread-safe.
   PhotonBatch trace(std::size_t batch) const;
   /// Traces paths first .. last - 1 of a group, also such as the map does not have (last > photon_count() / group_count()); their flux is
@@ -135,8 +137,8 @@ class PhotonTracer {
   Flown fly_through_media(Path& path, float end, std::uint32_t bounce, PhotonBatch& batch) const;
   void record_tentative(const Path& path, Rgb flux, Vec3 position, float extinction, float majorant, std::uint32_t bounce, PhotonBatch& batch) const;
   bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
-  bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage,
-                  const std::optional<Vec3>& seen, const Draw& draw, PhotonBatch& batch) const;
+  bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage, Vec3 smooth,
+                  const Draw& draw, PhotonBatch& batch) const;
 
   const Tracer& tracer_;
   const Lights& lights_;
@@ -144,6 +146,7 @@ class PhotonTracer {
   PhotonHalton halton_;
   std::array<bool, 3> stores_{};   ///< by formats::PathKind
   bool has_point_lights_ = false;   ///< or spots
+  bool directions_ = false;
   std::optional<Media> media_;      ///< the frame's, with raised majorants
   std::vector<char> solid_;   ///< by material: boundary of a solid of glass
   std::vector<std::array<Bsdf, 2>> bsdfs_;   ///< by material: seen from the back, from the front

@@ -12,6 +12,7 @@
 #include "lib/material/surface_material.h"
 #include "lib/render/photon_light.h"
 #include "lib/render/pilot_photons.h"
+#include "lib/render/shading.h"
 
 namespace tempolux {
 namespace {
@@ -40,7 +41,8 @@ struct SeenFlux {
   std::size_t cell = 0;
 };
 /// Of a photon at `point`: its flux x rho / pi x picture_share, if the camera sees it. Nothing is blurred, so the sum over photons is unbiased.
-SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const formats::Photon& photon) {
+SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const PhotonView& photons, std::size_t i) {
+  const formats::Photon& photon = photons.photons[i];
   const Vec3 point{photon.position[0], photon.position[1], photon.position[2]};
   const auto n = formats::decode_normal(photon.normal);
   const Vec3 normal{n[0], n[1], n[2]};
@@ -53,9 +55,16 @@ SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const forma
   if (hit.surface == kNone) return {};
   SurfacePoint surface = scene.tracer.surface_point(hit);
   if (length(surface.position - point) > kSame * hit.t) return {};
-  const SurfaceMaterial material(scene.frame(), surface);
-  const Rgb albedo = Bsdf(material, dot(surface.normal_geometric, ray.direction) < 0).diffuse_albedo();
-  const Rgb flux(photon.flux[0], photon.flux[1], photon.flux[2]);
+  const Vec3 smooth = surface.normal;
+  const SurfaceMaterial material(scene.frame(), surface, view.pixel_size(hit.t));
+  const ShadingPoint shading(surface, -ray.direction, material);
+  const Rgb albedo = shading.bsdf.diffuse_albedo();
+  Rgb flux(photon.flux[0], photon.flux[1], photon.flux[2]);
+  if (photons.directed()) {
+    const auto w = formats::decode_normal(photons.directions[i]);
+    const Vec3 wi{w[0], w[1], w[2]};
+    flux *= received_share(wi, normal, {shading.normal_geometric, shading.facing(smooth), shading.normal, &shading.bsdf});
+  }
   const auto cell = [](double x, int size, int cells) { return std::size_t(std::min(cells - 1.0, x / size * cells)); };
   return {double(channel_mean(albedo * flux)) / kPi * picture_share(view, point, normal, *at),
           cell((*at)[1], view.height(), kRows) * kColumns + cell((*at)[0], view.width(), kColumns)};
@@ -70,10 +79,10 @@ double variance(const IndirectPilot& paths, double found, double seen, const See
 }  // namespace
 
 SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const char* kind, std::uint64_t seed) {
-  const std::vector<formats::Photon> photons = pilot_photons(scene.tracer, scene.lights, kind, kPaths, seed ^ 0x63617573746963ull);
-  std::vector<SeenFlux> seen(photons.size());
-  parallel_chunks(photons.size(), 64, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) seen[i] = seen_flux(scene, view, photons[i]);
+  const formats::PhotonBlock photons = pilot_photons(scene.tracer, scene.lights, kind, kPaths, seed ^ 0x63617573746963ull);
+  std::vector<SeenFlux> seen(photons.photons.size());
+  parallel_chunks(photons.photons.size(), 64, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) seen[i] = seen_flux(scene, view, photons, i);
   });
   SeenPhotons pilot;
   std::vector<double> cells(kRows * kColumns, 0.0);

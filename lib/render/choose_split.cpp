@@ -33,7 +33,7 @@ SplitPilot pilot_split(const SceneFrame& frame, const EmissionTable& emission, c
   const Tracer tracer(frame);
   const Lights lights(frame, emission);
   const RenderScene scene{tracer, lights};
-  const std::vector<formats::Photon> photons = pilot_photons(tracer, lights, "direct,caustic,indirect", kPaths, seed);
+  const std::vector<formats::Photon> photons = pilot_photons(tracer, lights, "direct,caustic,indirect", kPaths, seed).photons;
   CellEdge edge;
   for (const formats::Photon& photon : photons) edge.add(place_of(photon).position);
   EnergyCells cells(edge.edge(), 0);

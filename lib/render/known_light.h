@@ -37,7 +37,7 @@ class KnownLight {
   std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const;
   bool has_caustic() const { return photons != nullptr; }
   /// Irradiance of kind caustic; only if has_caustic().
-  Rgb caustic(const SurfacePoint& surface, Vec3 geometric) const { return photons->caustic(surface.position, geometric); }
+  Rgb caustic(Vec3 position, const LitSurface& surface) const { return photons->caustic(position, surface); }
   /// What a point tells of the light at a hit.
   struct Told {
     Rgb irradiance{0.0f};

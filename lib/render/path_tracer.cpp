@@ -148,7 +148,7 @@ struct KnownHere {
   float left = 1;     ///< share of the light of its Lambert lobe that the place before has not sampled explicitly
 };
 
-KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, const Beyond& beyond, const Rgb& throughput,
+KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, Vec3 smooth, const Beyond& beyond, const Rgb& throughput,
                           const EyePath& path, float u, const PathRandom& random, Layers& result, RayCounts& counts) {
   KnownHere here;
   if (beyond.low && !beyond.specular) here.left = known.left(x.surface, x.normal_geometric, beyond.width, u);
@@ -173,7 +173,7 @@ KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, const 
   };
   if (known.has_caustic()) {
     here.caustic = true;
-    result[path.after(true).after(false).layer()] += reflected * known.caustic(x.surface, x.normal_geometric);
+    result[path.after(true).after(false).layer()] += reflected * known.caustic(x.surface.position, {x.normal_geometric, x.facing(smooth), x.normal, &x.bsdf});
   }
   if (beyond.matte) {
     sample_bright(1);
@@ -382,6 +382,7 @@ void EyeTracer::follow(Walk walk) const {
     const bool only_specular = walk.beyond.indirect_known;
     if (only_specular && walk.beyond.caustic_known) return;
 
+    const Vec3 smooth = point.normal;
     const SurfaceMaterial material(frame, point, walk.cone.width);
     if (material.values().unlit) [[unlikely]] {
       if (path.sharp()) result[path.layer()] += walk.throughput * material.values().base_color;
@@ -390,7 +391,7 @@ void EyeTracer::follow(Walk walk) const {
     const ShadingPoint x(point, wo, material);
     KnownHere here{only_specular, only_specular, only_specular};
     if (known_ && !only_specular && x.bsdf.has_diffuse())
-      here = add_known_light(*known_, x, walk.beyond, walk.throughput, path, walk.random.get1(bounce, Purpose::gather),
+      here = add_known_light(*known_, x, smooth, walk.beyond, walk.throughput, path, walk.random.get1(bounce, Purpose::gather),
                              PathRandom(walk.random.hashed().bits(bounce, Purpose::gather), bounce), result, counts_);
     SampledLobes lobes{!here.direct, !(walk.beyond.matte && walk.beyond.caustic_known)};
     lobes.left = here.left;

@@ -5,12 +5,12 @@
 
 namespace tempolux {
 
-PhotonLight::PhotonLight(const Tracer& tracer, std::span<const formats::Photon> photons, Vec3d photon_shift,
+PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d photon_shift,
                          const PhotonLightOptions& options) {
   options_.neighbours = options.neighbours;
   options_.max_radius = options.max_radius;
   has_indirect_ = !options.caustic_only;
-  if (has_indirect_) indirect_ = PhotonIndex(photons, kind_bit(formats::PathKind::indirect), photon_shift);
+  if (has_indirect_) indirect_ = PhotonIndex(photons.photons, kind_bit(formats::PathKind::indirect), photon_shift);
   if (!(options_.max_radius > 0) && indirect_.size() > 0)
     options_.max_radius = PointDensity::kSparser * photon_reach(indirect_, options.neighbours, options_.min_cos, options_.flattening);
   const FootprintOptions density{options.caustic_neighbours, options.caustic_radius, 0};
@@ -18,9 +18,9 @@ PhotonLight::PhotonLight(const Tracer& tracer, std::span<const formats::Photon> 
   if (caustic_->empty()) caustic_.reset();
 }
 
-Rgb PhotonLight::caustic(Vec3 position, Vec3 normal) const {
+Rgb PhotonLight::caustic(Vec3 position, const LitSurface& surface) const {
   float smooth_over;
-  return caustic_ ? caustic_->estimate(position, normal, smooth_over) : Rgb(0.0f);
+  return caustic_ ? caustic_->estimate(position, surface, smooth_over) : Rgb(0.0f);
 }
 
 Rgb PhotonLight::indirect(Vec3 position, Vec3 normal) const {

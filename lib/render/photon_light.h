@@ -25,12 +25,12 @@ class PhotonLight {
  public:
   /// `photon_shift` is added to photon positions to bring them into scene space (the file's origin minus the
   /// frame's).
-  PhotonLight(const Tracer& tracer, std::span<const formats::Photon> photons, Vec3d photon_shift,
+  PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d photon_shift,
               const PhotonLightOptions& options);
 
-  /// Irradiance [W/m^2] by light of kind caustic, on the side of the normal (unit).
-  Rgb caustic(Vec3 position, Vec3 normal) const;
-  /// The same of kind indirect; only if has_indirect().
+  /// Irradiance [W/m^2] by light of kind caustic, on the lit side of the surface.
+  Rgb caustic(Vec3 position, const LitSurface& surface) const;
+  /// The same of kind indirect, on the side of the normal (unit, geometric); only if has_indirect(). Normal maps count by their finest level.
   Rgb indirect(Vec3 position, Vec3 normal) const;
   bool has_indirect() const { return has_indirect_; }
   std::size_t photon_count() const { return (caustic_ ? caustic_->photon_count() : 0) + indirect_.size(); }

@@ -5,8 +5,7 @@
 
 namespace tempolux {
 
-std::vector<formats::Photon> pilot_photons(const Tracer& tracer, const Lights& lights, const std::string& kinds, std::uint64_t paths,
-                                           std::uint64_t seed) {
+formats::PhotonBlock pilot_photons(const Tracer& tracer, const Lights& lights, const std::string& kinds, std::uint64_t paths, std::uint64_t seed) {
   PhotonOptions options;
   options.seed = seed;
   options.photon_count = paths;
@@ -17,9 +16,12 @@ std::vector<formats::Photon> pilot_photons(const Tracer& tracer, const Lights& l
   parallel_chunks(batches.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t b = first; b < last; ++b) batches[b] = photons_of.trace(b);
   });
-  std::vector<formats::Photon> photons;
-  for (const PhotonBatch& batch : batches) photons.insert(photons.end(), batch.block.photons.begin(), batch.block.photons.end());
-  return photons;
+  formats::PhotonBlock all;
+  for (const PhotonBatch& batch : batches) {
+    all.photons.insert(all.photons.end(), batch.block.photons.begin(), batch.block.photons.end());
+    all.directions.insert(all.directions.end(), batch.block.directions.begin(), batch.block.directions.end());
+  }
+  return all;
 }
 
 }  // namespace tempolux

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "formats/photons/photons.h"
 #include "lib/light/lights.h"
@@ -13,7 +12,7 @@ namespace tempolux {
 
 /// Photons of `paths` paths (rounded up to a multiple of PhotonTracer::kBatch), of these kinds as photon-trace --kinds names them,
 /// in the order of their paths. Positions are in the scene's space [m], flux in W. Same photons for any number of threads.
-std::vector<formats::Photon> pilot_photons(const Tracer& tracer, const Lights& lights, const std::string& kinds, std::uint64_t paths,
-                                           std::uint64_t seed);
+formats::PhotonBlock pilot_photons(const Tracer& tracer, const Lights& lights, const std::string& kinds, std::uint64_t paths,
+                                   std::uint64_t seed);
 
 }  // namespace tempolux

@@ -133,7 +133,7 @@ GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer
   GatherPoints result{std::move(placed.points), placed.spacing,
                       caustic ? "direct,caustic,indirect" : "direct,indirect", map.header.history,
                       map.header.emitted_count};
-  estimate_points(tracer, lights, map.photons, shift_of(map.header.origin, frame), options, result.points);
+  estimate_points(tracer, lights, map, shift_of(map.header.origin, frame), options, result.points);
   tool.stats().count("points", double(result.points.size()));
   return result;
 }
@@ -162,12 +162,12 @@ void update_points(Tool& tool, const formats::PhotonMap& fixed, const formats::P
     points.points[i].normal = placed.points[i].normal;
   }
   const Vec3d static_shift = shift_of(fixed.header.origin, frame), dynamic_shift = shift_of(moved.header.origin, frame);
-  counts = tempolux::update_points({whole, standing, lights, fixed.photons, moved.photons, static_shift, dynamic_shift}, options,
+  counts = tempolux::update_points({whole, standing, lights, fixed, moved, static_shift, dynamic_shift}, options,
                                    points.points);
   // What moves has its photons in the dynamic map alone.
-  std::vector<formats::Photon> on_movers;
-  for (const formats::Photon& photon : moved.photons)
-    if (on_mover(photon.object)) on_movers.push_back(photon);
+  formats::PhotonBlock on_movers;
+  for (std::size_t i = 0; i < moved.photons.size(); ++i)
+    if (on_mover(moved.photons[i].object)) append(moved, i, moved.photons[i], on_movers);
   points.points.insert(points.points.end(), own_points, placed.points.end());
   std::vector<std::uint32_t> own;
   for (std::size_t i = standing_count; i < points.points.size(); ++i) own.push_back(std::uint32_t(i));

@@ -66,14 +66,16 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
     const auto wanted = [alone](Vec3, const formats::Photon& photon) { return alone || photon.kind == formats::PathKind::caustic; };
     map = read_photons(tool, name, standing_scene(frame), needed, "static", wanted);
     const formats::PhotonMap dynamic = read_photons(tool, frame_name(options.dynamic, number), frame, needed, "dynamic", wanted);
-    map.photons = whole_photons({map.photons, dynamic.photons, shift(map), shift(dynamic)}, wanted);
+    formats::PhotonBlock whole = whole_photons({map, dynamic, shift(map), shift(dynamic)}, wanted);
+    map.photons = std::move(whole.photons);
+    map.directions = std::move(whole.directions);
     map.header.history += dynamic.header.history;
   }
   history_ = map.header.history;
   tool.stats().phase("index photons", true);
   PhotonLightOptions photon_light = options.photon_light;
   photon_light.caustic_only = !alone;
-  photons_ = std::make_unique<PhotonLight>(tracer, map.photons, moved, photon_light);
+  photons_ = std::make_unique<PhotonLight>(tracer, map, moved, photon_light);
   known_.photons = photons_.get();
 }
 

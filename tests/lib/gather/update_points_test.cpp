@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "lib/gather/whole_photons.h"
 #include "lib/photon/dynamic_map.h"
 #include "tests/support/photons.h"
 #include "tests/support/scenes.h"
@@ -137,6 +138,22 @@ TEST(UpdatePoints, TheSumIsCutAtZeroNotItsParts) {
   }
   // One radius for all where fresh points have their own: blurrer, and at the walls' edges clipped alike.
   EXPECT_NEAR(sum / fresh_sum, 1, 0.02);
+}
+
+/// Directions stay with their photons: of what stands two photons, of which the change takes away the first and brings a third.
+TEST(WholePhotons, DirectionsStayWithTheirPhotons) {
+  const auto photon = [](float x, float flux) { return Photon{{x, 0, 0}, {flux, flux, flux}, {}, 1, formats::PathKind::caustic, 1}; };
+  formats::PhotonBlock fixed, dynamic;
+  fixed.photons = {photon(1, 1), photon(2, 1)};
+  fixed.directions = {{1, 1}, {2, 2}};
+  dynamic.photons = {photon(1, -1), photon(3, 1)};
+  dynamic.directions = {{1, 1}, {3, 3}};
+  const auto all = [](Vec3, const Photon&) { return true; };
+  const formats::PhotonBlock whole = whole_photons({fixed, dynamic, {}, {}}, all);
+  ASSERT_EQ(whole.photons.size(), 2u);
+  ASSERT_EQ(whole.directions.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(float(whole.directions[i][0]), whole.photons[i].position[0]);
+  EXPECT_TRUE(whole_photons({fixed.photons, dynamic, {}, {}}, all).directions.empty()) << "of some only";
 }
 
 }  // namespace

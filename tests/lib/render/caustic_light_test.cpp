@@ -56,9 +56,9 @@ TEST(CausticLight, IsRightOnAPostThinnerThanTheDisc) {
       const float y = (float(i) + 0.5f) / 100, z = kHalf * (float(i * 37 % 100) / 50 - 0.99f);
       const double d2 = 4.0 + double((4 - y) * (4 - y) + z * z), d = std::sqrt(d2);
       expected += pane_transmittance(double(4 - y) / d) * 2 / d / d2;
-      found += double(light.caustic({kNear, y, z}, {-1, 0, 0}).g);
+      found += double(light.caustic({kNear, y, z}, LitSurface(Vec3{-1, 0, 0})).g);
     }
-    for (float z : {-0.04f, 0.0f, 0.04f}) EXPECT_EQ(light.caustic({kFar, 0.5f, z}, {1, 0, 0}).g, 0) << "the far face is dark";
+    for (float z : {-0.04f, 0.0f, 0.04f}) EXPECT_EQ(light.caustic({kFar, 0.5f, z}, LitSurface(Vec3{1, 0, 0})).g, 0) << "the far face is dark";
   }
   EXPECT_NEAR(found / expected, 1, 0.06);
 }
@@ -228,7 +228,7 @@ TEST(CausticLight, IsNothingWithoutItsPhotons) {
   options.caustic_only = true;
   const PhotonLight light(tracer, photons, {}, options);
   EXPECT_EQ(light.photon_count(), 0u);
-  EXPECT_EQ(light.caustic({0, 0, 0}, {0, 1, 0}).g, 0);
+  EXPECT_EQ(light.caustic({0, 0, 0}, LitSurface(Vec3{0, 1, 0})).g, 0);
 }
 
 }  // namespace
