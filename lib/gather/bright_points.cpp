@@ -55,6 +55,10 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
       high_(std::move(high_shares)),
       near_factor_(options.near_factor),
       radius_(points.spacing() * std::sqrt(kInvPi)) {
+  // Rays go on from where a point's indirect light is not that of the hit: what they find there is not the point's light, so that no share of it
+  // may be sampled explicitly.
+  for (std::uint32_t i = 0; i < high_.size(); ++i)
+    if (high_[i] > 0 && !points.is_even_indirect(points.light(i))) high_[i] = 0;
   // A point stands for places up to PointLookup::kReach spacings away.
   NearPoints near(PointLookup::kReach * points.spacing());
   std::vector<std::uint32_t> objects;

@@ -46,7 +46,8 @@ struct BrightLight {
 /// Thread-safe.
 class BrightPoints {
  public:
-  /// high_shares: h_p by point of `points`, in [0, 1]. All must outlive it.
+  /// high_shares: h_p by point of `points`, in [0, 1]; points whose indirect light is not that of their neighbours (PointLookup::is_even_indirect)
+  /// get none. All must outlive it.
   BrightPoints(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::vector<float> high_shares, const BrightOptions& options);
 
   std::size_t spot_count() const { return sites_of_.size(); }

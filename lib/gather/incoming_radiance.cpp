@@ -162,7 +162,7 @@ inline bool IncomingRadiance::is_near(const Met& met, const PointLookup::Light& 
 }
 
 /// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to read there, or by
-/// going on where none stands for the hit or a first hit is near; its other lobes by following one of them. to.further
+/// going on where none stands for the hit, its indirect light is not that of the hit, or a first hit is near; its other lobes by following one of them. to.further
 /// receives the ray that goes on from a Lambert lobe, if any.
 Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                                 const Gathered& to) const {
@@ -180,7 +180,8 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   Rgb result{0.0f};
   if (bsdf.has_diffuse()) {
     const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
-    if (point && (depth > 0 || !is_near(met, *point, random))) {
+    const bool near = point && depth == 0 && is_near(met, *point, random);
+    if (point && !near && points_.is_even_indirect(*point)) {
       ++to.counts.points_read;
       const bool even = points_.is_even(*point);
       if (source) source->partial |= !even;
@@ -189,7 +190,8 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
       if (const float told = channel_sum(from.weight * result); source && source->near && told > source->told)
         source->point = point->point, source->told = told;
     } else {
-      result = scale * scattered(met, point, from, scale, random, depth, to);
+      const Rgb kept = scale * (from.low && point && !near ? bright_->left(*point, met.distance) : 1.0f);
+      result = kept * scattered(met, point, from, kept, random, depth, to);
       if (source) source->partial = true;
       if (source && depth == 0 && point) source->near = true, source->told = channel_sum(result);
     }
@@ -275,8 +277,8 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
   return light;
 }
 
-/// Irradiance at a hit but for what arrives along the ray that goes on, which to.further receives. Near hits take caustic light
-/// from the point that stands for them; direct light too, which is known to the spacing of the points instead of an estimate's
+/// Irradiance at a hit but for what arrives along the ray that goes on, which to.further receives. Hits take caustic light
+/// from the point that stands for them, if one does; direct light too, which is known to the spacing of the points instead of an estimate's
 /// radius, if they are farther than about that; else by light sampling. Without a point all but direct light is the ray's.
 Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale,
                                 const PathRandom& random, int depth, const Gathered& to) const {

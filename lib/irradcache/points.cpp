@@ -18,6 +18,8 @@ constexpr int kCellBits = 19;                ///< of a cell's number along an ax
 constexpr float kRounding = 0x1p-20f;        ///< of coordinates
 
 constexpr float kBeside = 1.5f;              ///< spacings: how far off the neighbours are that are compared
+constexpr double kPhotons = 50;               ///< of an estimate: PointOptions::neighbours as it is shipped
+constexpr double kSure = 3;                   ///< standard errors
 constexpr float kOnePlane = 0.95f;           ///< cosine between normals: what faces elsewhere is not in a shadow's edge
 
 /// 3 bits of each octahedral coordinate.
@@ -66,6 +68,7 @@ PointLookup::PointLookup(std::span<const IrradiancePoint> points, float spacing,
   std::vector<formats::Photon> as_photons(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const IrradiancePoint& p = points[i];
+    widest_ = std::max(widest_, p.radius);
     as_photons[i].position = {p.position.x, p.position.y, p.position.z};
     as_photons[i].normal = formats::encode_normal({p.normal.x, p.normal.y, p.normal.z});
     lights_[i].position = p.position;
@@ -129,21 +132,44 @@ const PointLookup::Light* PointLookup::search(const Question& q) const {
   return nullptr;
 }
 
-bool PointLookup::compare_neighbours(const Light& light) const {
+bool PointLookup::apart(const IrradiancePoint& bright, const IrradiancePoint& dark) const {
+  if (!(bright.radius > 0 && bright.radius < widest_)) return false;
+  const double there = double(channel_sum(bright.indirect)), here = double(channel_sum(dark.indirect));
+  const double wider = double(dark.radius > 0 ? dark.radius : widest_) / double(bright.radius);
+  const double one = there / (kPhotons * wider * wider), c = kContrastOfIndirect;
+  const double beyond = there - c * here;
+  return beyond > 0 && beyond * beyond > kSure * kSure * (there * there / kPhotons + c * c * (here * one + one * one));
+}
+
+std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
   thread_local NeighbourList found;
   PhotonQuery query = facing(light.position, light.normal, kOnePlane);
   query.max_radius = kBeside * spacing_;
   index_.find_within(query, found);
-  float least = INFINITY, most = 0;
-  for (const std::uint32_t i : found.photons()) {
-    if (index_.source(i) == light.point) continue;
-    const float direct = channel_sum(points_[index_.source(i)].direct);
-    least = std::min(least, direct);
-    most = std::max(most, direct);
+  struct Range {
+    float least = INFINITY, most = 0;
+    void add(Rgb light) {
+      least = std::min(least, channel_sum(light));
+      most = std::max(most, channel_sum(light));
+    }
+    bool even() const { return !(least * kContrast < most); }
+  } direct, indirect;
+  thread_local std::vector<std::uint32_t> beside;
+  beside.clear();
+  for (const std::uint32_t i : found.photons())
+    if (index_.source(i) != light.point) beside.push_back(index_.source(i));
+  for (const std::uint32_t i : beside) {
+    direct.add(points_[i].direct);
+    indirect.add(points_[i].indirect);
   }
-  const bool even = !(least * kContrast < most);
-  light.even.store(even ? kEven : kUneven, std::memory_order_relaxed);
-  return even;
+  // What hides behind this surface, as the outer leaf of a double wall, tells nothing of it: another object, as a rule.
+  std::erase_if(beside, [&](std::uint32_t i) { return points_[i].object != points_[light.point].object; });
+  const bool torn = !indirect.even() && std::any_of(beside.begin(), beside.end(), [&](std::uint32_t bright) {
+    return std::any_of(beside.begin(), beside.end(), [&](std::uint32_t dark) { return apart(points_[bright], points_[dark]); });
+  });
+  const auto uneven = std::uint8_t(kKnown | (direct.even() ? 0 : kDirect) | (torn ? kIndirect : 0));
+  light.uneven.store(uneven, std::memory_order_relaxed);
+  return uneven;
 }
 
 /// Where the first place of the table does not tell: a further one does, or the cell is searched and remembered.

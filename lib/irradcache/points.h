@@ -48,7 +48,7 @@ class PointLookup {
     float radius = 0;         ///< as IrradiancePoint's
     std::uint32_t point = 0;  ///< index of the IrradiancePoint
     mutable std::array<std::atomic<std::uint64_t>, 2> clearance{};   ///< Clearance::shares; kNotLooked: either
-    mutable std::atomic<std::uint8_t> even{kNotAsked};
+    mutable std::atomic<std::uint8_t> uneven{kNotAsked};
   };
 
   /// spacing: mean distance of neighbouring points, m, > 0. Keeps the span; it must outlive this. Without a test a point
@@ -76,29 +76,46 @@ class PointLookup {
   }
   std::size_t size() const { return points_.size(); }
   float spacing() const { return spacing_; }
+  /// Of point number `point`.
+  const Light& light(std::uint32_t point) const { return lights_[point]; }
   const IrradiancePoint& point(const Light& read) const { return points_[read.point]; }
   std::span<const IrradiancePoint> points() const { return points_; }
-  /// Is the direct light of a point that of the places near it? Not where some of the points beside it (within 1.5 spacings)
-  /// get kContrast times the direct light of others: there a shadow or a bright spot ends, and a hit is to sample direct light
-  /// itself. Read instead, light would reach a spacing into shadows and out of gaps, where much of what sees it is: the ground in
-  /// a chair's shadow is seen by the chair. A point's own light has no say in it: it is known by a few shadow rays, and were
-  /// those that came out bright replaced, what is read would be dark in the mean.
-  bool is_even(const Light& light) const {
-    const std::uint8_t known = light.even.load(std::memory_order_relaxed);
-    return known == kNotAsked ? compare_neighbours(light) : known == kEven;
-  }
+  /// Is a point's light of a kind that of the places near it? Not where some of the points beside it (within 1.5 spacings)
+  /// get kContrast times as much of it as others, of indirect light surely kContrastOfIndirect times (apart()): there a shadow or a bright spot ends.
+  /// Direct light: a hit is to sample it itself. Read instead, light would reach a spacing into shadows and out of gaps, where much
+  /// of what sees it is: the ground in a chair's shadow is seen by the chair.
+  /// Indirect light (beside points of the same object alone): a ray is to go on from the hit. A lamp a finger below the ceiling lights the gap behind it a hundred times
+  /// as strongly as what is seen of the ceiling; read instead, that light would reach a spacing out of the gap.
+  /// A point's own light has no say in it: it is known by a few shadow rays or photons, and were those that came out bright
+  /// replaced, what is read would be dark in the mean.
+  bool is_even(const Light& light) const { return !(unevenness(light) & kDirect); }
+  bool is_even_indirect(const Light& light) const { return !(unevenness(light) & kIndirect); }
   static constexpr float kContrast = 8;
+  /// A ray that goes on costs several that are read, and what leaks from a place of moderate contrast is little. With 8 instead of 32 S8's frame took 17 %
+  /// and S4's records 11 % more CPU at the same error; CornellBox's gap has 100.
+  static constexpr float kContrastOfIndirect = 32;
+  /// Is indirect light at `bright` that many times what it is at `dark`, by three standard errors? An estimate of k = PointOptions::neighbours
+  /// photons errs by 1 / sqrt(k) of itself; one that found fewer has the widest radius of all, and does not say how many: as `bright` it
+  /// proves nothing. As `dark` it is taken for one of photons like those of `bright`: each adds e = E_bright r_bright^2 / (k r_dark^2), and the
+  /// variance of n of them is (n + 1) e^2 (one more, as none found does not prove that there is none):
+  ///     E_bright - c E_dark > 3 sqrt(E_bright^2 / k + c^2 (E_dark e + e^2)),   c = kContrastOfIndirect
+  bool apart(const IrradiancePoint& bright, const IrradiancePoint& dark) const;
 
   static constexpr float kReach = 2;   ///< spacings: farther off no point stands for a hit
 
  private:
-  static constexpr std::uint8_t kNotAsked = 0, kEven = 1, kUneven = 2;
+  static constexpr std::uint8_t kNotAsked = 0, kKnown = 1, kDirect = 2, kIndirect = 4;   ///< of Light::uneven: the last two are bits beside kKnown
   static constexpr std::uint64_t kNotLooked = 0;   ///< eight spokes of no length are kept as one of 1/255
   struct Entry {
     std::atomic<std::uint64_t> cell{0};
     std::atomic<std::uint32_t> answer{0};   ///< Answer::value + 1; 0: not there yet
   };
-  bool compare_neighbours(const Light& light) const;
+  std::uint8_t unevenness(const Light& light) const {
+    const std::uint8_t known = light.uneven.load(std::memory_order_relaxed);
+    return known == kNotAsked ? compare_neighbours(light) : known;
+  }
+  float widest_ = 0;                             ///< m: of the points' radii
+  std::uint8_t compare_neighbours(const Light& light) const;
   bool stands_for(const Light& light, const Question& question) const;
   Answer answer_anew(const Question& question) const;
   std::uint32_t search_cell(std::uint64_t cell) const;

@@ -23,7 +23,7 @@ std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geomet
 std::optional<KnownLight::Told> KnownLight::told(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {
   if (!points) return std::nullopt;
   const PointLookup::Light* light = points->find(hit.position, geometric);
-  if (!light || distance < kNear * light->radius * (0.5f + u)) return std::nullopt;
+  if (!light || !points->is_even_indirect(*light) || distance < kNear * light->radius * (0.5f + u)) return std::nullopt;
   if (points->is_even(*light)) return Told{light->all};
   const IrradiancePoint& point = points->point(*light);
   return Told{point.indirect + point.caustic, false};

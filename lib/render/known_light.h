@@ -43,7 +43,7 @@ class KnownLight {
     Rgb irradiance{0.0f};
     bool direct = true;   ///< of all kinds; else of all but direct: where the border of a shadow runs paths sample that themselves
   };
-  /// At a hit `distance` m along the way from the last Lambert lobe; none where no point stands for it,
+  /// At a hit `distance` m along the way from the last Lambert lobe; none where no point stands for it or its indirect light is not that of the hit,
   /// or where it is so near that the blur of the points would be seen: nearer than about kNear radii of the estimate behind it.
   /// u in [0, 1) moves that limit between half and one and a half of it, so that it shows no seam.
   std::optional<Told> told(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;

@@ -253,5 +253,46 @@ TEST(FinalGather, ShadowsEndWhereTheyEndNotWhereThePointsDo) {
   EXPECT_NEAR(mean / exact, 1, 0.02);
 }
 
+/// A black plate of half-width 0.5, 0.01 above a wide floor. The points of the floor, 0.25 apart, say that indirect light of 1 arrives
+/// under the plate and none elsewhere, as a lamp does that hangs close below a ceiling. From 1 above one sees only floor on which
+/// none arrives: 0. Were points read where they change, light would come from 0.12 around the plate, of a share
+/// share(0.62) - share(0.5) = 0.10 of the hemisphere. From between plate and floor all that is seen is lit: rho, exactly, but for
+/// 0.04 % of the rays that come out beyond 0.5 (sin^2 > 1 - (0.01 / 0.5)^2) or near there are traced on.
+TEST(FinalGather, LightInAGapStaysThere) {
+  constexpr float gap = 0.01f, half = 0.5f, wide = 5, step = 0.25f, rho = 0.5f;
+  HandMadeScene scene;
+  scene.add_quad({-half, gap, -half}, {-half, gap, half}, {half, gap, half}, {half, gap, -half}, matte(Rgb(0.0f)));
+  scene.add_quad({-wide, 0, -wide}, {-wide, 0, wide}, {wide, 0, wide}, {wide, 0, -wide}, matte(Rgb(rho)));
+  const SceneFrame& frame = scene.frame();
+  std::vector<IrradiancePoint> points;
+  for (float x = 0.01f; x < wide; x += step)
+    for (float z = 0.01f; z < wide; z += step)
+      for (const Vec3 p : {Vec3{x, 0, z}, Vec3{-x, 0, z}, Vec3{x, 0, -z}, Vec3{-x, 0, -z}}) {
+        IrradiancePoint point;
+        point.position = p;
+        point.normal = {0, 1, 0};
+        point.object = frame.surfaces[1].object;
+        const bool lit = x < half && z < half;
+        point.radius = lit ? 1e-4f : 1e-3f;   // none of many photons
+        point.indirect = Rgb(lit ? 1.0f : 0.0f);
+        points.push_back(point);
+      }
+  const Tracer tracer(frame);
+  const Lights lights(frame, build_emission_table({&frame, 1}));
+  const PointLookup lookup(points, step);
+  const auto seen_from = [&](float height) {
+    SurfacePoint from;
+    from.position = {0, height, 0};
+    from.normal = from.normal_geometric = {0, -1, 0};
+    from.offset = 1e-6f;
+    GatherOptions options;
+    options.rays = 4000;
+    GatherCounts counts;
+    return FinalGather(tracer, lights, lookup, options).gather(from, {0, -1, 0}, counts).irradiance.g;
+  };
+  EXPECT_EQ(seen_from(1), 0);
+  EXPECT_NEAR(seen_from(gap / 2) / rho, 1, 0.002);
+}
+
 }  // namespace
 }  // namespace tempolux
