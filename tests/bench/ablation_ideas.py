@@ -59,7 +59,7 @@ IDEAS = (
          (("lib/gather/final_gather.h", "float near_factor = 2;", "float near_factor = 0;"),
           ("lib/render/known_light.h", "static constexpr float kNear = 2;", "static constexpr float kNear = 0;"))),
     Idea("shadow borders", "where points side by side have direct light that differs eightfold it is sampled instead", "points",
-         (("lib/irradcache/points.cpp", "const bool even = !(least * kContrast < most);", "const bool even = !(least * kContrast < most) || least < INFINITY;"),)),
+         (("lib/irradcache/points.cpp", "bool even() const { return !(least * kContrast < most); }", "bool even() const { return true; }"),)),
     Idea("answers by cell", "which point answers in a cell of half a spacing is found once", "points",
          (("lib/irradcache/points.cpp", "  std::size_t slot = mix64(q.cell) & mask_;\n  for (", "  std::size_t slot = mix64(q.cell) & mask_;\n  if (mask_ > 0) return {search_cell(q.cell)};\n  for ("),)),
     # ---- records
