@@ -21,6 +21,7 @@
 #include "lib/plan/plan_files.h"
 #include "lib/render/choose_caustics.h"
 #include "lib/render/choose_indirect.h"
+#include "lib/render/choose_photons.h"
 #include "lib/render/choose_moving.h"
 #include "lib/render/choose_split.h"
 #include "lib/render/learn_lights.h"
@@ -56,6 +57,7 @@ struct Options {
   std::string scene, folder = "plan", tidy_folder, indirect = "auto", moving = "auto", split = "auto";
   double tidy_hours = 24, pixel_error = 0.016;
   int rays = 500;
+  std::uint64_t photons = 700'000;
   bool estimate = false, json = false;
   int jobs = 1;
   tools::RunOptions run;
@@ -87,17 +89,22 @@ void write_plan(tools::Tool& tool, const Plan& plan, const std::vector<std::stri
   tool.stats().count("state_files_changed", double(changed));
 }
 
-/// Paths, beside a map of caustic photons if that pays, or gathering if paths do not find what indirect light there is.
-void decide_beside_paths(const Tracer& tracer, tools::SceneInput& input, const CameraView& view, const IndirectPilot& paths, const IndirectChoice& choice, Plan& plan) {
+/// body(lights): they aim photons where the camera looks, as those of photon-trace.
+template <class Body>
+void with_aimed_lights(const Tracer& tracer, tools::SceneInput& input, const CameraView& view, const Body& body) {
   EmissionTable emission = input.emission(tracer.frame().frame);
   std::vector<WeighedPlace> places;
   add_seen_places(tracer, view, 0, places);
   emission.aim = tools::spheres_in_scene(spheres_around(places, emission.sphere_radius), tracer.frame().origin);
-  const Lights lights(tracer.frame(), emission);   // photons are aimed where the camera looks, as photon-trace aims them
-  const SeenPhotons caustic = see_photons({tracer, lights}, view, "caustic", 0);
+  body(Lights(tracer.frame(), emission));
+}
+
+/// Paths, beside a map of caustic photons if that pays, or what photons ask for if paths do not find what indirect light there is.
+void decide_beside_paths(const RenderScene& scene, const CameraView& view, const IndirectPilot& paths, const IndirectChoice& choice, Plan& plan) {
+  const SeenPhotons caustic = see_photons(scene, view, "caustic", 0);
   const CausticChoice map = choose_caustics(paths, caustic);
   if (map.map) {
-    const IndirectChoice beside = choose_beside_caustics(paths, caustic, see_photons({tracer, lights}, view, "indirect", 0));
+    const IndirectChoice beside = choose_beside_caustics(paths, caustic, see_photons(scene, view, "indirect", 0));
     if (beside.method != IndirectMethod::paths) return use_indirect(plan, kIndirectMethods[std::size_t(beside.method)], beside.because);
   }
   use_indirect(plan, "paths", choice.because + "; " + map.because, map.map);
@@ -120,8 +127,12 @@ bool decide_by_pilot(tools::SceneInput& input, const Options& options, int camer
   } else if (choice.method != IndirectMethod::paths || plan.photon_kinds.find("caustic") == std::string::npos) {
     use_indirect(plan, method, choice.because);
   } else {
-    decide_beside_paths(tracer, input, view, pilot, choice, plan);
+    with_aimed_lights(tracer, input, view, [&](const Lights& aimed) { decide_beside_paths({tracer, aimed}, view, pilot, choice, plan); });
   }
+  if (plan.indirect != "paths" && lights.has_distant())
+    with_aimed_lights(tracer, input, view, [&](const Lights& aimed) {
+      plan.photon_paths = photon_paths(pilot_arrivals({tracer, aimed}, plan.photon_kinds, 0), options.photons);
+    });
   return true;
 }
 
@@ -130,6 +141,7 @@ void decide_indirect(tools::Tool& tool, tools::SceneInput& input, const Options&
   plan.learn_lights = !plan.photon_kinds.empty();
   if (plan.photon_kinds.empty()) return;
   plan.record_rays = options.rays;
+  plan.photon_paths = options.photons;
   if (options.indirect != "auto") return use_indirect(plan, options.indirect, "--indirect " + options.indirect);
   tool.stats().phase("pilot", true);
   std::vector<int> numbers{plan.frames[plan.frames.size() / 2]};
@@ -245,6 +257,8 @@ int main(int argc, char** argv) {
   app.add_option("--rays", options.rays, "gather rays of a record (irradcache-build records --rays) at most")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 20));
+  tool.count_option("--photons", options.photons,
+                    "paths of light of a photon map (photon-trace --photons); up to 16 times as many where a pilot finds that few of them arrive");
   app.add_option("--moving", options.moving,
                  "what of a frame's light follows from that of what stands, where something moves: anew (nothing), light (photons and "
                  "points), records (they, too), time (photons and points; records keep their incoming light from frame to frame); auto: the cheapest by a pilot")

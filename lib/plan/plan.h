@@ -77,6 +77,7 @@ struct Plan {
   std::string photon_kinds;         ///< what photon-trace has to record: "caustic,indirect"; "" if no photons
   /// How indirect light is found: "records", "gather" (in the pixel) or "paths". The last two leave out stages.
   std::string indirect = "records";
+  std::uint64_t photon_paths = 700'000;   ///< of a photon map, photon-trace --photons
   int record_rays = 500;            ///< gather rays of a record, irradcache-build records --rays
   /// What of each state of light follows from that of what stands: "anew" (nothing), "light" (photons and points), "records" (they,
   /// too) or "time" (photons and points; records from those of the state before in the segment).

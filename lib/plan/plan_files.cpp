@@ -122,6 +122,7 @@ std::string plan_json(const Plan& plan, const std::string& scene_name, const std
                {"frames", plan.frames},
                {"photon_kinds", plan.photon_kinds},
                {"indirect", photons ? plan.indirect : "paths"},
+               {"paths", plan.photon_paths},
                {"rays", plan.record_rays},
                {"moving", photons ? plan.moving : "anew"},
                {"split", plan.split},
@@ -157,6 +158,7 @@ std::string plan_makefile(const Plan& plan, const std::string& folder,
   text += variable("plan_frames", plan.frames) + variable("plan_pictures", pictures);
   text += variable("plan_photons", photon_frames) + "plan_kinds := " + plan.photon_kinds + "\n";
   text += "plan_indirect := " + (photons ? plan.indirect : "paths") + "\n";
+  text += "plan_paths := " + std::to_string(plan.photon_paths) + "\n";
   text += "plan_rays := " + std::to_string(plan.record_rays) + "\n";
   text += "plan_moving := " + (photons ? plan.moving : "anew") + "\n";
   text += std::string("plan_method := ") + (plan.walkthrough ? "walkthrough" : "frames") + "\n";

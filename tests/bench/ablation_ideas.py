@@ -53,6 +53,8 @@ IDEAS = (
     # ---- photons and points
     Idea("photons by importance", "photons of suns and skies start where cameras look", "photons",
          (("lib/render/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),
+    Idea("more photons", "up to 16 times as many photon paths where few of them arrive", "photons",
+         (("pipelines/quality.mk", "LIGHT   = 700k\nPHOTONS = $(or $(plan_paths),$(LIGHT))", "LIGHT   = 700k\nPHOTONS = $(LIGHT)"),)),
     Idea("points by importance", "points lie where cameras look", "points",
          (("lib/gather/irradiance_points.cpp", "if (seen.empty()) return {};\n  std::vector<double> standing", "if (seen.size() < 1000000) return {};\n  std::vector<double> standing"),)),
     Idea("near hits go on", "rays that end nearer than two radii of an estimate go on for a bounce", "points",
@@ -94,5 +96,5 @@ IDEAS = (
          (("lib/gather/final_gather.cpp", "  record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);",
            "  if (!(length2(lit) > 0)) record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);"),)),
     Idea("rays of records by a pilot", "scene-plan finds how many rays records need", "cache",
-         (("pipelines/quality.mk", "else\nPHOTONS = 700k\nCACHE   = --rays $(or $(plan_rays),$(RAYS))", "else\nPHOTONS = 700k\nCACHE   = --rays $(RAYS)"),)),
+         (("pipelines/quality.mk", "$(LIGHT))\nCACHE   = --rays $(or $(plan_rays),$(RAYS))\n", "$(LIGHT))\nCACHE   = --rays $(RAYS)\n"),)),
 )

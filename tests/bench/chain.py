@@ -31,7 +31,7 @@ def final(project):
     values = dict(re.findall(r"^([A-Z]+) *= *([^#\n]*?) *(?:#.*)?$", block, re.M))
     for name, value in values.items():
         values[name] = value.replace("$(or $(plan_rays),$(RAYS))", values["RAYS"]).replace("$(ERROR)", values["ERROR"])
-    count = values["PHOTONS"]
+    count = values["LIGHT"]
     photons = int(count.rstrip("kM")) * {"k": 10**3, "M": 10**6}.get(count[-1], 1)
     return Settings(photons, *(tuple(values.get(name, "").split()) for name in ("POINTS", "CACHE", "PIXELS")), steps=True)
 

@@ -318,6 +318,7 @@ TEST(PlanMakefile, SaysWhichPhotonsHoldForAFrameAndWhatTheyDependOn) {
             "plan_photons := 0001\n"
             "plan_kinds := indirect\n"
             "plan_indirect := records\n"
+            "plan_paths := 700000\n"
             "plan_rays := 500\n"
             "plan_moving := anew\n"
             "plan_method := frames\n"
