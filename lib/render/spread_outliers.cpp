@@ -84,7 +84,12 @@ void blur_line(double* values, int count, std::size_t step, int r, std::vector<d
   };
   sums.resize(std::size_t(count + 2 * r + 1));
   line.resize(std::size_t(count));
-  for (int i = 0; i < count; ++i) line[std::size_t(i)] = values[std::size_t(i) * step];
+  bool empty = true;   // most are, of few outliers
+  for (int i = 0; i < count; ++i) {
+    line[std::size_t(i)] = values[std::size_t(i) * step];
+    empty = empty && line[std::size_t(i)] == 0;
+  }
+  if (empty) return;
   for (int pass = 0; pass < 3; ++pass) {
     sums[0] = 0;
     for (int i = 0; i < count + 2 * r; ++i) sums[std::size_t(i) + 1] = sums[std::size_t(i)] + line[std::size_t(mirrored(i - r))];
@@ -148,7 +153,8 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
 void BrightestSample::note(const Layers& sample, bool specular_alone) {
   for (const Layer of : {Layer::specular, Layer::direct, Layer::caustic, Layer::indirect, Layer::volume}) {
     if (specular_alone && of != Layer::specular) continue;
-    if (channel_sum(sample[of]) > channel_sum(radiance)) {
+    if (const float sum = channel_sum(sample[of]); sum > brightest) {
+      brightest = sum;
       radiance = sample[of];
       layer = of;
     }

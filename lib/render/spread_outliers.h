@@ -13,6 +13,7 @@ namespace tempolux {
 /// sees itself has edges, no outliers.
 struct BrightestSample {
   Rgb radiance{0.0f};              ///< W/m^2/sr
+  float brightest = 0;             ///< sum of its channels
   Layer layer = Layer::specular;
   /// layers: of which to note samples; for a frame that will be filtered layer specular alone.
   void note(const Layers& sample, bool specular_alone);
