@@ -110,7 +110,7 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   });
 }
 
-/// Spreads what `excess` names (one level of one layer): w blur(excess / blur(w)), whose sum is that of `excess` for any weights w.
+/// Spreads what `excess` names (one level of one layer): w blur(excess / blur(w)), whose sum is that of `excess` for any weights w, here 0 and 1.
 void spread(std::span<const Excess> excess, int width, int height, const std::vector<double>& weight, const std::vector<double>& blurred,
             std::vector<Layers>& pixels) {
   const int r = 1 << excess.front().level;
@@ -127,20 +127,6 @@ void spread(std::span<const Excess> excess, int width, int height, const std::ve
     for (std::size_t p = 0; p < pixels.size(); ++p)
       if (weight[p] > 0) pixels[p].value[layer][c] = float(double(pixels[p].value[layer][c]) + weight[p] * std::max(0.0, given[p]));
   }
-}
-
-/// How much of what is spread a pixel gets: by the light of that layer around it and what it may err, so that no share of it is large where little is shown.
-std::vector<double> weights_of(const SampledPixels& samples, const std::vector<Layers>& pixels, const std::vector<double>& errors, Layer layer) {
-  std::vector<double> shown(pixels.size()), weights(pixels.size());
-  for (std::size_t p = 0; p < pixels.size(); ++p) shown[p] = std::max(0.0, channel_mean(Rgbd(pixels[p][layer])));
-  parallel_chunks(pixels.size() / std::size_t(samples.width), 1, [&](std::size_t y, std::size_t) {
-    for (int x = 0; x < samples.width; ++x) {
-      const std::size_t p = y * std::size_t(samples.width) + std::size_t(x);
-      if (!(pixels[p].coverage > 0) || !samples.takes_part(p)) continue;
-      weights[p] = errors[p] + around(samples.width, samples.height, x, int(y), [&](std::size_t q) { return shown[q]; });
-    }
-  });
-  return weights;
 }
 
 void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, double error, int x, int y, int last, std::vector<Excess>& found) {
@@ -178,8 +164,7 @@ void BrightestSample::note(const Layers& sample, bool specular_alone) {
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels) {
   const int width = samples.width, height = samples.height, last = last_level(width, height);
   std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
-  std::vector<double> radiances = radiances_of(pixels);
-  const std::vector<double> errors = errors_of(samples, radiances);
+  const std::vector<double> radiances = radiances_of(pixels), errors = errors_of(samples, radiances);
   parallel_chunks(by_row.size(), 1, [&](std::size_t y, std::size_t) {
     for (int x = 0; x < width; ++x) excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), last, by_row[y]);
   });
@@ -189,22 +174,21 @@ double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels
   const double light = std::accumulate(radiances.begin(), radiances.end(), 0.0);
   double moved = 0;
   for (const Excess& e : all) {
-    const double taken = channel_mean(e.radiance);
-    moved += taken;
-    radiances[e.pixel] = std::max(0.0, radiances[e.pixel] - taken);
+    moved += channel_mean(e.radiance);
     for (int c = 0; c < 3; ++c) {
       float& value = pixels[e.pixel][e.layer][c];
       value = float(double(value) - e.radiance[c]);
     }
   }
-  const std::vector<double> left = errors_of(samples, radiances);
-  std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) { return a.layer != b.layer ? a.layer < b.layer : a.level < b.level; });
-  std::vector<double> weight, blurred;
+  std::vector<double> weight(pixels.size()), blurred;
+  for (std::size_t p = 0; p < pixels.size(); ++p) weight[p] = pixels[p].coverage > 0 && samples.takes_part(p) ? 1 : 0;
+  std::stable_sort(all.begin(), all.end(), [](const Excess& a, const Excess& b) { return a.level != b.level ? a.level < b.level : a.layer < b.layer; });
   for (std::size_t first = 0, end; first < all.size(); first = end) {
     for (end = first; end < all.size() && all[end].level == all[first].level && all[end].layer == all[first].layer;) ++end;
-    if (first == 0 || all[first].layer != all[first - 1].layer) weight = weights_of(samples, pixels, left, all[first].layer);
-    blurred = weight;
-    blur(blurred, width, height, 1 << all[first].level);
+    if (first == 0 || all[first].level != all[first - 1].level) {
+      blurred = weight;
+      blur(blurred, width, height, 1 << all[first].level);
+    }
     spread({all.data() + first, end - first}, width, height, weight, blurred, pixels);
   }
   return light > 0 ? moved / light : 0;

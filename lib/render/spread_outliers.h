@@ -43,7 +43,7 @@ struct SampledPixels {
 /// Energy-preserving filter of outliers [Rushmeier, Ward: Energy preserving non-linear filters, SIGGRAPH 1994]: docs/methods/outliers.md.
 /// A sample may claim for its pixel what the pixel may err and what its other samples, or the 24 pixels around, show in that layer, whichever is more.
 /// What it claims beyond is taken out of `pixels` (sums of parts) and spread over as many pixels around as it takes to be below
-/// the pixel's error in each, in proportion to what they show in that layer and may err; where nothing is seen (coverage 0) none arrives. Sums of layers over the
+/// the pixel's error in each; where nothing is seen (coverage 0) none arrives. Sums of layers over the
 /// picture stay, but for rounding.
 /// Returns the share of the picture's light that was spread.
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels);
