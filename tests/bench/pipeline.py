@@ -9,7 +9,7 @@ import subprocess
 from pathlib import Path
 
 # Folders of OUT by the part of the work that tables show.
-STAGES = {"photons": ("photons", "stands", "moved"), "points": ("points", "stands_points", "split"),
+STAGES = {"photons": ("photons", "stands", "moved", "refined"), "points": ("points", "stands_points", "split"),
           "cache": ("cache", "stands_cache", "kept", "textures"),
           "frames": ("lights", "keys", "walk", "walked", "raw", "filtered", "pictures", "smoky")}
 
