@@ -63,8 +63,8 @@ done
 tools=$(realpath "$bin") top=$PWD
 make -f Makefile.example --no-print-directory demo BIN="$tools" METHOD=walkthrough SCENE=pipelines/scenes/S4_atrium.glb SIZE=320x180 OUT="$work/walk"
 every_fourth=$(for f in $(seq 0 4 44); do printf '%s/walk/frames/%04d.exr ' "$work" "$f"; done)
-marks=$(cd "$work/walk" && sh "$top/pipelines/walkthrough.sh" keys | tr , '\n' | while read -r key; do
-  case " $every_fourth " in *" $work/walk/$key "*) echo "$work/walk/$key";; esac; done | paste -sd,)
+marks=$(awk '!/split$/ { print $1; print $2 } /split$/ { print $4 }' "$work/walk/walk.log" | sort -u | while read -r key; do
+  case " $every_fourth " in *"/$key.exr "*) echo "$work/walk/frames/$key.exr";; esac; done | paste -sd,)
 # shellcheck disable=SC2086
 exposure=$(cat "$work"/walk/shown/exposure-*)
 "$info" --sheet $out/walkthrough.png --columns 4 --tile 160 --mark "$marks" --exposure "$exposure" $every_fourth

@@ -49,7 +49,7 @@ def made_files(out):
 
 
 def count_of(out):
-    """How many processes the plan has, by part of the work."""
+    """How many processes the plan has, by part of the work; of a walkthrough at most so many."""
     folders = [name.split("/")[0] for name in made_files(out)]
     return {stage: sum(folder in of for folder in folders) for stage, of in STAGES.items()}
 
