@@ -289,7 +289,8 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--lights", options.lights, ".lightgrid file, or a pattern: what --learn-lights has learned before, in place of learning it for each frame")
       ->type_name("FILE");
   app.add_flag("--halves", options.frame.halves,
-               "also write NAME_a.exr and NAME_b.exr: independent halves of spp/2 samples each");
+               "also write NAME_a.exr and NAME_b.exr: halves of spp/2 samples each, independent of each other and of frames without "
+               "--halves, of the same --seed too");
   app.add_option("--target-error", options.frame.target_error,
                  "double the samples until the estimated RMSE is below this fraction of the mean; 0: off")
       ->capture_default_str()->check(tools::number_between(0));

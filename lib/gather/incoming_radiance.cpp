@@ -187,13 +187,10 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
       if (source) source->partial |= !even;
       result = scale * (even ? point->all : beside_edge(met, *point, random, to.counts));
       if (from.low) result *= bright_->left(*point, met.distance);
-      if (const float told = channel_sum(from.weight * result); source && source->near && told > source->told)
-        source->point = point->point, source->told = told;
     } else {
       const Rgb kept = scale * (from.low && point && !near ? bright_->left(*point, met.distance) : 1.0f);
       result = kept * scattered(met, point, from, kept, random, depth, to);
       if (source) source->partial = true;
-      if (source && depth == 0 && point) source->near = true, source->told = channel_sum(result);
     }
   }
   if (!specular || depth >= kDeepest) return result;

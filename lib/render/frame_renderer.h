@@ -15,7 +15,8 @@ namespace tempolux {
 struct FrameOptions {
   std::uint64_t seed = 0;
   int samples = 16;                     ///< per pixel; with halves even: half of them in each
-  bool halves = false;                  ///< keep two independent halves apart
+  /// Keep two halves apart, independent of each other and of any frame without halves, whatever its seed: a reference.
+  bool halves = false;
   double target_error = 0;              ///< > 0: double the samples until the estimated relative RMSE is below
   int max_samples = 1 << 20;            ///< never more than this for target_error
   /// > 0: after `samples` everywhere, more where pixels are uncertain (lib/render/adaptive_frame.h).
