@@ -3,10 +3,10 @@
 
 Run at the top of the tree; BIN is the folder with the tools. Each step changes one or two of METHOD, FILTER, MOVING, SPLIT, QUALITY, FRAMES,
 SIZE, CAMERA, POINTS, the length of a segment, or edits the scene, a texture, the environment, the smoke or a tool, or returns to an earlier
-state. Then make runs in the one OUT. Every wanted file (frames/F.exr and .png, sheet.png) must be what a new OUT gets for that state; a state
+state, or loses files of OUT. Then make runs in the one OUT. Every wanted file (frames/F.exr and .png, sheet.png) must be what a new OUT gets for that state; a state
 is made anew once.
 
-What ran is compared, too. A command is too much if all files it wrote were there with the same digest, or if a new OUT has none of them.
+What ran is compared, too. A command is too much if all it wrote was there with the same digest for that frame, or if a new OUT has none of it.
 A second make at once must run nothing but scene-plan. At most 5 % of the commands may be too much; they are listed.
 
 A failure prints the shortest list of states that shows it; --replay FILE walks such a list again. --known walks the lists that went wrong once.
@@ -24,13 +24,14 @@ import subprocess
 import sys
 import tempfile
 import time
+import zlib
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import walk_scenes                                                                   # noqa: E402
 
 # What every run is given: so little of everything that a run takes half a processor second.
-SMALL = {"LIGHT": "4k", "RAYS": "30", "ERROR": "0.05"}
+SMALL = {"PHOTONS": "4k", "RAYS": "30", "ERROR": "0.05"}
 # The values that a variable takes; the first is what a walk starts with. "" leaves the variable out.
 VALUES = {
     "METHOD": ["", "", "frames", "walkthrough", "auto"],
@@ -66,7 +67,7 @@ def key(state):
 
 def lean(state):
     """A state without what it leaves out."""
-    return json.loads(key(state)) | {"way": state.get("way", "renamed")}
+    return json.loads(key(state)) | {name: state[name] for name in ("way", "lose") if state.get(name)}
 
 
 def words(before, state):
@@ -97,8 +98,7 @@ def changed(state, scene, rng):
         else:
             name = rng.choice(SEEDED)
             new["tools"][name] = 1 - new["tools"].get(name, 0)
-    new["way"] = rng.choice(WAYS)
-    return new
+    return new | {"way": rng.choice(WAYS), "lose": rng.choice((0, 0, 0, 0, 20))}
 
 
 def walk(scene, steps, seed):
@@ -108,7 +108,7 @@ def walk(scene, steps, seed):
     while len(states) < steps:
         new = changed(states[-1], scene, rng)
         if len(states) > 2 and rng.random() < 0.3:
-            new = json.loads(json.dumps(rng.choice(states[:-1]))) | {"way": rng.choice(WAYS)}
+            new = json.loads(json.dumps(rng.choice(states[:-1]))) | {"way": rng.choice(WAYS), "lose": 0}
         states.append(new)
     return states
 
@@ -253,13 +253,19 @@ def written(command, out):
     if command[0] == "cp":
         names.append(command[-1])
     full = [re.sub("####", f"{f:04d}", name) for name in names for f in (frames if "####" in name else [0])]
-    return [os.path.relpath(name, out) for name in full if not name.endswith(".json")]
+    return [os.path.relpath(out / name, out) for name in full if not name.endswith(".json")]
 
 
 def reads(command, option):
     """Options that name an output in one tool and an input in another."""
     tool = os.path.basename(command[0])
     return (tool, option) not in (("photonmap-split", "--high"), ("photon-trace", "--paths"), ("ibr-warp", "--mask"), ("gather-temporal", "--cache"))
+
+
+def place(name):
+    """The folder, frame and kind of a file; its name may go on with a key of what it is made from."""
+    folder, _, rest = name.rpartition("/")
+    return folder, re.match(r"[-0-9+]*?(?=[-.]|$)|", rest)[0], rest.rpartition(".")[2]
 
 
 class Walker:
@@ -273,6 +279,12 @@ class Walker:
     def restart(self):
         shutil.rmtree(self.out, ignore_errors=True)
         self.known = {}
+
+    def lose(self, share):
+        """Deletes some of the files, the same ones for the same names. What a file lacks is made again."""
+        for path in sorted(self.known) if share else []:
+            if zlib.crc32(path.name.encode()) % 100 < share:
+                path.unlink(missing_ok=True)
 
     def look(self):
         """Digests of all files of OUT that a stage reads or a user looks at."""
@@ -305,6 +317,7 @@ class Walker:
         """Makes a state. Returns what is wrong, as lines."""
         self.place.edit(state)
         before = {os.path.relpath(p, self.out): d for p, (_, d) in self.known.items()}
+        self.lose(state.get("lose", 0))
         code, text, commands = self.place.make(state, self.out)
         expected, rest = self.anew(state)
         if expected is None:
@@ -324,12 +337,13 @@ class Walker:
         return wrong
 
     def count(self, commands, before, now, needed):
+        there = {(place(name), digest) for name, digest in before.items()}
         for command in commands:
             tool, names = os.path.basename(command[0]), [n for n in written(command, self.out) if not n.startswith("plan")]
             if tool == "scene-plan" or not names:
                 continue
             self.ran += 1
-            useless = [n for n in names if n in now and before.get(n) == now[n]]
+            useless = [n for n in names if n in now and (place(n), now[n]) in there]
             unneeded = [n for n in names if n not in needed]
             if len(useless) == len([n for n in names if n in now]) > 0 or len(unneeded) == len(names):
                 self.too_much += 1
@@ -348,6 +362,8 @@ def shell(walker, states):
         if state["tools"] != tools:
             lines.append(f"replace tools (1: --seed 7 added): {json.dumps(state['tools'])}")
         edits, tools = state["edits"], state["tools"]
+        if state.get("lose"):
+            lines.append(f"lose {state['lose']} % of the files in OUT")
         lines.append(" ".join(f"{w.partition('=')[0]}='{w.partition('=')[2]}'" if " " in w else w for w in walker.place.command(state, walker.out)[2:]
                               if not w.startswith(("RUN=", "demo"))).replace(str(walker.place.folder) + "/", ""))
     return lines
