@@ -4,7 +4,7 @@
 Run at the top of the tree; BIN is the folder with the tools. Each step changes one or two of METHOD, FILTER, MOVING, SPLIT, QUALITY, FRAMES,
 SIZE, CAMERA, POINTS, the length of a segment, or edits the scene, a texture, the environment, the smoke or a tool, or returns to an earlier
 state, or loses files of OUT. Then make runs in the one OUT. Every wanted file (frames/F.exr and .png, sheet.png) must be what a new OUT gets for that state; a state
-is made anew once.
+is made anew once. A frame must not depend on the other frames that are asked for.
 
 What ran is compared, too. A command is too much if all it wrote was there with the same digest for that frame, or if a new OUT has none of it.
 A second make at once must run nothing but scene-plan. At most 5 % of the commands may be too much; they are listed.
@@ -272,7 +272,7 @@ class Walker:
     def __init__(self, folder, tools, makefile, scene, fresh):
         self.place = Workplace(folder / scene, tools, makefile, scene)
         self.out, self.fresh = self.place.folder / "out", fresh
-        self.known = {}                                                              # of OUT: {path: (what stat says, digest)}
+        self.known, self.ranges, self.refused = {}, [], 0                            # of OUT: {path: (what stat says, digest)}
         self.ran = self.too_much = 0
         self.named = collections.Counter()
 
@@ -310,8 +310,19 @@ class Walker:
             else:
                 digests = self.place.digests([p for p in wanted(out, state) if p.exists()])
                 self.fresh[key(state)] = ({os.path.relpath(p, out): d for p, d in digests.items()}, files)
+                self.compare_ranges(state, self.fresh[key(state)][0])
             shutil.rmtree(out, ignore_errors=True)
         return self.fresh[key(state)]
+
+    def compare_ranges(self, state, digests):
+        """A frame is the same whichever other frames are asked for."""
+        rest = json.loads(key(state))
+        frames = rest["variables"].pop("FRAMES")
+        for name, digest in digests.items():
+            if name.endswith(".exr"):
+                first = self.fresh.setdefault((json.dumps(rest), name), (digest, frames))
+                if first[0] != digest:
+                    self.ranges.append(f"{name}: FRAMES={frames} and FRAMES={first[1]}, each in a new OUT, differ")
 
     def step(self, state, again=False):
         """Makes a state. Returns what is wrong, as lines."""
@@ -320,14 +331,16 @@ class Walker:
         self.lose(state.get("lose", 0))
         code, text, commands = self.place.make(state, self.out)
         expected, rest = self.anew(state)
+        ranges, self.ranges = self.ranges, []
         if expected is None:
+            self.refused += 1
             wrong = [] if code == 2 else [f"a new OUT refuses, this one ends with {code}"]
             said = [line for line in rest.splitlines() if "***" in line or re.match(r"[a-z-]+: ", line) and not line.startswith("make")]
             return wrong + ([] if said else ["refused without a word"])
         if code:
-            return [f"make failed with {code}, a new OUT is made:", *("  " + line for line in text.splitlines()[-6:])]
+            return ranges + [f"make failed with {code}, a new OUT is made:", *("  " + line for line in text.splitlines()[-6:])]
         now = self.look()
-        wrong = [f"{name}: {'missing' if name not in now else 'other than in a new OUT'}" for name, digest in sorted(expected.items()) if now.get(name) != digest]
+        wrong = ranges + [f"{name}: {'missing' if name not in now else 'other than in a new OUT'}" for name, digest in sorted(expected.items()) if now.get(name) != digest]
         self.count(commands, before, now, rest)
         if again and not wrong:
             _, _, second = self.place.make(state, self.out)
@@ -428,7 +441,7 @@ def main():
         for number, (title, states) in enumerate(lists.items()):
             walker = Walker(Path(folder) / str(number), tools, arguments.makefile, states[0]["scene"], fresh)
             wrong = follow(walker, title, states, not arguments.whole)
-            print(f"{'FAILED' if wrong else 'ok'}: {title}: {len(states)} states, {wrong} wrong; {walker.ran} commands, {walker.too_much} too much", flush=True)
+            print(f"{'FAILED' if wrong else 'ok'}: {title}: {len(states)} states, {wrong} wrong, {walker.refused} refused; {walker.ran} commands, {walker.too_much} too much", flush=True)
             failures, ran, too_much, named = failures + wrong, ran + walker.ran, too_much + walker.too_much, named + walker.named
     share = 100 * too_much / max(ran, 1)
     print(f"{'ok' if share <= 5 else 'FAILED'}: {too_much} of {ran} commands ({share:.1f} %) were too much; 5 % are allowed")
