@@ -239,7 +239,7 @@ std::string view_of(const PlannedSegment& segment, int width, int height, const 
     if (i == 0 && !from_afar && spheres_around(places, radius).empty()) return "";
   }
   const std::vector<formats::ViewSphere> spheres = spheres_around(places, radius);
-  return from_afar || !spheres.empty() ? formats::view_text(spheres) : "";
+  return spheres.empty() ? "" : formats::view_text(spheres);
 }
 
 Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source) {

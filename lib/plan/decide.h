@@ -30,8 +30,7 @@ std::vector<int> looked_frames(const PlannedSegment& segment);
 Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source);
 
 /// What a camera sees over a segment, as the content of a view file (formats/plan/view.h): up to 16 different pictures, evenly
-/// spread. "" if photons need no aim and points lie everywhere: the scene is not much larger than what is seen, and no light
-/// comes from far away. `width`, `height`: of the pictures, pixels; their ratio counts.
+/// spread. "" if photons need no aim and points lie everywhere: the scene is not much larger than what is seen. `width`, `height`: of the pictures, pixels; their ratio counts.
 std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source);
 
 /// Hash of what decide() depends on, so that its answer can be kept in a file.

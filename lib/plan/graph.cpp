@@ -96,9 +96,10 @@ class Builder {
     return name;
   }
 
-  std::string view_file(int frame) {
+  void add_view(int frame, Command& c) {
     const PlannedSegment& s = segment(frame);
-    return s.decisions.view.empty() ? "" : add_state("view", s.first, s.decisions.view);
+    if (s.decisions.view.empty()) c.option("--importance none");
+    else c.file("--importance", add_state("view", s.first, s.decisions.view));
   }
   std::string majorants_file(int frame) {
     const PlannedSegment& s = segment(frame);
@@ -124,7 +125,7 @@ class Builder {
   std::string stands_photons(int frame) {
     const int first = segment(frame).first;
     Command c{"--frame " + std::to_string(first) + " --map static", {}, standing_content(frame)};
-    c.file("--importance", view_file(frame));
+    add_view(frame, c);
     c.option(photon_words(frame));
     return add(stage::stands_photons, first, c, {".paths"});
   }
@@ -135,11 +136,11 @@ class Builder {
     if (moved(lit)) {
       Command c{"--frame " + std::to_string(lit) + " --map dynamic", {}, state(lit).light};
       c.file("--static", paths_of(stands_photons(lit)));
-      c.file("--importance", view_file(lit));
+      add_view(lit, c);
       return add(stage::moved_photons, lit, c);
     }
     Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
-    c.file("--importance", view_file(lit));
+    add_view(lit, c);
     c.option(photon_words(lit));
     if (plan_.media && !wish_.update.empty()) add_update(lit, c);
     return add(stage::photons, lit, c);
@@ -159,7 +160,7 @@ class Builder {
     const int first = segment(frame).first;
     Command c{"--frame " + std::to_string(first) + " --map static", {}, standing_content(frame)};
     c.file("--photons", stands_photons(frame));
-    c.file("--importance", view_file(frame));
+    add_view(frame, c);
     c.option(wish_.points);
     return add(stage::stands_points, first, c);
   }
@@ -172,7 +173,7 @@ class Builder {
     } else {
       c.file("--photons", photons(lit));
     }
-    c.file("--importance", view_file(lit));
+    add_view(lit, c);
     c.option(wish_.points);
     return add(stage::points, lit, c);
   }
