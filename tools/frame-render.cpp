@@ -20,6 +20,7 @@
 #include "lib/render/influence_channels.h"
 #include "lib/render/learn_lights.h"
 #include "tools/common/base_frame.h"
+#include "tools/common/frame_account.h"
 #include "tools/common/frame_output.h"
 #include "tools/common/indirect_light.h"
 #include "tools/common/light_grid_file.h"
@@ -135,9 +136,12 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
   count_work(tool, rendered, tracer);
+  tools::say_account(tool, rendered, frame_options);
 }
 
 constexpr std::size_t kMostViews = 8;
+/// One code of a pixel at the median, .18: its share of the pixel's radiance. The slope of the sRGB curve there is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
+constexpr double kPixelErrorOfCode = 1 / (305 * 0.18);
 
 /// Of all frames named the cameras, kMostViews of them at most, and of the one in the middle the scene.
 void learn(tools::Tool& tool, tools::SceneInput& input, const Options& options, const std::vector<int>& frames) {
@@ -213,6 +217,11 @@ void check(Options& options, const std::vector<int>& frames) {
   if (halves && options.frame.samples % 2 != 0) throw InputError("--spp: halves need an even number of samples");
   if (halves && options.pixel_error > 0)
     throw InputError("--pixel-error: halves take the same samples everywhere; leave out one");
+  if (halves && options.frame.seen_error > 0)
+    throw InputError("--seen-error: halves take the same samples everywhere; leave out one");
+  if (options.frame.seen_error > 0 && options.pixel_error < 0) options.frame.pixel_error = options.frame.seen_error * kPixelErrorOfCode;
+  if (options.frame.seen_error > 0 && !(options.frame.pixel_error > 0))
+    throw InputError("--pixel-error 0: --seen-error needs it to share samples out; leave it out");
   if (halves) options.frame.pixel_error = 0;
   options.frame.sample_halves = wants_sample_halves(options.channels);
   options.frame.independent_halves = wants_independent_halves(options.channels);
@@ -282,6 +291,10 @@ void add_options(tools::Tool& tool, Options& options) {
       ->check(tools::number_between(-1.0, 1.0));
   app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
+  app.add_option("--seen-error", options.frame.seen_error,
+                 "more samples until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that puts its median at .18; --pixel-error then "
+                 "only shares them out; 0: off")
+      ->capture_default_str()->check(tools::number_between(0.0, 255.0));
   app.add_flag("--for-filter", options.frame.for_filter,
                "the frame will be filtered by st-filter: --pixel-error counts noise of the layer specular alone, which passes it");
   app.add_flag("--keep-outliers", options.keep_outliers,

@@ -30,6 +30,23 @@ void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t
   image.samples += count;
 }
 
+/// All samples at once, and of some pixels a second time for the noise.
+void render_fixed(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
+  render_pass(scene, view, options.seed, options, options.samples, frame.mean, frame.rays, options.progress);
+  NoiseCheck check(view, options.seed, options.mask);
+  FrameOptions again = options;
+  again.seed = check.seed();
+  const PartCounts all{options.samples, options.samples, options.samples};
+  for_each_pixel(view, again, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    const std::uint32_t slot = check.slot(x, y);
+    if (slot == kNone) return;
+    Layers mean;
+    join(sample_pixel(scene, view, again, pixel, x, y, {}, all, nullptr, counts), 0, options.samples, mean);
+    check.again(slot).own = mean;
+  });
+  frame.noise = check.measure(frame.mean.pixels, [&](std::size_t pixel) { return frame.mean.pixels[pixel]; });
+}
+
 LayerImage empty_layers(const CameraView& view, const FrameOptions& options) {
   LayerImage image{view.width(), view.height(), 0, false, {}, {}};
   const std::size_t count = std::size_t(view.width()) * std::size_t(view.height());
@@ -82,7 +99,7 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
     render_adaptive(scene, view, options, frame);
   } else if (!halves) {
     frame.mean = empty_layers(view, options);
-    render_pass(scene, view, options.seed, options, options.samples, frame.mean, frame.rays, options.progress);
+    render_fixed(scene, view, options, frame);
   } else {
     // The second half's seed is far from any user's seeds.
     const std::uint64_t seeds[2] = {options.seed, options.seed ^ 0x68616c665f74776full};
@@ -98,6 +115,7 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
       count = frame.half[0].samples;
       if (4 * count > options.max_samples) break;
     }
+    frame.noise = noise_of_halves(frame.half[0].pixels, frame.half[1].pixels);
   }
   for (LayerImage* image : {&frame.mean, &frame.half[0], &frame.half[1]}) image->media = scene.frame().media != nullptr;
   frame.mean_radiance = mean_radiance(frame.mean);

@@ -7,6 +7,7 @@
 
 #include "lib/image/image.h"
 #include "lib/render/camera_view.h"
+#include "lib/render/frame_noise.h"
 #include "lib/render/path_tracer.h"
 #include "lib/render/pixel_variance.h"
 
@@ -20,6 +21,8 @@ struct FrameOptions {
   int max_samples = 1 << 20;            ///< never more than this for target_error
   /// > 0: after `samples` everywhere, more where pixels are uncertain (lib/render/adaptive_frame.h).
   double pixel_error = 0;
+  /// > 0: samples are added, as pixel_error shares them out, until noise is below this, in codes (FrameNoise). Needs pixel_error.
+  double seen_error = 0;
   int adaptive_limit = 1024;
   /// The frame will be filtered (lib/filter): noise that counts for pixel_error is that of light which passes the filter, layer specular.
   bool for_filter = false;
@@ -48,6 +51,8 @@ struct RenderedFrame {
   LayerImage half[2];                   ///< empty unless halves or target_error
   RayCounts rays;
   double samples_per_pixel = 0;         ///< mean over pixels
+  FrameNoise noise;                     ///< what it still has
+  double at_limit = 0;                  ///< share of the pixels that have adaptive_limit samples
   double spread = 0;                    ///< share of the light that FrameOptions::spread_outliers moved
   /// RMSE of the mean over pixels and channels [radiance], estimated from the halves' difference; < 0: unknown.
   double own_rmse = -1;
