@@ -19,6 +19,7 @@
 #include "lib/render/frame_renderer.h"
 #include "lib/render/influence_channels.h"
 #include "lib/render/learn_lights.h"
+#include "tools/common/audit_input.h"
 #include "tools/common/base_frame.h"
 #include "tools/common/frame_account.h"
 #include "tools/common/frame_output.h"
@@ -35,12 +36,12 @@ namespace {
 
 struct Options {
   std::string scene, output, integrator = "auto", compression = "zip", mask, base, lights;
-  std::vector<std::string> channels{"RGBA", "Z", "N", "id"};
+  std::vector<std::string> channels{"RGBA", "Z", "N", "id"}, audit;
   FrameOptions frame;
   tools::IndirectLightOptions light;
   double pixel_error = -1;
   bool half_float = false, learn_lights = false, keep_outliers = false;
-  int width = 640, height = 360;
+  int width = 640, height = 360, audit_paths = 0;
 
   bool only_learns() const { return output.ends_with(".lightgrid"); }
   bool traces_paths() const { return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty(); }
@@ -80,6 +81,19 @@ void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
   const std::string& name = frame.materials[smooth].name;
   tool.warn(frame.scene->path + ": materials" + (name.empty() ? "" : " \"" + name + "\"") +
             ": what point, spot and sun lights send by way of mirrors and smooth glass is missing: no path finds it; photons do (--photons)");
+}
+
+/// Bias of the frame's layers by splats of --audit; by paths as well where photons leave more than 1 % of the picture's light uncertain.
+std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const RenderScene& scene, const CameraView& view, const FrameOptions& frame_options,
+                              const RenderedFrame& rendered) {
+  if (options.audit.empty()) return {};
+  tool.stats().phase("audit", true);
+  Image ids{view.width(), view.height(), {}, {}, {}, {}};
+  add_data_channels(scene, view, {"id"}, {}, {}, ids);
+  FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
+  audit.add_splats(scene.tracer, tools::audit_photons(tool, options.audit, scene.frame(), scene.frame().frame));
+  if (options.audit_paths > 0) audit.add_paths(scene, frame_options, std::size_t(options.audit_paths));
+  return audit.entries();
 }
 
 void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing) {
@@ -123,6 +137,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   frame_options.progress = [&](double fraction) { tool.progress(fraction); };
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
+  const std::vector<AuditEntry> audited = audit(tool, options, scene, view, frame_options, rendered);
   tool.stats().phase("data channels", true);
   Image image{options.width, options.height, {}, {}, {}, {}};
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
@@ -131,12 +146,12 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("write");
   const ExrWriteOptions exr{options.half_float, options.compression == "none" ? ExrWriteOptions::Compression::none
                                                                               : ExrWriteOptions::Compression::zip};
-  const tools::FrameDescription description{tools::identity_of(frame), light.history() + tool.history_line(number),
-                                            frame.frame, input.time().fps, view.world_to_camera(), view.world_to_ndc()};
+  const tools::FrameDescription description{tools::identity_of(frame), light.history() + tool.history_line(number), frame.frame, input.time().fps,
+                                            view.world_to_camera(), view.world_to_ndc(), tools::account_of(rendered, audited)};
   outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
   count_work(tool, rendered, tracer);
-  tools::say_account(tool, rendered, frame_options);
+  tools::say_account(tool, rendered, audited, frame_options);
 }
 
 constexpr std::size_t kMostViews = 8;
@@ -205,6 +220,8 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
   options.light.photons_alone = options.integrator == "photons";
   tools::check_influence(options.light.influence);
+  if (options.audit_paths > 0 && options.audit.empty()) throw InputError("--audit-paths: name photons with --audit FILE");
+  if (options.audit_paths > 0 && options.traces_paths()) throw InputError("--audit-paths: paths would be compared with paths; leave it out");
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
@@ -301,6 +318,11 @@ void add_options(tools::Tool& tool, Options& options) {
                "leave light that one sample alone claims where it is: with --pixel-error it is spread over the pixels around, which keeps each layer's sum; "
                "so does --integrator path");
   add_light_options(tool, options);
+  app.add_option("--audit", options.audit,
+                 ".photons file, or a pattern, or STATIC,DYNAMIC: say how far direct, caustic and indirect light are off, measured by these photons as the camera sees them")
+      ->delimiter(',')->type_name("FILES");
+  app.add_option("--audit-paths", options.audit_paths, "with --audit: camera rays of which paths find the light as well, for places that few photons reach")
+      ->capture_default_str()->check(tools::number_between(0, 1 << 24));
   app.add_flag("--learn-lights", options.learn_lights,
                "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that; with -o FILE.lightgrid "
                "learn for the cameras of all frames named, write that and no frame");

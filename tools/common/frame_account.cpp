@@ -1,6 +1,7 @@
 #include "tools/common/frame_account.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace tempolux::tools {
@@ -28,10 +29,55 @@ std::string noise_line(const RenderedFrame& rendered) {
   return line + "; " + number(rendered.samples_per_pixel) + " samples a pixel";
 }
 
+/// Of a layer's parts the one that is farthest off in light, if surely so.
+const AuditEntry* worst_of(const std::vector<AuditEntry>& audit, Layer layer, const std::string& kind) {
+  const AuditEntry* worst = nullptr;
+  for (const AuditEntry& entry : audit) {
+    if (entry.layer != layer || !entry.part.starts_with(kind) || std::abs(entry.bias.value) <= kAuditErrors * entry.bias.error) continue;
+    const auto light = [](const AuditEntry& of) { return std::abs(of.bias.value) * double(of.pixels); };
+    if (!worst || light(entry) > light(*worst)) worst = &entry;
+  }
+  return worst;
+}
+
+std::string percent(double value, double error) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%+.3g +- %.2g %%", 100 * value, 100 * error);
+  return text;
+}
+
+std::string audit_line(const AuditEntry& of, const std::vector<AuditEntry>& audit) {
+  std::string line = std::string(kLayerNames[std::size_t(of.layer)]) + " light " + percent(of.of_layer(), of.of_layer_error()) + " (" + percent(of.share(), of.share_error()) + " of the picture)";
+  for (const char* kind : {"object", "tile"})
+    if (const AuditEntry* worst = worst_of(audit, of.layer, kind)) line += ", " + worst->part + " " + percent(worst->of_layer(), worst->of_layer_error());
+  return line;
+}
+
+void add(const std::vector<AuditEntry>& audit, std::map<std::string, double>& numbers) {
+  for (const AuditEntry& entry : audit) {
+    if (entry.part != "picture") continue;
+    const std::string name = "audit." + std::string(kLayerNames[std::size_t(entry.layer)]);
+    numbers[name] = entry.share();
+    numbers[name + "_error"] = entry.share_error();
+    if (entry.shown - entry.bias.value > 0) {
+      numbers[name + ".of_layer"] = entry.of_layer();
+      numbers[name + ".of_layer_error"] = entry.of_layer_error();
+    }
+    for (const char* kind : {"object", "tile"})
+      if (const AuditEntry* worst = worst_of(audit, entry.layer, kind)) {
+        const std::string of = name + ".worst_" + kind;
+        numbers[of] = worst->share();
+        numbers[of + "_error"] = worst->share_error();
+        if (worst->object != kNone) numbers[of + "_id"] = worst->object;
+      }
+  }
+}
+
 }  // namespace
 
-std::map<std::string, double> account_of(const RenderedFrame& rendered) {
+std::map<std::string, double> account_of(const RenderedFrame& rendered, const std::vector<AuditEntry>& audit) {
   std::map<std::string, double> numbers;
+  add(audit, numbers);
   const FrameNoise& noise = rendered.noise;
   if (!noise.known()) return numbers;
   add(noise.image, "noise", numbers);
@@ -42,13 +88,20 @@ std::map<std::string, double> account_of(const RenderedFrame& rendered) {
   return numbers;
 }
 
-void say_account(Tool& tool, const RenderedFrame& rendered, const FrameOptions& asked) {
-  for (const auto& [name, value] : account_of(rendered)) {
+void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit, const FrameOptions& asked) {
+  for (const auto& [name, value] : account_of(rendered, audit)) {
     std::string key = name;
     std::replace(key.begin(), key.end(), '.', '_');
     tool.stats().set(key, value);
   }
   if (asked.pixel_error > 0) tool.stats().set("at_pixel_limit", rendered.at_limit);
+  for (const AuditEntry& entry : audit) {
+    if (entry.part != "picture") continue;
+    const std::string line = "audit: " + audit_line(entry, audit);
+    tool.say(line);
+    if (is_biased(entry) && entry.layer != Layer::direct)
+      tool.warn(line + "; more points (irradcache-build --point-count), bright ones apart (photonmap-split, --high), or paths (no files of light) mend it");
+  }
   if (!rendered.noise.known()) return;
   tool.say(noise_line(rendered));
   if (asked.seen_error > 0 && rendered.noise.image.codes > asked.seen_error)

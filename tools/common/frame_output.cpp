@@ -1,7 +1,6 @@
 #include "tools/common/frame_output.h"
 
 #include "lib/image/frame_identity.h"
-#include "tools/common/frame_account.h"
 
 namespace tempolux::tools {
 namespace {
@@ -41,7 +40,7 @@ void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const
     if (!mask.empty()) keep_base_pixels(mask, base, image);
     describe(description, parts[i]->samples, image);
     if (i == 0)   // of the mean of all samples
-      for (const auto& [name, value] : account_of(rendered)) image.numbers["tempolux:" + name] = value;
+      for (const auto& [name, value] : description.account) image.numbers["tempolux:" + name] = value;
     save_exr(outputs_[i].temporary_path(), image, options);
   }
   for (Output& output : outputs_) output.commit();
