@@ -14,6 +14,7 @@ namespace {
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
 constexpr std::size_t kFewestPaths = 64;     ///< of which a standard error is said
+constexpr std::uint32_t kFewestSplats = 32;  ///< likewise
 constexpr double kMostOfOne = 0.5;           ///< of the sum of squares: beyond that one path decides, and the error is not known
 
 double light_of(const Layers& pixel) {
@@ -155,7 +156,10 @@ void FrameAudit::add_splats(const Tracer& tracer, const AuditPhotons& photons) {
       const auto layer = std::size_t(splat->layer);
       for_parts_of(splat->pixel, [&](std::size_t part) {
         sums_[part].splats[layer] += radiance;
-        runs.add(part, layer, radiance);
+        ++sums_[part].splat_count[layer];
+        // A path has one photon of kind direct at most, so these are independent of each other.
+        if (splat->layer == Layer::direct) sums_[part].pairs_square[layer] += radiance * radiance;
+        else runs.add(part, layer, radiance);
       });
     }
   });
@@ -210,8 +214,9 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
   AuditEntry entry{.layer = Layer(layer), .part = parts_[part].name, .object = parts_[part].object, .pixels = parts_[part].pixels, .shown = sums.shown[layer] / n,
                    .splats = {}, .paths = {}, .bias = {}, .picture = picture_ / n};
   Estimate by_splats;
-  if (holds_[layer] && paired_photons_ > 0) {
-    entry.splats = {sums.splats[layer] / n, std::sqrt(sums.pairs_square[layer] * photons_ / paired_photons_) / n};
+  const bool of_direct = Layer(layer) == Layer::direct;
+  if (holds_[layer] && sums.splat_count[layer] >= kFewestSplats && (of_direct || paired_photons_ > 0)) {
+    entry.splats = {sums.splats[layer] / n, std::sqrt(sums.pairs_square[layer] * (of_direct ? 1 : photons_ / paired_photons_)) / n};
     const double noise = frame_.noise.known() ? std::max(0.0, frame_.noise.layer[layer].linear) : 0;
     by_splats = {entry.shown - entry.splats.value, std::sqrt(entry.splats.error * entry.splats.error + noise * noise / n)};
   }

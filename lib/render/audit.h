@@ -67,8 +67,9 @@ class FrameAudit {
   /// Sums over a part by layer.
   struct Sums {
     std::array<double, kLayerCount> shown{}, splats{};
+    std::array<std::uint32_t, kLayerCount> splat_count{};
     std::array<double, kLayerCount> difference{};      ///< of the pair of runs at hand
-    std::array<double, kLayerCount> pairs_square{};    ///< sum over pairs of their difference squared
+    std::array<double, kLayerCount> pairs_square{};    ///< sum over pairs of their difference squared; of layer direct over photons
     std::array<double, kLayerCount> paths{}, paths_square{}, paths_largest{};
     std::size_t path_count = 0;
   };
