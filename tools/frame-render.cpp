@@ -41,7 +41,7 @@ struct Options {
   tools::IndirectLightOptions light;
   double pixel_error = -1;
   bool half_float = false, learn_lights = false, keep_outliers = false;
-  int width = 640, height = 360, audit_paths = 0;
+  int width = 640, height = 360, audit_paths = -1;
 
   bool only_learns() const { return output.ends_with(".lightgrid"); }
   bool traces_paths() const { return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty(); }
@@ -83,6 +83,18 @@ void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
             ": what point, spot and sun lights send by way of mirrors and smooth glass is missing: no path finds it; photons do (--photons)");
 }
 
+/// Paths that light is to be compared with. By themselves: where photons leave more than kUncertain of the picture's light open, kPathShare of the frame's camera rays; none where paths
+/// lack light that the frame has.
+std::size_t audit_path_count(const Options& options, const std::vector<AuditEntry>& by_photons, const SceneFrame& frame, const RenderedFrame& rendered) {
+  constexpr double kUncertain = 0.01, kPathShare = 0.02;
+  if (options.audit_paths >= 0) return std::size_t(options.audit_paths);
+  if (options.traces_paths() || (!frame.lights.empty() && first_smooth_material(frame) != kNone)) return 0;
+  const bool known = std::ranges::any_of(by_photons, [](const AuditEntry& entry) {
+    return entry.part == "picture" && entry.layer == Layer::indirect && entry.share_error() <= kUncertain;
+  });
+  return known ? 0 : std::size_t(kPathShare * double(rendered.rays.camera));
+}
+
 /// Bias of the frame's layers by splats of --audit; by paths as well where photons leave more than 1 % of the picture's light uncertain.
 std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const RenderScene& scene, const CameraView& view, const FrameOptions& frame_options,
                               const RenderedFrame& rendered) {
@@ -92,7 +104,10 @@ std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const R
   add_data_channels(scene, view, {"id"}, {}, {}, ids);
   FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
   audit.add_splats(scene.tracer, tools::audit_photons(tool, options.audit, scene.frame(), scene.frame().frame));
-  if (options.audit_paths > 0) audit.add_paths(scene, frame_options, std::size_t(options.audit_paths));
+  const std::vector<AuditEntry> by_photons = audit.entries();
+  const std::size_t paths = audit_path_count(options, by_photons, scene.frame(), rendered);
+  if (paths == 0) return by_photons;
+  audit.add_paths(scene, frame_options, paths);
   return audit.entries();
 }
 
@@ -321,8 +336,8 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--audit", options.audit,
                  ".photons file, or a pattern, or STATIC,DYNAMIC: say how far direct, caustic and indirect light are off, measured by these photons as the camera sees them")
       ->delimiter(',')->type_name("FILES");
-  app.add_option("--audit-paths", options.audit_paths, "with --audit: camera rays of which paths find the light as well, for places that few photons reach")
-      ->capture_default_str()->check(tools::number_between(0, 1 << 24));
+  app.add_option("--audit-paths", options.audit_paths, "with --audit: camera rays of which paths find the light as well; -1: 2 % of all where photons leave more than 1 % of the picture's light uncertain")
+      ->capture_default_str()->check(tools::number_between(-1, 1 << 24));
   app.add_flag("--learn-lights", options.learn_lights,
                "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that; with -o FILE.lightgrid "
                "learn for the cameras of all frames named, write that and no frame");

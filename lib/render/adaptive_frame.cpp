@@ -26,6 +26,8 @@ PartCounts missing(const PartCounts& have, const PartCounts& wanted, bool even) 
   return more;
 }
 
+constexpr std::size_t kJudgedTogether = 64;   ///< pixels
+
 /// A frame whose pixels get samples in several passes.
 class AdaptiveFrame {
  public:
@@ -48,6 +50,7 @@ class AdaptiveFrame {
   std::uint64_t take_further(double times, const std::function<void(double)>& progress);
   void take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, RayCounts& counts);
   void put_together();
+  void spread();
   void reach_seen_error();
   void finish();
   bool shown(std::size_t pixel) const { return options_.mask.empty() || options_.mask[pixel]; }
@@ -117,10 +120,31 @@ void AdaptiveFrame::put_together() {
   parallel_chunks(pixels.size(), 4096, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) pixels[p] = parts_[p].sum();
   });
-  if (options_.spread_outliers)
-    frame_.spread = spread_outliers({frame_.mean.width, frame_.mean.height, parts_, counts_, brightest_, options_.mask,
-                                     [&](double level) { return noise_.error_at(level); }}, pixels);
+  if (options_.spread_outliers) spread();
   frame_.noise = check_.measure(pixels, [&](std::size_t pixel) { return parts_[pixel].sum(); });
+}
+
+/// Light that one sample alone claims, once enough of them have looked.
+void AdaptiveFrame::spread() {
+  std::vector<Layers>& pixels = frame_.mean.pixels;
+  SampledPixels samples{frame_.mean.width, frame_.mean.height, parts_, counts_, brightest_, options_.mask, [&](double level) { return noise_.error_at(level); }};
+  const std::vector<std::size_t> judged = pixels_to_judge(samples, pixels);
+  std::vector<std::uint32_t> further_of(judged.empty() ? 0 : pixels.size(), kNone);
+  std::vector<FurtherSamples> further(judged.size());
+  std::vector<RayCounts> rays((judged.size() + kJudgedTogether - 1) / kJudgedTogether);
+  parallel_chunks(judged.size(), kJudgedTogether, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const std::size_t pixel = judged[i], width = std::size_t(frame_.mean.width);
+      const PartCounts &have = counts_[pixel], more = missing(have, {kJudges, kJudges, kJudges}, options_.independent_halves);
+      further_of[pixel] = std::uint32_t(i);
+      further[i].count = more;
+      join_parts(sample_pixel(scene_, view_, options_, pixel, int(pixel % width), int(pixel / width), have, more, nullptr, rays[first / kJudgedTogether]), {}, more, further[i].mean);
+    }
+  });
+  for (const RayCounts& counts : rays) frame_.rays += counts;
+  samples.further_of = further_of;
+  samples.further = further;
+  frame_.spread = spread_outliers(samples, pixels);
 }
 
 /// Noise is measured after each pass, and the next one is as large as what is left asks for. Errors fall as the number of samples to the power of -1/2 to -5/6: with -.6 passes come near from

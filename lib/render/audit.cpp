@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
-constexpr std::size_t kFewestPaths = 64;     ///< of which a standard error is said
+constexpr std::size_t kFewestPaths = 64;     ///< that found light: of fewer no standard error is said
 constexpr std::uint32_t kFewestSplats = 32;  ///< likewise
 constexpr double kMostOfOne = 0.5;           ///< of the sum of squares: beyond that one path decides, and the error is not known
 
@@ -171,6 +171,7 @@ void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options
     std::size_t pixel = 0;
     bool counts = false;
     std::array<double, kLayerCount> layer{};
+    std::array<bool, kLayerCount> met{};
   };
   std::vector<Difference> differences(count);
   const std::uint64_t seed = mix64(options.seed ^ 0x6175646974ull);
@@ -190,6 +191,7 @@ void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options
       const Layers shown = trace_eye_path(scene, ray, hit, random, options.known, rays, view_.cone(), effort_of(0)).sum();
       const Layers found = trace_eye_path(scene, ray, hit, random, nullptr, rays, view_.cone(), effort_of(0)).sum();
       difference.counts = true;
+      for (std::size_t l = 0; l < kLayerCount; ++l) difference.met[l] = !is_black(found.value[l]);
       for (std::size_t l = 0; l < kLayerCount; ++l) difference.layer[l] = channel_mean(Rgbd(shown.value[l])) - channel_mean(Rgbd(found.value[l]));
     }
   });
@@ -201,6 +203,7 @@ void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options
       for (std::size_t l = 0; l < kLayerCount; ++l) {
         const double d = difference.layer[l];
         sums.paths[l] += d;
+        sums.met[l] += difference.met[l];
         sums.paths_square[l] += d * d;
         sums.paths_largest[l] = std::max(sums.paths_largest[l], d * d);
       }
@@ -221,7 +224,7 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
     by_splats = {entry.shown - entry.splats.value, std::sqrt(entry.splats.error * entry.splats.error + noise * noise / n)};
   }
   const double m = double(sums.path_count);
-  if (sums.path_count >= kFewestPaths && sums.paths_largest[layer] <= kMostOfOne * sums.paths_square[layer])
+  if (sums.met[layer] >= kFewestPaths && sums.paths_largest[layer] <= kMostOfOne * sums.paths_square[layer])
     entry.paths = {sums.paths[layer] / m, std::sqrt(std::max(0.0, sums.paths_square[layer] / m - sums.paths[layer] * sums.paths[layer] / (m * m)) / (m - 1))};
   entry.bias = joined(by_splats, entry.paths);
   return entry;

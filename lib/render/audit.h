@@ -72,6 +72,7 @@ class FrameAudit {
     std::array<double, kLayerCount> pairs_square{};    ///< sum over pairs of their difference squared; of layer direct over photons
     std::array<double, kLayerCount> paths{}, paths_square{}, paths_largest{};
     std::size_t path_count = 0;
+    std::array<std::size_t, kLayerCount> met{};        ///< paths that found light
   };
   template <class Body>
   void for_parts_of(std::size_t pixel, const Body& body) const;
