@@ -64,6 +64,7 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
   stats.count("camera_rays", double(rendered.rays.camera));
   stats.count("bounce_rays", double(rendered.rays.bounce));
   stats.count("shadow_rays", double(rendered.rays.shadow));
+  stats.count("noise_rays", double(rendered.noise_rays.camera + rendered.noise_rays.bounce + rendered.noise_rays.shadow));
   stats.count("lookups", double(rendered.rays.lookups));
   stats.count("refused_rays", double(tracer.refused_ray_count()));
   stats.count("gathered_in_pixels", double(rendered.rays.gathered));

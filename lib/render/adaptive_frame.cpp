@@ -37,6 +37,7 @@ class AdaptiveFrame {
         brightest_(options.spread_outliers ? frame.mean.pixels.size() : 0) {
     around_.mask = noise_.looked_at();
     of_check_.seed = check_.seed();
+    again_rays_.resize(check_.size());
   }
   void render() {
     take_first();
@@ -48,7 +49,7 @@ class AdaptiveFrame {
  private:
   void take_first();
   std::uint64_t take_further(double times, const std::function<void(double)>& progress);
-  void take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, RayCounts& counts);
+  void take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count);
   void put_together();
   void spread();
   void reach_seen_error();
@@ -62,16 +63,17 @@ class AdaptiveFrame {
   PixelNoise noise_;
   NoiseCheck check_;
   FrameOptions of_check_;
+  std::vector<RayCounts> again_rays_;   ///< by slot
   FrameOptions around_;                 ///< of all pixels whose first samples are needed
   std::vector<PartCounts> counts_;      ///< samples that pixels have
   ParallelArray<PathParts> parts_;      ///< their means
   ParallelArray<BrightestSamples> brightest_;
 };
 
-void AdaptiveFrame::take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, RayCounts& counts) {
+void AdaptiveFrame::take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count) {
   const std::uint32_t slot = check_.slot(x, y);
   if (slot == kNone || !shown(pixel)) return;
-  join_parts(sample_pixel(scene_, view_, of_check_, pixel, x, y, first, count, nullptr, counts), first, count, check_.again(slot));
+  join_parts(sample_pixel(scene_, view_, of_check_, pixel, x, y, first, count, nullptr, again_rays_[slot]), first, count, check_.again(slot));
 }
 
 void AdaptiveFrame::take_first() {
@@ -89,7 +91,7 @@ void AdaptiveFrame::take_first() {
                     });
     noise_.note(pixel, half[0], half[1], counts.onward - before);
     join_parts(half[0] + half[1], {}, first, parts_[pixel]);
-    take_again(pixel, x, y, {}, first, counts);
+    take_again(pixel, x, y, {}, first);
   });
   noise_.all_noted();
 }
@@ -108,7 +110,7 @@ std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void
                       if (options_.spread_outliers) brightest_[pixel].note(sample, options_.for_filter);
                     });
     join_parts(sum, have, more, parts_[pixel]);
-    take_again(pixel, x, y, have, more, counts);
+    take_again(pixel, x, y, have, more);
     have = {have.own + more.own, have.lit + more.lit, have.onward + more.onward};
   });
   return frame_.rays.camera - before;
@@ -168,6 +170,7 @@ void AdaptiveFrame::reach_seen_error() {
 }
 
 void AdaptiveFrame::finish() {
+  for (const RayCounts& rays : again_rays_) frame_.noise_rays += rays;
   frame_.mean.samples = noise_.first().own;
   double samples = 0;
   std::size_t pixels = 0;

@@ -37,7 +37,7 @@ void render_fixed(const RenderScene& scene, const CameraView& view, const FrameO
   FrameOptions again = options;
   again.seed = check.seed();
   const PartCounts all{options.samples, options.samples, options.samples};
-  for_each_pixel(view, again, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+  for_each_pixel(view, again, frame.noise_rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     const std::uint32_t slot = check.slot(x, y);
     if (slot == kNone) return;
     Layers mean;

@@ -50,6 +50,7 @@ struct RenderedFrame {
   LayerImage mean;                      ///< over all samples
   LayerImage half[2];                   ///< empty unless halves or target_error
   RayCounts rays;
+  RayCounts noise_rays;                 ///< of the pixels that were rendered twice, the second time
   double samples_per_pixel = 0;         ///< mean over pixels
   FrameNoise noise;                     ///< what it still has
   double at_limit = 0;                  ///< share of the pixels that have adaptive_limit samples
