@@ -1,6 +1,5 @@
 #include "tools/common/frame_account.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -89,11 +88,7 @@ std::map<std::string, double> account_of(const RenderedFrame& rendered, const st
 }
 
 void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit, const FrameOptions& asked) {
-  for (const auto& [name, value] : account_of(rendered, audit)) {
-    std::string key = name;
-    std::replace(key.begin(), key.end(), '.', '_');
-    tool.stats().set(key, value);
-  }
+  for (const auto& [name, value] : account_of(rendered, audit)) tool.stats().set(name, value);
   if (asked.pixel_error > 0) tool.stats().set("at_pixel_limit", rendered.at_limit);
   for (const AuditEntry& entry : audit) {
     if (entry.part != "picture") continue;

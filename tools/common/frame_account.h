@@ -14,7 +14,7 @@ namespace tempolux::tools {
 /// audit: entries of FrameAudit, if there was one.
 std::map<std::string, double> account_of(const RenderedFrame& rendered, const std::vector<AuditEntry>& audit);
 
-/// Says them: results of --stats (points become underscores), a line each with --verbose, a warning if `asked` (FrameOptions::seen_error) was not reached, and one for each layer
+/// Says them: results of --stats, a line each with --verbose, a warning if `asked` (FrameOptions::seen_error) was not reached, and one for each layer
 /// that is biased (is_biased).
 void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit, const FrameOptions& asked);
 
