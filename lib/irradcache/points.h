@@ -49,6 +49,7 @@ class PointLookup {
     std::uint32_t point = 0;  ///< index of the IrradiancePoint
     mutable std::array<std::atomic<std::uint64_t>, 2> clearance{};   ///< Clearance::shares; kNotLooked: either
     mutable std::atomic<std::uint8_t> uneven{kNotAsked};
+    bool beside_lamp = false;   ///< note_lamp()
   };
 
   /// spacing: mean distance of neighbouring points, m, > 0. Keeps the span; it must outlive this. Without a test a point
@@ -88,9 +89,12 @@ class PointLookup {
   /// as strongly as what is seen of the ceiling; read instead, that light would reach a spacing out of the gap.
   /// A point's own light has no say in it: it is known by a few shadow rays or photons, and were those that came out bright
   /// replaced, what is read would be dark in the mean.
-  bool is_even(const Light& light) const { return !(unevenness(light) & kDirect); }
+  bool is_even(const Light& light) const { return !light.beside_lamp && !(unevenness(light) & kDirect); }
   bool is_even_indirect(const Light& light) const { return !(unevenness(light) & kIndirect); }
   static constexpr float kContrast = 8;
+  /// From now on the direct light of this point is not that of the places it stands for: a lamp so near lights a spot smaller than the spacing, which a point
+  /// misses as a rule and stands for all of it where it does not. Not to be called while others look up.
+  void note_lamp(std::uint32_t point) { lights_[point].beside_lamp = true; }
   /// A ray that goes on costs several that are read, and what leaks from a place of moderate contrast is little. With 8 instead of 32 S8's frame took 17 %
   /// and S4's records 11 % more CPU at the same error; CornellBox's gap has 100.
   static constexpr float kContrastOfIndirect = 32;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lib/gather/lamp_light.h"
 #include "lib/gather/whole_photons.h"
 #include "lib/scene/standing.h"
 #include "tools/common/localised_cache.h"
@@ -37,6 +38,7 @@ void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options,
   }
   history_ = points_.history;
   lookup_ = std::make_unique<PointLookup>(points_.points, points_.spacing, point_clearance(tracer));
+  note_lamps_beside(tracer, lights, *lookup_);
   known_.points = lookup_.get();
   if (std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
   tool.stats().phase("bright points", true);
