@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 #include <unordered_set>
 
 #include "lib/core/parallel.h"
@@ -18,6 +19,7 @@ namespace {
 /// Sites of a point. Those of a spot are drawn from at random: with 16 of them a cell of points is known to some per cent.
 constexpr double kSitesPerPoint = 16;
 constexpr float kFadeFrom = 4, kFadeTo = 6;   ///< radii R
+constexpr float kCellsPerReach = 8;           ///< of photons that no point stands for, in kBesideLamp spacings
 
 /// Cubes in which a point that is asked for may be.
 class NearPoints {
@@ -45,6 +47,17 @@ class NearPoints {
   double inverse_;
   std::unordered_set<std::uint64_t> cubes_;   ///< by hash: one too many costs a look-up
 };
+
+/// A cube, and the axis that the normal is nearest to.
+std::uint64_t cell_of(const LampPhoton& photon, float per_metre) {
+  std::uint64_t key = 0;
+  int axis = 0;
+  for (int a = 0; a < 3; ++a) {
+    key = mix64(key ^ std::uint64_t(std::int64_t(std::floor(std::clamp(photon.place.position[a] * per_metre, -1e15f, 1e15f)))));
+    if (std::abs(photon.normal[a]) > std::abs(photon.normal[axis])) axis = a;
+  }
+  return mix64(key ^ std::uint64_t(2 * axis + (photon.normal[axis] > 0)));
+}
 
 }  // namespace
 
@@ -92,7 +105,7 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
   });
   for (std::optional<Site>& site : found)
     if (site) sites_.push_back(std::move(*site));
-  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.point < b.point; });
+  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.spot < b.spot; });
   std::vector<std::uint32_t> uneven;
   for (std::uint32_t i = 0; i < sites_.size(); ++i)
     if (!points.is_even(*points.find(sites_[i].place.position, sites_[i].normal))) uneven.push_back(i);
@@ -101,18 +114,23 @@ void BrightPoints::place_high(const Lights& lights, const BrightOptions& options
 
 /// Sites of lamps' photons.
 void BrightPoints::place_lamp_light(std::span<const LampPhoton> photons) {
-  for (const LampPhoton& photon : photons)
-    sites_.push_back({photon.place, photon.normal, photon.flux, photon.bsdf, 0, 1, photon.point, photon.lamp_distance});
+  std::unordered_map<std::uint64_t, std::uint32_t> cells;   // of places for which no point stands
+  for (const LampPhoton& photon : photons) {
+    std::uint32_t spot = photon.point;
+    if (spot == kNone)
+      spot = std::uint32_t(high_.size()) + cells.emplace(cell_of(photon, kCellsPerReach / lamp_reach_), std::uint32_t(cells.size())).first->second;
+    sites_.push_back({photon.place, photon.normal, photon.flux, photon.bsdf, 0, 1, spot, photon.lamp_distance});
+  }
 }
 
 /// Sites of one point become a spot.
 void BrightPoints::gather_spots() {
-  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.point < b.point; });
+  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.spot < b.spot; });
   std::vector<LightBounds> spots;
   for (std::size_t i = 0, end = 0; i < sites_.size(); i = end) {
     LightBounds spot;
-    spot.axis = points_.points()[sites_[i].point].normal;
-    for (end = i; end < sites_.size() && sites_[end].point == sites_[i].point; ++end) {
+    spot.axis = sites_[i].spot < high_.size() ? points_.points()[sites_[i].spot].normal : sites_[i].normal;
+    for (end = i; end < sites_.size() && sites_[end].spot == sites_[i].spot; ++end) {
       const Site& site = sites_[end];
       spot.box.add(site.place.position);
       spot.cos_spread = std::min(spot.cos_spread, dot(site.normal, spot.axis));
@@ -158,8 +176,8 @@ void BrightPoints::sample_uneven(const Lights& lights, const std::vector<std::ui
   update_direct(tracer_, lights, nullptr, sampling, sampled);
   for (std::size_t i = 0; i < uneven.size(); ++i) {
     Site& site = sites_[uneven[i]];
-    const IrradiancePoint& point = points_.points()[site.point];
-    site.irradiance = (point.indirect + point.caustic + sampled[i].direct) * high_[site.point];
+    const IrradiancePoint& point = points_.points()[site.spot];
+    site.irradiance = (point.indirect + point.caustic + sampled[i].direct) * high_[site.spot];
   }
 }
 

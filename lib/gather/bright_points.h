@@ -49,7 +49,7 @@ struct BrightLight {
 ///
 /// So is direct light of lamps beside surfaces, which light spots smaller than points can hold (lamp_light.h). Of the light of a place z on a lamp that
 /// reaches y, d = |z - y| below kBesideLamp spacings, the share w is explicit with d for R: from 4 d on. Where a point beside a lamp stands for y rays
-/// sample direct light and bring 1 - w of such samples. Sites are photons from the lamps: as dense as the light, however small its spot.
+/// sample direct light, as they do where none stands for it, and bring 1 - w of such samples. Sites are photons from the lamps: as dense as the light, however small its spot.
 /// Thread-safe.
 class BrightPoints {
  public:
@@ -67,10 +67,10 @@ class BrightPoints {
   }
   /// w.
   float explicit_share(float distance) const;
-  /// Share of the direct light of a lamp `lamp_distance` m from a place y that rays bring which meet y at `distance` m. 1 where y's point is not
-  /// beside a lamp.
-  float left_of_lamp(const PointLookup::Light& point, float distance, float lamp_distance) const {
-    return point.beside_lamp && lamp_distance < lamp_reach_ ? 1 - lamp_share(distance, lamp_distance) : 1.0f;
+  /// Share of the direct light of a lamp `lamp_distance` m from a place y that rays bring which meet y at `distance` m. 1 where the point that stands for
+  /// y is not beside a lamp; nullptr: none stands for y.
+  float left_of_lamp(const PointLookup::Light* point, float distance, float lamp_distance) const {
+    return (!point || point->beside_lamp) && lamp_distance < lamp_reach_ ? 1 - lamp_share(distance, lamp_distance) : 1.0f;
   }
 
   /// A place that looks at bright points.
@@ -91,7 +91,7 @@ class BrightPoints {
     Bsdf bsdf;
     float radius;            ///< m: of the estimate behind its point
     float area;              ///< m^2; of a photon 1, as its flux stands for irradiance x area
-    std::uint32_t point;
+    std::uint32_t spot;      ///< its point, or beyond all points that of a cell of photons
     float lamp_distance = 0; ///< m: of a lamp's photon; 0: light of the point
   };
   struct Sites {

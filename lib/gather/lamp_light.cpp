@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kPhotons = 1 << 15;
 constexpr std::uint64_t kKey = 0x6c616d7073706f74ull;
 
-/// Where a photon lands, if that is on a Lambert lobe within `reach` m for which a point stands.
+/// Where a photon lands, if that is on a Lambert lobe within `reach` m.
 std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, const PhotonEmission& emission, float reach, const PathRandom& random) {
   if (is_black(emission.flux)) return std::nullopt;
   Ray ray{emission.origin + emission.normal * emission.origin_offset, emission.travel, 0, reach};
@@ -34,14 +34,13 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
   const float distance = length(place.position - emission.origin);
   if (!(cosine > 0 && geometric > 0 && distance > 0 && distance < reach)) return std::nullopt;
   const PointLookup::Light* const point = points.find(place.position, normal);
-  if (!point) return std::nullopt;
   float share = cosine / geometric / float(kPhotons);
   if (bsdf.has_specular()) share *= bsdf.arrival_weight(cosine);
   if (const Media* const media = tracer.frame().media.get()) [[unlikely]] {
     ray.t_max = hit.t;
     share *= media_transmittance(*media, ray, {random, 0, way_shadow});
   }
-  return LampPhoton{place, normal, bsdf, emission.flux * share, distance, point->point};
+  return LampPhoton{place, normal, bsdf, emission.flux * share, distance, point ? point->point : kNone};
 }
 
 }  // namespace
@@ -66,7 +65,8 @@ std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights&
 
 std::vector<LampPhoton> note_lamps_beside(const Tracer& tracer, const Lights& lights, PointLookup& points) {
   std::vector<LampPhoton> photons = photons_beside_lamps(tracer, lights, points);
-  for (const LampPhoton& photon : photons) points.note_lamp(photon.point);
+  for (const LampPhoton& photon : photons)
+    if (photon.point != kNone) points.note_lamp(photon.point);
   return photons;
 }
 

@@ -19,15 +19,15 @@ struct LampPhoton {
   Bsdf bsdf;                 ///< the lobes there
   Rgb flux;                  ///< W, as photons are stored: times |w . n_s| / |w . n|, under a coat times Bsdf::arrival_weight
   float lamp_distance;       ///< m, > 0
-  std::uint32_t point;       ///< the irradiance point that stands for the place
+  std::uint32_t point;       ///< the irradiance point that stands for the place; kNone: none does, as on the lamp's own fittings
 };
 
 /// A lamp at the height d above a surface lights a spot of about the radius d. Points lie a spacing s apart: of a lamp nearer than
 /// this many spacings they know the spot badly or, as a rule, not at all.
 inline constexpr float kBesideLamp = 2;
 
-/// Of 2^15 photons of kind direct from all lamps those that land within kBesideLamp spacings of their lamp, where a point stands for the
-/// place. The sum of their flux over a place is the direct light that comes from so near, in the mean over seeds. Costs 2^15 rays of that length.
+/// Of 2^15 photons of kind direct from all lamps those that land within kBesideLamp spacings of their lamp. The sum of their flux over a place is
+/// the direct light that comes from so near, in the mean over seeds. Costs 2^15 rays of that length.
 /// Same result for any number of threads.
 std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::uint64_t seed = 0);
 
