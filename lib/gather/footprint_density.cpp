@@ -9,6 +9,7 @@
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
 #include "lib/density/photon_reach.h"
+#include "lib/gather/gather_directions.h"
 #include "lib/material/seen_side.h"
 
 namespace tempolux {
@@ -218,6 +219,32 @@ FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   return {2 * radius, disc(2 * radius)};
 }
 
+/// A photon whose light falls on the place if it reaches it.
+struct FootprintDensity::Candidate {
+  std::uint32_t photon;
+  Rgbd irradiance;      ///< W/m^2
+  double importance;    ///< >= 0: its channels' sum
+};
+
+/// Light of those of the candidates that reach a place, by options_.asked of them: drawn by importance, evenly spaced along their sum `whole`.
+Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const {
+  const auto reaches = [&](std::uint32_t photon) { return area_.reach()(index_.position(photon), normal_of(photon), position, normal); };
+  Rgbd sum{0.0};
+  if (options_.asked == 0 || candidates.size() <= std::size_t(options_.asked)) {
+    for (const Candidate& c : candidates)
+      if (reaches(c.photon)) sum += c.irradiance;
+    return sum;
+  }
+  const double step = whole / options_.asked;
+  double next = step * double(PathRandom(0x61736b6564ull, gather_key(position, normal, 0)).get1(0, Purpose::points)), passed = 0;
+  for (const Candidate& c : candidates) {
+    int times = 0;
+    for (passed += c.importance; next < passed; next += step) ++times;
+    if (times > 0 && reaches(c.photon)) sum += c.irradiance * (times * step / c.importance);
+  }
+  return sum;
+}
+
 Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const {
   const Vec3 normal = surface.geometric;
   smooth_over = 0;
@@ -225,7 +252,10 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& 
   thread_local std::vector<Covering> covering;
   covering.clear();
   bool smooth = find_covering(position, normal, covering) && !covering.empty();
+  thread_local std::vector<Candidate> candidates;
+  candidates.clear();
   Rgbd sum{0.0};
+  double whole = 0;
   for (const auto [photon, distance2] : covering) {
     const auto [radius, inverse_area] = extent_of(photon);
     smooth = smooth && radius > kAlmost * options_.max_radius;
@@ -236,9 +266,16 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& 
     const Vec3 from = index_.position(photon), from_normal = normal_of(photon);
     const bool in_plane =
         inverse_area < 0 && std::abs(dot(position - from, from_normal)) < 4 * area_.offset() + kLift * radius;
-    if (in_plane || area_.reach()(from, from_normal, position, normal))
-      sum += Rgbd(index_.flux(photon)) * (weight * double(std::abs(inverse_area)));
+    const Rgbd irradiance = Rgbd(index_.flux(photon)) * (weight * double(std::abs(inverse_area)));
+    if (in_plane) {
+      sum += irradiance;
+      continue;
+    }
+    const double importance = std::abs(irradiance.r) + std::abs(irradiance.g) + std::abs(irradiance.b);
+    candidates.push_back({photon, irradiance, importance});
+    whole += importance;
   }
+  if (!candidates.empty()) sum += of_asked(position, normal, candidates, whole);
   if (smooth) smooth_over = options_.max_radius;
   return Rgb(sum);
 }

@@ -19,6 +19,9 @@ namespace tempolux {
 struct FootprintOptions {
   int neighbours = 25;    ///< k, below kMaxNeighbours
   float max_radius = 0;   ///< m; 0: the photons' own (photon_reach): one in twenty is so far from others
+  /// Of the photons whose footprints cover a place so many are asked whether they reach it, drawn by what they would give; 0: all. No bias, and no noise
+  /// where all reach it or none: for estimates of which a pixel averages several.
+  int asked = 0;
   float margin = 0;       ///< of max_radius: light counts as smooth only if no footprint narrower than that is as near as this
 };
 
@@ -96,6 +99,8 @@ class FootprintDensity {
   };
   float radius_of(std::size_t photon, Vec3 normal, NeighbourList& found) const;
   void build_tree();
+  struct Candidate;
+  Rgbd of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const;
   bool find_covering(Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
   bool scan_leaf(std::size_t leaf, Vec3 position, Vec3 normal, std::vector<Covering>& found) const;
   Extent extent_of(std::uint32_t photon) const;

@@ -4,6 +4,11 @@
 #include "lib/gather/point_density.h"
 
 namespace tempolux {
+namespace {
+
+constexpr int kAsked = 4;   ///< FootprintOptions::asked
+
+}  // namespace
 
 PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d photon_shift,
                          const PhotonLightOptions& options) {
@@ -13,7 +18,7 @@ PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d 
   if (has_indirect_) indirect_ = PhotonIndex(photons.photons, kind_bit(formats::PathKind::indirect), photon_shift);
   if (!(options_.max_radius > 0) && indirect_.size() > 0)
     options_.max_radius = PointDensity::kSparser * photon_reach(indirect_, options.neighbours, options_.min_cos, options_.flattening);
-  const FootprintOptions density{options.caustic_neighbours, options.caustic_radius, 0};
+  const FootprintOptions density{.neighbours = options.caustic_neighbours, .max_radius = options.caustic_radius, .asked = kAsked};
   caustic_ = std::make_unique<FootprintDensity>(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);
   if (caustic_->empty()) caustic_.reset();
 }
