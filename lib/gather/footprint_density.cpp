@@ -245,20 +245,40 @@ Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Cand
   return sum;
 }
 
+/// Of the footprints that cover a place.
+struct FootprintDensity::Extents {
+  bool widest = false;   ///< all that come within the margin have the largest radius
+  float inside = 0;      ///< m: so far from the border of one of them, at most
+};
+
 Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const {
+  Extents extents;
+  const Rgb irradiance = estimate(position, surface, extents);
+  smooth_over = extents.widest ? options_.max_radius : 0;
+  return irradiance;
+}
+
+Rgb FootprintDensity::estimate_around(Vec3 position, const LitSurface& surface, float& alike_within) const {
+  Extents extents;
+  const Rgb irradiance = estimate(position, surface, extents);
+  alike_within = extents.inside / 9;
+  return irradiance;
+}
+
+Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, Extents& extents) const {
   const Vec3 normal = surface.geometric;
-  smooth_over = 0;
   if (empty()) return Rgb(0.0f);
   thread_local std::vector<Covering> covering;
   covering.clear();
-  bool smooth = find_covering(position, normal, covering) && !covering.empty();
+  extents.widest = find_covering(position, normal, covering) && !covering.empty();
   thread_local std::vector<Candidate> candidates;
   candidates.clear();
   Rgbd sum{0.0};
   double whole = 0;
   for (const auto [photon, distance2] : covering) {
     const auto [radius, inverse_area] = extent_of(photon);
-    smooth = smooth && radius > kAlmost * options_.max_radius;
+    extents.widest = extents.widest && radius > kAlmost * options_.max_radius;
+    extents.inside = std::max(extents.inside, radius - std::sqrt(distance2));
     double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
     if (!(weight > 0)) continue;   // it has become smaller
     if (directed_) weight *= double(received_share(arriving_from_[photon], normal_of(photon), surface));
@@ -276,7 +296,6 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& 
     whole += importance;
   }
   if (!candidates.empty()) sum += of_asked(position, normal, candidates, whole);
-  if (smooth) smooth_over = options_.max_radius;
   return Rgb(sum);
 }
 

@@ -7,6 +7,7 @@
 
 #include "lib/core/parallel.h"
 #include "lib/render/frame_renderer.h"
+#include "lib/render/photon_light.h"
 
 namespace tempolux {
 
@@ -140,6 +141,7 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint
                      std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves, RayCounts& counts, const Add& add) {
   constexpr int kTogether = 8, kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
   const Dealt dealt(seed, pixel, first, count);
+  CausticMemory caustics;
   for (int done = 0; done < count.own; done += kTogether) {
     const int n = std::min(kTogether, count.own - done);
     Ray rays[kTogether];
@@ -156,6 +158,7 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint
       scene.tracer.intersect({rays, std::size_t(n)}, {hits, std::size_t(n)});
     for (int i = 0; i < n; ++i) {
       const PathEffort effort = dealt(done + i);
+      caustics.use_half(2 * (done + i) >= count.own);
       const PathParts parts = trace_eye_path(scene, rays[i], hits[i], of(i), known, counts, view.cone(), effort);
       if (halves) halves->add(done + i, count.own, parts, effort);
       add(done + i, parts);
