@@ -12,6 +12,7 @@ namespace tempolux::tools {
 IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed,
                              int number) {
   const SceneFrame& frame = tracer.frame();
+  known_.lights_are_met = lights.has_environment() || std::ranges::any_of(frame.materials, [](const Material& material) { return material.emissive(); });
   if (!options.photons.empty()) read_maps(tool, options, tracer, number);
   if (!options.points.empty()) read_points(tool, options, tracer, lights, seed, number);
   if (!options.meshirrad.empty()) {
