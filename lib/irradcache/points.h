@@ -83,6 +83,7 @@ class PointLookup {
   std::span<const IrradiancePoint> points() const { return points_; }
   /// Is a point's light of a kind that of the places near it? Not where some of the points beside it (within 1.5 spacings)
   /// get kContrast times as much of it as others, of indirect light surely kContrastOfIndirect times (apart()): there a shadow or a bright spot ends.
+  /// Nor where fewer than two points are beside it, for its direct light: what shows that one point in a wall's shadow is not all of the wall?
   /// Direct light: a hit is to sample it itself. Read instead, light would reach a spacing into shadows and out of gaps, where much
   /// of what sees it is: the ground in a chair's shadow is seen by the chair.
   /// Indirect light (beside points of the same object alone): a ray is to go on from the hit. A lamp a finger below the ceiling lights the gap behind it a hundred times
