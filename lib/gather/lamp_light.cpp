@@ -1,8 +1,5 @@
 #include "lib/gather/lamp_light.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <optional>
 
 #include "lib/core/parallel.h"
@@ -14,10 +11,11 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kPhotons = 1 << 15;
+constexpr std::size_t kFewest = 1 << 15, kMost = 1 << 18;   ///< photons emitted
+constexpr std::size_t kEnough = 1 << 10;                     ///< landed: their flux is known to 3 % then
 constexpr std::uint64_t kKey = 0x6c616d7073706f74ull;
 
-/// Where a photon lands, if that is on a Lambert lobe within `reach` m.
+/// Where a photon lands, if that is on a Lambert lobe within `reach` m. Its flux is that of one photon of one.
 std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, const PhotonEmission& emission, float reach, const PathRandom& random) {
   if (is_black(emission.flux)) return std::nullopt;
   Ray ray{emission.origin + emission.normal * emission.origin_offset, emission.travel, 0, reach};
@@ -34,7 +32,7 @@ std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points
   const float distance = length(place.position - emission.origin);
   if (!(cosine > 0 && geometric > 0 && distance > 0 && distance < reach)) return std::nullopt;
   const PointLookup::Light* const point = points.find(place.position, normal);
-  float share = cosine / geometric / float(kPhotons);
+  float share = cosine / geometric;
   if (bsdf.has_specular()) share *= bsdf.arrival_weight(cosine);
   if (const Media* const media = tracer.frame().media.get()) [[unlikely]] {
     ray.t_max = hit.t;
@@ -50,16 +48,22 @@ std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights&
   constexpr std::size_t kChunk = 1024;
   const std::uint64_t key = mix64(seed ^ kKey);
   const float reach = kBesideLamp * points.spacing();
-  std::array<std::vector<LampPhoton>, kPhotons / kChunk> found;
-  parallel_chunks(kPhotons, kChunk, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const Vec2 from = sobol_owen_2d(std::uint32_t(i), key), to = sobol_owen_2d(std::uint32_t(i), mix64(key + 1));
-      const PhotonEmission emission = lights.emit({double(from.x), double(from.y), double(to.x), double(to.y)});
-      if (std::optional<LampPhoton> photon = landed(tracer, points, emission, reach, PathRandom(key, i))) found[i / kChunk].push_back(*photon);
-    }
-  });
   std::vector<LampPhoton> all;
-  for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+  std::size_t done = 0;
+  for (std::size_t wanted = kFewest; wanted <= kMost; wanted *= 2) {
+    std::vector<std::vector<LampPhoton>> found((wanted - done) / kChunk);
+    parallel_chunks(wanted - done, kChunk, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = done + first; i < done + last; ++i) {
+        const Vec2 from = sobol_owen_2d(std::uint32_t(i), key), to = sobol_owen_2d(std::uint32_t(i), mix64(key + 1));
+        const PhotonEmission emission = lights.emit({double(from.x), double(from.y), double(to.x), double(to.y)});
+        if (std::optional<LampPhoton> photon = landed(tracer, points, emission, reach, PathRandom(key, i))) found[first / kChunk].push_back(*photon);
+      }
+    });
+    for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+    done = wanted;
+    if (all.empty() || all.size() >= kEnough) break;
+  }
+  for (LampPhoton& photon : all) photon.flux *= 1 / float(done);
   return all;
 }
 
