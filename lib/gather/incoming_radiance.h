@@ -73,8 +73,8 @@ class IncomingRadiance {
                 int depth, const Gathered& to) const;
   static float threshold(const PathRandom& random);
   bool is_near(const Met& met, const PointLookup::Light& point, const PathRandom& random) const;
-  Rgb beside_edge(const Met& met, const PointLookup::Light& light, const PathRandom& random, GatherCounts& counts) const;
-  Rgb sampled_light(const Met& met, const struct SeenSide& side, const PathRandom& random, GatherCounts& counts) const;
+  Rgb beside_edge(const Met& met, const PointLookup::Light& light, bool low, const PathRandom& random, GatherCounts& counts) const;
+  Rgb sampled_light(const Met& met, const struct SeenSide& side, const PointLookup::Light* point, bool low, const PathRandom& random, GatherCounts& counts) const;
 
   const Tracer& tracer_;
   const Lights& lights_;

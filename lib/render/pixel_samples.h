@@ -7,6 +7,7 @@
 
 #include "lib/core/parallel.h"
 #include "lib/render/frame_renderer.h"
+#include "lib/render/photon_light.h"
 
 namespace tempolux {
 
@@ -145,10 +146,11 @@ class SampleSequence {
                                                          {~options.seed, pixel, of_half(first), of_half(count)}} {}
   PixelRandom random(int i) const { return random_[sequence(i)].of_sample(std::uint32_t(of_half(first_.own) + at(i))); }
   PathEffort effort(int i) const { return dealt_[sequence(i)](at(i)); }
-  /// Which half of the pixel's samples sample i belongs to.
+  /// Which half of the pass sample i belongs to.
+  int half(int i) const { return independent_ ? i & 1 : 2 * i >= count_.own; }
+  /// Which half of the pixel's samples it belongs to: a single sample goes to the half that has fewer.
   int half(int i, const SampleHalves& halves) const {
-    if (independent_) return i & 1;
-    return count_.own == 1 ? halves.half[1].own.count < halves.half[0].own.count : 2 * i >= count_.own;
+    return count_.own == 1 && !independent_ ? halves.half[1].own.count < halves.half[0].own.count : half(i);
   }
 
  private:
@@ -169,6 +171,7 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, const Fra
                      std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves, RayCounts& counts, const Add& add) {
   constexpr int kTogether = 8, kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
   const SampleSequence sequence(options, pixel, first, count);
+  CausticMemory caustics;
   for (int done = 0; done < count.own; done += kTogether) {
     const int n = std::min(kTogether, count.own - done);
     Ray rays[kTogether];
@@ -183,6 +186,7 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, const Fra
       scene.tracer.intersect({rays, std::size_t(n)}, {hits, std::size_t(n)});
     for (int i = 0; i < n; ++i) {
       const PathEffort effort = sequence.effort(done + i);
+      caustics.use_half(sequence.half(done + i));
       const PathParts parts = trace_eye_path(scene, rays[i], hits[i], sequence.random(done + i), options.known, counts, view.cone(), effort);
       if (halves) halves->add(sequence.half(done + i, *halves), parts, effort);
       add(done + i, parts);
