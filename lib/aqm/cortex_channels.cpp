@@ -31,7 +31,7 @@ double upper_edge(int band) { return band == kBaseBand ? 1.0 / 24 : 4.0 / 3 * st
 ChannelGrid::ChannelGrid(int w, int h) : width(w), height(h), padded_width(padded(w)), padded_height(padded(h)) {}
 
 int ChannelGrid::step(int band) {
-  constexpr std::array<int, kBands> steps{2, 2, 2, 4, 8, 8};
+  constexpr std::array<int, kBands> steps{1, 1, 2, 4, 8, 8};
   return steps[std::size_t(band - 1)];
 }
 

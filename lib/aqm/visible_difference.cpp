@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "lib/aqm/cortex_channels.h"
 #include "lib/core/parallel.h"
@@ -123,14 +124,15 @@ using BandTerms = std::array<std::vector<float>, kBands>;   ///< summed over the
 
 BandTerms all_terms(const ChannelGrid& grid, const Responses& responses, const BandGains& gains, double pixels_per_degree) {
   const FourierTransform transform;
-  const auto first = padded_spectrum(transform, grid, responses.first), second = padded_spectrum(transform, grid, responses.second);
+  std::array<std::optional<FourierArray<std::complex<float>>>, 2> spectra;
+  parallel_chunks(2, 1, [&](std::size_t i, std::size_t) { spectra[i] = padded_spectrum(transform, grid, i ? responses.second : responses.first); });
   const ChannelFilters filters(grid, pixels_per_degree);
   const std::vector<ChannelName> names = channel_names();
   BandTerms sums;
   parallel_ordered(
       names.size(), std::size_t(parallel_thread_count()) + 1,
       [&](std::size_t i) -> std::shared_ptr<void> {
-        const ChannelPair pair = filters.channel(transform, names[i], first, second);
+        const ChannelPair pair = filters.channel(transform, names[i], *spectra[0], *spectra[1]);
         return std::make_shared<std::vector<float>>(channel_terms(grid, names[i], pair, gains[std::size_t(names[i].band - 1)]));
       },
       [&](std::size_t i, void* made) {
