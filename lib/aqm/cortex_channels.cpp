@@ -2,7 +2,6 @@
 #include "lib/aqm/cortex_channels.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace tempolux::vision {
@@ -58,15 +57,23 @@ std::vector<ChannelName> channel_names() {
   return names;
 }
 
-ChannelFilters::ChannelFilters(const ChannelGrid& grid, double pixels_per_degree) : grid_(grid), radial_(kBands) {
+ChannelFilters::ChannelFilters(const ChannelGrid& grid, double pixels_per_degree)
+    : grid_(grid), pixels_per_degree_(pixels_per_degree), radial_(kBands) {
   for (int band = 1; band <= kBands; ++band) {
-    const double at_centre = contrast_sensitivity(band_frequency(band) * pixels_per_degree, kDriftSpeed);
+    std::vector<double> seen(kTableSteps + 1);
     for (int i = 0; i <= kTableSteps; ++i) {
       const double frequency = kTableEnd * i / kTableSteps;
-      const double relative = at_centre > 0 ? contrast_sensitivity(frequency * pixels_per_degree, kDriftSpeed) / at_centre : 0;
-      radial_[std::size_t(band - 1)].push_back(float(band_filter(band, frequency) * relative));
+      seen[std::size_t(i)] = band_filter(band, frequency) * contrast_sensitivity(frequency * pixels_per_degree, kDriftSpeed);
     }
+    const double most = std::ranges::max(seen);
+    most_[std::size_t(band - 1)] = most;
+    for (const double value : seen) radial_[std::size_t(band - 1)].push_back(most > 0 ? float(value / most) : 0);
   }
+}
+
+double ChannelFilters::sensitivity(int band, double speed) const {
+  const double frequency = band_frequency(band) * pixels_per_degree_, still = contrast_sensitivity(frequency, kDriftSpeed);
+  return still > 0 ? most_[std::size_t(band - 1)] * (contrast_sensitivity(frequency, speed) / still) : 0;
 }
 
 float ChannelFilters::radial(int band, double frequency) const {

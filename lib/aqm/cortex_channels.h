@@ -1,6 +1,7 @@
 // lib/aqm/cortex_channels.h -- pictures taken apart into the channels of the visual cortex, each at a resolution of its own.
 #pragma once
 
+#include <array>
 #include <complex>
 #include <vector>
 
@@ -46,11 +47,14 @@ struct ChannelPair {
   FourierArray<std::complex<float>> first, second;
 };
 
-/// Takes channels out of two spectra. Each frequency is weighted by the channel's filter and by the sensitivity to what stands still,
-/// relative to the sensitivity at band_frequency: within a band an eye sees what it sees of each frequency, nothing of frequency 0.
+/// Takes channels out of two spectra. Each frequency is weighted by the channel's filter and by the sensitivity to what stands still, over
+/// its largest product in the band: within a band an eye sees what it sees of each frequency, nothing of frequency 0.
 class ChannelFilters {
  public:
   ChannelFilters(const ChannelGrid& grid, double pixels_per_degree);
+  /// What a channel is to be multiplied by so that a grating of band_frequency() that moves at `speed` deg/s gives contrast times
+  /// sensitivity. Other frequencies of the band change with speed as that one does.
+  double sensitivity(int band, double speed) const;
   ChannelPair channel(const FourierTransform& transform, ChannelName name, const FourierArray<std::complex<float>>& first,
                       const FourierArray<std::complex<float>>& second) const;
 
@@ -58,7 +62,9 @@ class ChannelFilters {
   struct Lobe;
   float radial(int band, double frequency) const;
   ChannelGrid grid_;
+  double pixels_per_degree_;
   std::vector<std::vector<float>> radial_;   ///< by band - 1, over frequency
+  std::array<double, kBands> most_{};        ///< largest product of filter and sensitivity, by band - 1
 };
 
 }  // namespace tempolux::vision

@@ -71,29 +71,33 @@ class SquareMeans {
 /// What turns a band's amplitude into thresholds, at each of its samples.
 using BandGains = std::array<std::vector<float>, kBands>;
 
-/// Thresholds per response at frequency band_frequency: sensitivity at the speed around a sample over the response that one unit of
-/// contrast gives, scaled so that a grating at its threshold is seen with probability 1/2.
-BandGains band_gains(const ChannelGrid& grid, const std::vector<float>& speed, const Viewing& viewing, double response_per_contrast) {
+/// Thresholds per response: sensitivity at the speed around a sample over the response that one unit of contrast gives, scaled so that a
+/// grating at its threshold is seen with probability 1/2. `speed` is across the retina; empty: everything stands still.
+BandGains band_gains(const ChannelGrid& grid, const ChannelFilters& filters, const std::vector<float>& speed, double response_per_contrast) {
   BandGains gains;
-  std::vector<float> retinal(speed.size());
-  for (std::size_t i = 0; i < speed.size(); ++i) retinal[i] = float(retinal_speed(double(speed[i]), viewing.gaze));
-  const SquareMeans means = speed.empty() ? SquareMeans({}, 0, 0) : SquareMeans(retinal, grid.width, grid.height);
+  const double scale = kHalfSeen / response_per_contrast;
+  const SquareMeans means = speed.empty() ? SquareMeans({}, 0, 0) : SquareMeans(speed, grid.width, grid.height);
   for (int band = 1; band <= kBands; ++band) {
-    const double frequency = band_frequency(band) * viewing.pixels_per_degree, scale = kHalfSeen / response_per_contrast;
     const int columns = grid.columns(band), rows = grid.rows(band), step = ChannelGrid::step(band);
     const int radius = int(0.5 / band_frequency(band));   // half a period
     std::vector<float>& gain = gains[std::size_t(band - 1)];
-    gain.assign(std::size_t(columns) * std::size_t(rows), float(scale * contrast_sensitivity(frequency, kDriftSpeed)));
+    gain.assign(std::size_t(columns) * std::size_t(rows), float(scale * filters.sensitivity(band, kDriftSpeed)));
     if (speed.empty()) continue;
     parallel_chunks(std::size_t(rows), 16, [&](std::size_t begin, std::size_t end) {
       for (std::size_t y = begin; y < end; ++y)
         for (int x = 0; x < columns; ++x) {
           const double around = std::max(means.mean(x * step, int(y) * step, radius), kDriftSpeed);
-          gain[y * std::size_t(columns) + std::size_t(x)] = float(scale * contrast_sensitivity(frequency, around));
+          gain[y * std::size_t(columns) + std::size_t(x)] = float(scale * filters.sensitivity(band, around));
         }
     });
   }
   return gains;
+}
+
+std::vector<float> retinal_speeds(const std::vector<float>& speed, Gaze gaze) {
+  std::vector<float> retinal(speed.size());
+  for (std::size_t i = 0; i < speed.size(); ++i) retinal[i] = float(retinal_speed(double(speed[i]), gaze));
+  return retinal;
 }
 
 /// threshold_elevation() in float; `slope` 1 without powers: k1 k2 = W = 6.
@@ -122,11 +126,10 @@ std::vector<float> channel_terms(const ChannelGrid& grid, ChannelName name, cons
 
 using BandTerms = std::array<std::vector<float>, kBands>;   ///< summed over the orientations of each band
 
-BandTerms all_terms(const ChannelGrid& grid, const Responses& responses, const BandGains& gains, double pixels_per_degree) {
+BandTerms all_terms(const ChannelGrid& grid, const Responses& responses, const ChannelFilters& filters, const BandGains& gains) {
   const FourierTransform transform;
   std::array<std::optional<FourierArray<std::complex<float>>>, 2> spectra;
   parallel_chunks(2, 1, [&](std::size_t i, std::size_t) { spectra[i] = padded_spectrum(transform, grid, i ? responses.second : responses.first); });
-  const ChannelFilters filters(grid, pixels_per_degree);
   const std::vector<ChannelName> names = channel_names();
   BandTerms sums;
   parallel_ordered(
@@ -165,7 +168,9 @@ Detection detection_map(const DisplayedPair& pair, const std::vector<float>& spe
   const double contrast_response = response_per_log_luminance(responses.mean);
   if (!(contrast_response > 0)) return result;   // all black: nothing to see
   const ChannelGrid grid(pair.width, pair.height);
-  const BandTerms terms = all_terms(grid, responses, band_gains(grid, speed, viewing, contrast_response), viewing.pixels_per_degree);
+  const ChannelFilters filters(grid, viewing.pixels_per_degree);
+  const BandGains gains = band_gains(grid, filters, retinal_speeds(speed, viewing.gaze), contrast_response);
+  const BandTerms terms = all_terms(grid, responses, filters, gains);
   parallel_chunks(std::size_t(pair.height), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y)
       for (int x = 0; x < pair.width; ++x) {
