@@ -32,7 +32,7 @@ may compose  'core volume image scene trace light gather render'
 may warp     'core image volume scene trace material render'
 may aqm      'core image'
 may filter   'core image'
-may plan     'core scene material light'
+may plan     'core scene trace material light render'
 may report   'core image aqm'
 for folder in lib/*/; do
   case " lib/core/ lib/image/ lib/volume/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/photon/ lib/density/ lib/irradcache/ lib/gather/ lib/temporal/ lib/render/ lib/compose/ lib/warp/ lib/aqm/ lib/filter/ lib/plan/ lib/report/ " in

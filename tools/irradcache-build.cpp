@@ -11,11 +11,13 @@
 // Formats: formats/irradpoints/irradpoints.md, formats/irradcache/irradcache.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "formats/error.h"
 #include "tools/common/build_records.h"
+#include "tools/common/importance.h"
 #include "tools/common/localised_cache.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
@@ -81,7 +83,7 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--records", options.records, ".irradcache file to extend: its records are kept")->type_name("FILE");
   tool.count_option("--point-count", options.point_count, "irradiance points per side of all surfaces that stand; what moves gets as many per area");
   app.add_option("--importance", options.importance,
-                 "view file of scene-plan, state/view.SSSS: points lie where the cameras look, closer together; elsewhere gather rays go on")
+                 tools::kImportanceHelp)
       ->type_name("FILE");
   app.add_option("--map", options.map,
                  "global, or static: points and records of the scene without what moves in the frame's segment, from its static "
@@ -140,15 +142,18 @@ int main(int argc, char** argv) {
     const std::vector<int>& frames = tool.common().frames;
     check(tool.app(), options, frames);
     options.point.count = std::uint32_t(options.point_count);
-    options.view = tools::read_importance(tool, options.importance);
     options.placement.clamp_neighbours = !options.free_radii;
+    const bool makes_points = options.mode() == "points" || !options.photons.empty();
+    std::optional<tools::Importance> importance;
     const auto seeded = [&](int frame) -> const Options& {   // for a file of this frame, alone or of a range
       options.point.seed = options.gather.seed = tool.common().seed_for_frame(frame);
+      if (makes_points) options.view = importance->at(frame);
       return options;
     };
     tool.stats().phase("load");
-    const unsigned camera = options.mode() == "points" ? tools::SceneInput::nothing : tools::SceneInput::a_camera;
+    const unsigned camera = options.mode() == "points" && !options.importance.empty() ? tools::SceneInput::nothing : tools::SceneInput::a_camera;
     tools::SceneInput input(tool, options.scene(), tools::SceneInput::light | camera);
+    importance.emplace(tool, input, options.importance);
     StandingTree standing;
     if (options.mode() == "points")
       for (int frame : frames)

@@ -22,6 +22,7 @@
 #include "lib/photon/dynamic_map.h"
 #include "lib/photon/photon_map.h"
 #include "lib/scene/standing.h"
+#include "tools/common/importance.h"
 #include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
@@ -310,7 +311,7 @@ int main(int argc, char** argv) {
   app.add_option("--groups", options.groups, "photon groups N_g (photon i is of group i mod N_g), or auto")
       ->capture_default_str();
   app.add_option("--importance", options.importance,
-                 "view file of scene-plan, state/view.SSSS: photons of sun and sky are aimed where the cameras look")
+                 tools::kImportanceHelp)
       ->type_name("FILE");
   app.add_option("-o,--output", options.output, ".photons file, or a pattern as f.####.photons; - for standard output")
       ->required();
@@ -325,7 +326,7 @@ int main(int argc, char** argv) {
   app.add_option("--volume-share", options.volume_share, "share of the tentative collisions in media that are recorded")
       ->capture_default_str()
       ->check(tools::number_between(0.001, 1));
-  tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_frames);
+  tool.common_options(tools::uses_scene | tools::uses_seed | tools::uses_camera | tools::uses_frames);
 
   return tool.run([&] {
     check(app, options);
@@ -334,14 +335,16 @@ int main(int argc, char** argv) {
       throw InputError("--output: several frames need a pattern, for example f.####.photons");
     tools::check_update_arguments(tool, options.map != "global", options.updating);
     tool.stats().phase("load");
-    tools::SceneInput input(tool, options.scene, tools::SceneInput::light);
+    const unsigned camera = options.importance.empty() ? tools::SceneInput::a_camera : tools::SceneInput::nothing;
+    tools::SceneInput input(tool, options.scene, tools::SceneInput::light | camera);
     if (options.map != "global" && input.has_media())
       throw InputError(options.scene + ": has media, which all light meets: --map " + options.map + " cannot be told from the rest; trace the global map");
     StandingTree standing;
-    const std::vector<formats::ViewSphere> view = tools::read_importance(tool, options.importance);
+    tools::Importance importance(tool, input, options.importance);
     tools::KeptMap kept;
     for (int frame : frames) {
       kept.wanted = frame != frames.back();
+      const std::vector<formats::ViewSphere>& view = importance.at(frame);
       if (options.map == "static") trace_standing(tool, input, options, view, frame);
       else if (options.map == "dynamic") trace_difference(tool, input, options, view, frame, standing);
       else trace_frame(tool, input, options, view, frame, standing, kept);

@@ -1,220 +1,170 @@
 // lib/plan/plan_files.cpp -- formats/plan/plan.md, written.
 #include "lib/plan/plan_files.h"
 
-#include <array>
-#include <cstdio>
+#include <algorithm>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "formats/error.h"
+#include "formats/hash.h"
 
 namespace tempolux {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json frame_json(const PlannedFrame& frame, bool photons) {
-  Json json = {{"frame", frame.frame}, {"asked", frame.asked}};
-  if (frame.evaluated != frame.frame) json["shows"] = frame.evaluated;
-  if (photons) json["photons"] = frame.lit_frame;
-  if (frame.asked) json["picture"] = frame.picture;
-  json["hashes"] = {{"moving_geometry", frame.moving_geometry}, {"lights", frame.lights}};
-  if (!frame.media.empty()) json["hashes"]["media"] = frame.media;
-  if (frame.asked) json["hashes"]["camera"] = frame.camera;
+Json decisions_json(const Decisions& d) {
+  Json json = {{"photon_kinds", d.kinds}, {"indirect", kIndirectMethods[std::size_t(d.indirect)]}, {"paths", d.photon_paths},
+               {"rays", d.record_rays}, {"learn_lights", d.learn_lights}, {"split", d.split},
+               {"moving", kMovingMethods[std::size_t(d.moving)]},
+               {"moving_cost", {d.moving_cost.light, d.moving_cost.records, d.moving_cost.photon_bytes}},
+               {"walkthrough", d.walk}, {"view", d.view}, {"looked_at", d.looked}};
+  json["because"] = Json::object();
+  for (const Reason& reason : d.reasons) json["because"][reason.stage] = reason.because;
   return json;
 }
 
-Json segment_json(const PlannedSegment& segment, bool photons) {
-  Json json = {{"first", segment.first}, {"last", segment.last}, {"camera_moves", segment.camera_moves}};
+Json frame_json(const PlannedFrame& frame) {
+  Json json = {{"frame", frame.frame}, {"lit_as", frame.lit_frame}, {"picture", frame.picture}};
+  json["hashes"] = {{"moving_geometry", frame.moving_geometry}, {"lights", frame.lights}, {"materials", frame.materials}};
+  if (!frame.media.empty()) json["hashes"]["media"] = frame.media;
+  json["hashes"]["camera"] = frame.camera;
+  return json;
+}
+
+Json segment_json(const PlannedSegment& segment) {
+  Json json = {{"first", segment.first}, {"last", segment.last}, {"decisions", decisions_json(segment.decisions)}};
   json["moves"] = Json::array();
   for (const MovingNode& node : segment.moves)
     json["moves"].push_back({{"node", node.name}, {"carries", node.carries}, {"why", node.why}});
-  json["hashes"] = {{"static_geometry", segment.static_geometry},
-                    {"materials", segment.materials},
-                    {"standing", segment.standing},
-                    {"frozen", segment.frozen}};
+  json["hashes"] = {{"static_geometry", segment.static_geometry}, {"standing", segment.standing}, {"frozen", segment.frozen}};
   json["frames"] = Json::array();
-  for (const PlannedFrame& frame : segment.frames) json["frames"].push_back(frame_json(frame, photons));
+  for (const PlannedFrame& frame : segment.frames) json["frames"].push_back(frame_json(frame));
   return json;
 }
 
-/// For each state of light transport among the frames asked for, by its first frame: the pictures that show it.
-std::map<int, std::set<int>> pictures_by_light(const Plan& plan) {
-  std::map<int, std::set<int>> pictures;
-  for (const PlannedSegment& segment : plan.segments)
-    for (const PlannedFrame& frame : segment.frames)
-      if (frame.asked) pictures[frame.lit_frame].insert(frame.picture);
-  return pictures;
-}
-
-template <class Frames>
-std::string variable(const std::string& name, const Frames& frames) {
-  std::string line = name + " :=";
-  for (const int frame : frames) line.append(1, ' ').append(frame_digits(frame));
-  return line.append(1, '\n');
-}
-
-/// The map before each in its segment: what it may be an update of.
-std::string previous_maps(const Plan& plan, const std::set<int>& photon_frames) {
-  std::string text = "\n# the photon map before, in the same segment\n";
-  for (const PlannedSegment& segment : plan.segments) {
-    int previous = 0;
-    bool any = false;
-    for (const int frame : photon_frames) {
-      if (frame < segment.first || frame > segment.last) continue;
-      if (any) text += "lit_before_" + frame_digits(frame) + " := " + frame_digits(previous) + "\n";
-      previous = frame;
-      any = true;
-    }
+/// The stages, whether any file is made by each, and by what the first segment decides it.
+Json stages_json(const Plan& plan, const Graph& graph) {
+  std::map<std::string, std::size_t> files;
+  for (const GraphFile& file : graph.files) ++files[file.stage];
+  Json json = Json::array();
+  for (const StageInfo& stage : kStages) {
+    Json one = {{"stage", stage.name}, {"files", files[std::string(stage.name)]}};
+    for (const Reason& reason : plan.segments.front().decisions.reasons)
+      if (reason.stage == stage.name) one["because"] = reason.because;
+    json.push_back(one);
   }
+  return json;
+}
+
+std::string words_of(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += " " + name;
   return text;
 }
 
-/// A file name as a prerequisite.
-std::string escaped_for_make(const std::string& name) {
-  std::string text;
-  for (const char c : name) {
-    if (c == ' ' || c == '#' || c == '%' || c == ':') text += '\\';
-    if (c == '$') text += '$';
-    text += c;
-  }
-  return text;
+std::string key_of(const std::string& text) { return hash_hex(text).substr(0, 10); }
+
+/// A rule for a file with a plain name: `marker` in shown/ says what it shows now. `recipe`: a variable of stages.mk.
+std::string shown_rule(const std::string& name, const std::string& marker, const std::string& inputs, const std::string& recipe) {
+  return name + " shown/" + marker + " &: | " + inputs + "; $(" + recipe + "," + marker + ")\n";
 }
 
-/// Of segments whose light follows from that of what stands: stands_FFFF for each state of light, state_SSSS for the segment.
-std::string standing_variables(const Plan& plan, const std::string& folder, const std::set<int>& photon_frames) {
-  std::string text;
-  for (const PlannedSegment& segment : plan.segments) {
-    if (!segment.updated) continue;
-    const std::string first = frame_digits(segment.first);
-    std::string states = "static." + first + " materials." + first + " standing." + first + " frozen." + first;
-    for (const PlannedFrame& frame : segment.frames) {
-      const std::string digits = frame_digits(frame.frame);
-      states += " moving." + digits + " lights." + digits;
-      if (photon_frames.contains(frame.frame)) text += "stands_" + digits + " := " + first + "\n";
-    }
-    text += "state_" + first + " := $(addprefix " + folder + "/state/," + states + ")\n";
+/// Frames, their previews, the sheet, the log of a walkthrough.
+std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
+  const std::string viewer = tool_hash("tempolux-info"), first = graph.pictures.at(plan.frames.front());
+  const std::string exposure = "shown/exposure-" + key_of(first + viewer);
+  std::string text = exposure + ": | " + first + "\n", frames, previews, all = exposure + viewer;
+  for (const int frame : plan.frames) {
+    const std::string digits = frame_digits(frame), picture = graph.pictures.at(frame);
+    frames += " frames/" + digits + ".exr";
+    previews += " frames/" + digits + ".png";
+    all += picture;
+    text += shown_rule("frames/" + digits + ".exr", digits + "-" + key_of(picture), picture, "call show," + digits);
+    text += shown_rule("frames/" + digits + ".png", digits + "-" + key_of(picture + exposure) + ".png", picture + " " + exposure, "call preview," + digits);
   }
-  return text.empty() ? text : "\n# what stands while others move\n" + text;
+  if (!graph.intervals.empty()) {
+    text += "log := walk.log\nintervals :=" + words_of(graph.intervals) + "\n";
+    text += shown_rule("walk.log", "walk-" + key_of(words_of(graph.intervals)), words_of(graph.intervals), "call walk_log");
+  }
+  return "frames :=" + frames + "\npreviews :=" + previews + "\n" + text +
+         shown_rule("sheet.png", "sheet-" + key_of(all), exposure + " $(frames) $(log)", "call sheet");
+}
+
+std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
+  if (graph.errors.empty()) return "";
+  std::string runs, errors;
+  for (const auto& [frame, error] : graph.errors) {
+    std::string spent;
+    for (const std::string& stats : graph.spent.at(error)) spent += (spent.empty() ? "" : "+") + stats;
+    runs += " --run label=frame-" + frame_digits(frame) + ",curve=$(QUALITY) " + spent + " " + error;
+    errors += " " + error;
+  }
+  return "report_runs :=" + runs + "\n" +
+         shown_rule("report/index.html", "report-" + key_of(errors + tool_hash("error-report")), errors, "call write_report");
+}
+
+template <class Enum, std::size_t n>
+Enum named(const char* const (&names)[n], const std::string& name) {
+  for (std::size_t i = 0; i < n; ++i)
+    if (name == names[i]) return Enum(i);
+  throw InputError("decisions: '" + name + "' is none that is known");
 }
 
 }  // namespace
 
-std::string frame_digits(int frame) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "%04d", frame);
-  return text.data();
+std::string decisions_text(const Decisions& decisions) { return decisions_json(decisions).dump(1) + "\n"; }
+
+Decisions read_decisions(const std::string& text) {
+  try {
+    const Json json = Json::parse(text);
+    Decisions d;
+    d.kinds = json.at("photon_kinds").get<std::string>();
+    d.indirect = named<IndirectMethod>(kIndirectMethods, json.at("indirect"));
+    d.photon_paths = json.at("paths");
+    d.record_rays = json.at("rays");
+    d.learn_lights = json.at("learn_lights");
+    d.split = json.at("split");
+    d.moving = named<MovingMethod>(kMovingMethods, json.at("moving"));
+    d.moving_cost = {json.at("moving_cost").at(0), json.at("moving_cost").at(1), json.at("moving_cost").at(2)};
+    d.walk = json.at("walkthrough");
+    d.view = json.at("view").get<std::string>();
+    d.looked = json.at("looked_at").get<std::vector<int>>();
+    for (const auto& [stage, because] : json.at("because").items()) d.reasons.push_back({stage, because});
+    return d;
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(std::string("decisions: ") + error.what());
+  }
 }
 
-std::string plan_json(const Plan& plan, const std::string& scene_name, const std::string& history,
+std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history,
                       const std::string& estimate) {
-  const bool photons = !plan.photon_kinds.empty();
-  Json json = {{"format", "tempolux plan"},
-               {"version", "1.0"},
-               {"history", history},
-               {"scene", scene_name},
-               {"camera", plan.camera},
-               {"fps", plan.time.fps},
-               {"segment_length", plan.time.segment_length},
-               {"light_units", plan.time.light_units},
-               {"frames", plan.frames},
-               {"photon_kinds", plan.photon_kinds},
-               {"indirect", photons ? plan.indirect : "paths"},
-               {"paths", plan.photon_paths},
-               {"rays", plan.record_rays},
-               {"moving", photons ? plan.moving : "anew"},
-               {"split", plan.split},
-               {"learn_lights", plan.learn_lights}};
+  Json json = {{"format", "tempolux plan"}, {"version", "2.0"}, {"history", history}, {"scene", scene_name}, {"camera", plan.camera},
+               {"fps", plan.time.fps}, {"segment_length", plan.time.segment_length}, {"light_units", plan.time.light_units},
+               {"frames", plan.frames}};
   if (!plan.environment.empty()) json["environment"] = std::filesystem::path(plan.environment).filename().string();
-  json["stages"] = Json::array();
-  for (const Stage& stage : plan.stages)
-    json["stages"].push_back({{"stage", stage.name}, {"needed", stage.needed}, {"because", stage.because}});
+  json["stages"] = stages_json(plan, graph);
   json["segments"] = Json::array();
-  for (const PlannedSegment& segment : plan.segments)
-    json["segments"].push_back(segment_json(segment, photons));
+  for (const PlannedSegment& segment : plan.segments) json["segments"].push_back(segment_json(segment));
+  json["pictures"] = Json::object();
+  for (const auto& [frame, name] : graph.pictures) json["pictures"][frame_digits(frame)] = name;
   json["warnings"] = plan.warnings;
   if (!estimate.empty()) json["estimate"] = Json::parse(estimate);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void check_folder_name(const std::string& folder) {
-  if (folder.find_first_of(" \t\n#%:$\\*?[]|;&'\"()<>`~=") != std::string::npos)
-    throw InputError(folder + ": make cannot use files in a folder of this name; choose another with -o");
-}
-
-std::string plan_makefile(const Plan& plan, const std::string& folder,
-                          const std::vector<std::string>& scene_files) {
-  check_folder_name(folder);
-  const bool photons = !plan.photon_kinds.empty();
-  std::string text = "# Written by scene-plan; formats/plan/plan.md says what each variable is.\n";
-  const std::map<int, std::set<int>> lit = pictures_by_light(plan);
-  std::set<int> pictures, photon_frames;
-  for (const auto& [light, views] : lit) {
-    pictures.insert(views.begin(), views.end());
-    if (photons) photon_frames.insert(light);
+std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
+  std::string text = "# Written by scene-plan; formats/plan/plan.md says what stands here.\n";
+  std::set<std::string> folders{"frames", "shown"};
+  for (const GraphFile& file : graph.files) {
+    folders.insert(file.name.substr(0, file.name.find('/')));
+    const std::string made = file.name + words_of(file.beside);
+    text += made + ": words := " + file.words + "\n" + made + ": |" + words_of(file.inputs) + "\n";
   }
-  text += variable("plan_frames", plan.frames) + variable("plan_pictures", pictures);
-  text += variable("plan_photons", photon_frames) + "plan_kinds := " + plan.photon_kinds + "\n";
-  text += "plan_indirect := " + (photons ? plan.indirect : "paths") + "\n";
-  text += "plan_paths := " + std::to_string(plan.photon_paths) + "\n";
-  text += "plan_rays := " + std::to_string(plan.record_rays) + "\n";
-  text += "plan_moving := " + (photons ? plan.moving : "anew") + "\n";
-  text += std::string("plan_method := ") + (plan.walkthrough ? "walkthrough" : "frames") + "\n";
-  if (plan.split) text += "plan_split := 1\n";
-  if (plan.learn_lights) text += "plan_lights := 1\n";
-  if (plan.media) text += "plan_media := 1\n";
-  for (const std::string& file : scene_files)  // the empty rule: a file that is gone asks for a new plan
-    text += folder + "/plan.mk: " + escaped_for_make(file) + "\n" + escaped_for_make(file) + ":\n";
-  for (const PlannedSegment& segment : plan.segments) {
-    const std::string first = frame_digits(segment.first);
-    text += "\n# frames " + std::to_string(segment.first) + " to " + std::to_string(segment.last) + "\n";
-    std::string previous;   // frame asked for, of this segment
-    for (const PlannedFrame& frame : segment.frames) {
-      const std::string digits = frame_digits(frame.frame);
-      text += "light_" + digits + " := $(addprefix " + folder + "/state/,static." + first +
-              " materials." + first + " frozen." + first + " moving." + digits + " lights." + digits + (frame.media.empty() ? "" : " media." + digits) + ")\n";
-      if (!frame.asked) continue;
-      text += "camera_" + digits + " := " + folder + "/state/camera." + digits + "\n";
-      text += "picture_" + digits + " := " + frame_digits(frame.picture) + "\n";
-      if (plan.media) text += "majorants_" + digits + " := " + folder + "/state/majorants." + first + "\n";
-      if (photons) text += "photons_" + digits + " := " + frame_digits(frame.lit_frame) + "\n";
-      text += "segment_" + digits + " := " + first + "\n";
-      text += "previous_" + digits + " :=" + previous + "\n";
-      previous = " " + digits;
-    }
-  }
-  if (photons && plan.media) text += previous_maps(plan, photon_frames);
-  if (photons) text += "\n# photon maps, and the pictures they light\n";
-  for (const int light : photon_frames) text += variable("views_" + frame_digits(light), lit.at(light));
-  text += standing_variables(plan, folder, photon_frames);
-  if (!plan.views.empty()) text += "\n# where the photons of sun and sky are aimed\n";
-  for (const PlannedView& view : plan.views)
-    for (const int light : view.photon_frames)
-      text += "view_" + frame_digits(light) + " := " + folder + "/state/view." + frame_digits(view.first) + "\n";
-  return text;
-}
-
-std::vector<PlanFile> state_files(const Plan& plan) {
-  std::vector<PlanFile> files;
-  const auto add = [&](const char* concern, int frame, const std::string& hash) {
-    files.push_back({std::string("state/") + concern + "." + frame_digits(frame), hash + "\n"});
-  };
-  for (const PlannedSegment& segment : plan.segments) {
-    add("static", segment.first, segment.static_geometry);
-    add("materials", segment.first, segment.materials);
-    add("standing", segment.first, segment.standing);
-    add("frozen", segment.first, segment.frozen);
-    for (const PlannedFrame& frame : segment.frames) {
-      add("moving", frame.frame, frame.moving_geometry);
-      add("lights", frame.frame, frame.lights);
-      if (!frame.media.empty()) add("media", frame.frame, frame.media);
-      if (frame.asked) add("camera", frame.frame, frame.camera);
-    }
-  }
-  for (const PlannedView& view : plan.views) files.push_back({"state/view." + frame_digits(view.first), view.content});
-  return files;
+  if (!graph.errors.empty()) folders.insert("report");
+  text += "folders :=" + words_of({folders.begin(), folders.end()}) + "\n";
+  return text + shown_rules(plan, graph, tool_hash) + report_rules(graph, tool_hash);
 }
 
 }  // namespace tempolux

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -67,15 +68,6 @@ Words words_of(const std::string& text) {
   return words;
 }
 
-/// Takes "--name value" out of the words; returns the value, or `otherwise` if it is not there.
-std::string take(Words& words, const std::string& name, const std::string& otherwise) {
-  const auto found = std::find(words.begin(), words.end(), name);
-  if (found == words.end() || found + 1 == words.end()) return otherwise;
-  const std::string value = found[1];
-  words.erase(found, found + 2);
-  return value;
-}
-
 struct Cost {
   double cpu_s = 0, bytes = 0;
   nlohmann::json stats;
@@ -122,54 +114,46 @@ PilotRun pilot_of(const Cost& cost, const std::set<std::string>& work_phases, do
 
 std::string size_of(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
-/// Numbers of the plan that say how often each stage runs.
-struct Counts {
-  std::set<int> lights, pictures;
-  double views = 0;  ///< pictures of one light, mean
-  int first = 0, light = 0, second = 0;  ///< the pilot's picture and its light; another picture of that light
-
-  explicit Counts(const Plan& plan) {
-    bool begun = false;
-    for (const PlannedSegment& segment : plan.segments)
-      for (const PlannedFrame& frame : segment.frames) {
-        if (!frame.asked) continue;
-        if (!begun) first = second = frame.picture, light = frame.lit_frame, begun = true;
-        else if (frame.lit_frame == light && second == first) second = frame.picture;
-        lights.insert(frame.lit_frame);
-        pictures.insert(frame.picture);
-      }
-    views = double(pictures.size()) / double(std::max<std::size_t>(1, lights.size()));
+/// How often each stage runs for the frames asked for.
+std::map<std::string, double> runs_by_stage(const Graph& graph) {
+  std::map<std::string, const GraphFile*> maker;
+  for (const GraphFile& file : graph.files) {
+    maker[file.name] = &file;
+    for (const std::string& name : file.beside) maker[name] = &file;
   }
-};
+  std::set<const GraphFile*> needed;
+  const std::function<void(const std::string&)> need = [&](const std::string& name) {
+    const auto found = maker.find(name);
+    if (found == maker.end() || !needed.insert(found->second).second) return;
+    for (const std::string& input : found->second->inputs) need(input);
+  };
+  for (const auto& [frame, picture] : graph.pictures) need(picture);
+  std::map<std::string, double> runs;
+  for (const GraphFile* file : needed) runs[file->stage] += 1;
+  return runs;
+}
 
-/// The pilots in the order of the pipeline; each adds a stage.
+/// What one file of each stage costs, from pilots of the first picture in the order of the pipeline.
 class Pilots {
  public:
-  Pilots(const std::string& scene, const Plan& plan, const RunOptions& options)
-      : scene_(scene), options_(options), counts_(plan), frame_count_(double(plan.frames.size())) {
-    kinds_ = plan.photon_kinds;
-    with_points_ = plan.indirect != "paths";
-    with_records_ = plan.indirect == "records";
-    const Words cache = words_of(options.cache), frames = words_of(options.frames);
-    for (const Words& words : {frames, cache})
-      if (Words copy = words; std::find(words.begin(), words.end(), "--size") != words.end())
-        parse_size(take(copy, "--size", ""), options_.width, options_.height);
-    const double shrink = std::max(1.0, std::sqrt(double(options_.width) * options_.height / kPilotPixels));
-    width_ = std::max(8, int(options_.width / shrink));
-    height_ = std::max(8, int(options_.height / shrink));
+  Pilots(const std::string& scene, const Planned& planned, const Wish& wish, Tool& tool)
+      : scene_(scene), planned_(planned), wish_(wish), tool_(tool), runs_(runs_by_stage(planned.graph)),
+        shown_(planned.plan.shows.at(planned.plan.frames.front())), segment_(planned.plan.segment_of(shown_)), decided_(segment_.decisions) {
+    shown_ = segment_.at(shown_).picture;
+    lit_ = segment_.at(shown_).lit_frame;
+    const double shrink = std::max(1.0, std::sqrt(double(wish.width) * wish.height / kPilotPixels));
+    width_ = std::max(8, int(wish.width / shrink));
+    height_ = std::max(8, int(wish.height / shrink));
   }
 
   Estimate all() {
-    const auto done = [&](double part) {
-      if (options_.progress) options_.progress(part);
-    };
-    if (!kinds_.empty()) {
+    if (decided_.photons()) {
       photons();
-      done(0.1);
-      if (with_points_) points();
-      done(0.3);
-      if (with_records_) records();
-      done(0.7);
+      tool_.progress(0.1);
+      if (decided_.points()) points();
+      tool_.progress(0.3);
+      if (decided_.records()) records();
+      tool_.progress(0.7);
     }
     frames();
     return estimate_;
@@ -178,88 +162,87 @@ class Pilots {
  private:
   static constexpr double kPilotPixels = 160 * 90, kPilotPaths = 20'000;
 
-  const std::string scene_;
-  RunOptions options_;
-  const Counts counts_;
-  const double frame_count_;
-  std::string kinds_;
-  bool with_points_, with_records_;
-  int width_ = 0, height_ = 0;
-  Folder folder_;
-  Estimate estimate_;
-
-  Words common(const std::string& options, int frame) const {
-    Words words = words_of(options);
-    words.insert(words.begin(), {scene_, "--frames=" + std::to_string(frame)});
-    words.insert(words.end(), {"--threads", std::to_string(options_.threads)});
-    return words;
+  Words common(const std::string& words, int frame) const {
+    Words all{scene_, "--frames=" + std::to_string(frame), "--threads", std::to_string(tool_.common().threads)};
+    for (const Words& more : {words_of(words), shared_arguments(tool_.common())}) all.insert(all.end(), more.begin(), more.end());
+    return all;
   }
-  double pixels() const { return double(options_.width) * options_.height; }
+  double pixels() const { return double(wish_.width) * wish_.height; }
   double pilot_pixels() const { return double(width_) * height_; }
+  /// Adds a stage that runs; `share`: of the work of the pilot's stage.
+  void add(const StageInfo& stage, const StageEstimate& one, double share = 1) {
+    const auto runs = runs_.find(std::string(stage.name));
+    if (runs == runs_.end()) return;
+    estimate_.stages.push_back({std::string(stage.name), runs->second, one.fixed_cpu_s, one.work_cpu_s * share, one.bytes});
+  }
+  /// Where light follows from that of what stands, a pilot's cost is spread over the states; what stands costs a state in full.
+  double moved_share(double cost, const StageInfo& stands, const StageInfo& states) const {
+    const auto count = [&](const StageInfo& stage) { const auto found = runs_.find(std::string(stage.name)); return found == runs_.end() ? 0.0 : found->second; };
+    return decided_.moving == MovingMethod::anew ? 1 : std::max(0.1, cost - count(stands) / std::max(1.0, count(states)));
+  }
 
   void photons() {
-    Words words = common(options_.photons, counts_.light);
-    take(words, "--kinds", "");
-    const double wanted = double(parse_count(take(words, "--photons", "1M"))), paths = std::min(wanted, kPilotPaths);
+    const double wanted = double(decided_.photon_paths), paths = std::min(wanted, kPilotPaths);
     const std::string output = folder_.file("p.photons");
-    words.insert(words.end(), {"--photons", std::to_string(std::uint64_t(paths)), "--kinds", kinds_, "-o", output});
-    const Cost cost = run(folder_, "photon-trace", words, output);
-    estimate_.stages.push_back(
-        scaled("photon-trace", double(counts_.lights.size()), pilot_of(cost, {"trace", "commit"}, paths), wanted));
-    estimate_.stages.back().work_cpu_s *= options_.moving_cost.light;
-    estimate_.stages.back().bytes *= options_.moving_cost.photon_bytes;
+    Words words = common("", lit_);
+    words.insert(words.end(), {"--photons", std::to_string(std::uint64_t(paths)), "--kinds", decided_.kinds, "-o", output});
+    const StageEstimate one = scaled("", 1, pilot_of(run(folder_, "photon-trace", words, output), {"trace", "commit"}, paths), wanted);
+    add(stage::stands_photons, one);
+    add(stage::photons, one);
+    StageEstimate moved = one;
+    moved.bytes *= decided_.moving_cost.photon_bytes;
+    add(stage::moved_photons, moved, moved_share(decided_.moving_cost.light, stage::stands_photons, stage::moved_photons));
   }
   void points() {
-    Words words = common(options_.points, counts_.light);
-    words.insert(words.begin(), "points");
     const std::string output = folder_.file("p.irradpoints");
+    Words words = common(wish_.points, lit_);
+    words.insert(words.begin(), "points");
     words.insert(words.end(), {"--photons", folder_.file("p.photons"), "-o", output});
-    const Cost cost = run(folder_, "irradcache-build", words, output);
-    estimate_.stages.push_back(scaled("irradcache-build points", double(counts_.lights.size()),
-                                      pilot_of(cost, {"read photons", "points", "write"}, 1), 1));
-    estimate_.stages.back().work_cpu_s *= options_.moving_cost.light;
+    const StageEstimate one = scaled("", 1, pilot_of(run(folder_, "irradcache-build", words, output), {"read photons", "points", "write"}, 1), 1);
+    add(stage::stands_points, one);
+    add(stage::points, one, moved_share(decided_.moving_cost.light, stage::stands_points, stage::points));
+    add(stage::split, {"", 1, 0.02, 0.02 * one.work_cpu_s, one.bytes});
   }
   /// Records for pictures of `width` pixels, of one view or two.
-  Cost place(int width, int height, bool both, const std::string& output) {
-    Words words = common(options_.cache, counts_.first);
-    take(words, "--size", "");
-    if (both) words[1] += "," + std::to_string(counts_.second);
+  Cost place(int width, int height, int second, const std::string& output) {
+    Words words = common(wish_.records, shown_);
+    if (second != shown_) words[1] += "," + std::to_string(second);
     words.insert(words.begin(), "records");
-    words.insert(words.end(),
-                 {"--points", folder_.file("p.irradpoints"), "--size", size_of(width, height), "-o", output});
+    words.insert(words.end(), {"--camera", wish_.camera, "--points", folder_.file("p.irradpoints"), "--size", size_of(width, height), "-o", output});
+    if (wish_.records.find("--rays") == std::string::npos) words.insert(words.end(), {"--rays", std::to_string(decided_.record_rays)});
     return run(folder_, "irradcache-build", words, output);
   }
   void records() {
     const std::string output = folder_.file("p.irradcache");
     const int half_width = std::max(4, width_ / 2), half_height = std::max(4, height_ / 2);
-    const Cost small = place(half_width, half_height, false, output);
-    const Cost large = place(width_, height_, false, output);
+    const Cost small = place(half_width, half_height, shown_, output);
+    const Cost large = place(width_, height_, shown_, output);
     const double small_pixels = double(half_width) * half_height;
     const double n1 = small.count("records"), n2 = large.count("records");
-    const TwoCosts costs =
-        two_costs(n1, small_pixels, small.phases({"records"}), n2, pilot_pixels(), large.phases({"records"}));
-    const double first = power_law(half_width, n1, width_, n2, options_.width);
+    const TwoCosts costs = two_costs(n1, small_pixels, small.phases({"records"}), n2, pilot_pixels(), large.phases({"records"}));
+    const double first = power_law(half_width, n1, width_, n2, wish_.width);
+    const std::vector<int> pictures = segment_.pictures(lit_);
     double others = 0;
-    if (counts_.second != counts_.first) {
-      const Cost both = place(width_, height_, true, folder_.file("both.irradcache"));
-      others = first * std::max(0.0, both.count("records") - n2) / std::max(1.0, n2) * (counts_.views - 1);
+    if (pictures.size() > 1) {
+      const int second = pictures.front() == shown_ ? pictures[1] : pictures.front();
+      const Cost both = place(width_, height_, second, folder_.file("both.irradcache"));
+      others = first * std::max(0.0, both.count("records") - n2) / std::max(1.0, n2) * double(pictures.size() - 1);
     }
     const double wanted = first + others;
-    estimate_.stages.push_back({"irradcache-build records", double(counts_.lights.size()),
-                                std::max(0.0, large.cpu_s - large.phases({"records"})),
-                                (costs.a * wanted + costs.b * pixels() * counts_.views) * options_.moving_cost.records,
-                                large.bytes * wanted / std::max(1.0, n2)});
+    const StageEstimate one{"", 1, std::max(0.0, large.cpu_s - large.phases({"records"})),
+                            costs.a * wanted + costs.b * pixels() * double(pictures.size()), large.bytes * wanted / std::max(1.0, n2)};
+    add(stage::stands_records, one);
+    const bool over_time = decided_.moving == MovingMethod::time;
+    add(stage::records, one, over_time ? 1 : moved_share(decided_.moving_cost.records, stage::stands_records, stage::records));
+    add(stage::kept, one, decided_.moving_cost.records);
   }
   Cost render(int width, int height, const std::string& output) {
-    Words words = common(options_.frames, counts_.first);
-    take(words, "--size", "");
-    words.insert(words.end(), {"--size", size_of(width, height), "-o", output});
-    if (!kinds_.empty() && with_points_) {
-      words.insert(words.end(), {"--points", folder_.file("p.irradpoints")});
-      if (with_records_) words.insert(words.end(), {"--irradcache", folder_.file("p.irradcache")});
-    }
-    if (kinds_.find("caustic") != std::string::npos)
-      words.insert(words.end(), {"--photons", folder_.file("p.photons")});
+    Words words = common(wish_.pixels, shown_);
+    words.insert(words.end(), {"--camera", wish_.camera, "--channels", wish_.channels, "--size", size_of(width, height), "-o", output});
+    if (!decided_.learn_lights) std::erase(words, "--learn-lights");
+    if (decided_.points()) words.insert(words.end(), {"--points", folder_.file("p.irradpoints")});
+    if (decided_.records()) words.insert(words.end(), {"--irradcache", folder_.file("p.irradcache")});
+    if (decided_.caustics()) words.insert(words.end(), {"--photons", folder_.file("p.photons")});
     return run(folder_, "frame-render", words, output);
   }
   /// A larger picture has less to see in each pixel, which then needs fewer samples: its time grows more slowly than
@@ -271,17 +254,32 @@ class Pilots {
     const double small = render(half_width, half_height, output).phases(work);
     const Cost cost = render(width_, height_, output);
     const PilotRun pilot = pilot_of(cost, work, pilot_pixels());
-    StageEstimate frame = scaled("frame-render", double(counts_.pictures.size()), pilot, pixels());
-    const double by_width = pilot.work_cpu_s * options_.width / width_;
-    frame.work_cpu_s = std::max(by_width, power_law(half_width, small, width_, pilot.work_cpu_s, options_.width));
-    estimate_.stages.push_back(frame);
-    const double copies = frame_count_ - double(counts_.pictures.size());
-    if (copies > 0) estimate_.stages.push_back({"copies of equal frames", copies, 0.002, 0, frame.bytes});
+    StageEstimate frame = scaled("", 1, pilot, pixels());
+    const double by_width = pilot.work_cpu_s * wish_.width / width_;
+    frame.work_cpu_s = std::max(by_width, power_law(half_width, small, width_, pilot.work_cpu_s, wish_.width));
+    // Shares of a whole frame's work, as measured on S4: rays of masked pixels, two samples a pixel, and the filter.
+    for (const auto& [stage, share] : {std::pair{stage::lights, 0.1}, {stage::keys, 1.0}, {stage::walk, 0.1}, {stage::walked, 0.25}, {stage::raw, 0.3},
+                                       {stage::filtered, 0.1}, {stage::pictures, 1.0}, {stage::smoke, 0.3}})
+      add(stage, frame, share);
+    const double frame_count = double(planned_.plan.frames.size());
+    estimate_.stages.push_back({"copies of pictures", frame_count, 0.002, 0, frame.bytes});
     // Each frame becomes a PNG and is read once more for the sheet.
     const Cost shown = run(folder_, "tempolux-info", {output, "--png", png}, png);
     const PilotRun picture{0.01, std::max(0.0, 2 * (shown.cpu_s - 0.005)), pilot_pixels(), shown.bytes};
-    estimate_.stages.push_back(scaled("tempolux-info --png", frame_count_, picture, pixels()));
+    estimate_.stages.push_back(scaled("tempolux-info --png", frame_count, picture, pixels()));
   }
+
+  const std::string scene_;
+  const Planned& planned_;
+  const Wish& wish_;
+  Tool& tool_;
+  std::map<std::string, double> runs_;
+  int shown_, lit_ = 0;
+  const PlannedSegment& segment_;
+  const Decisions& decided_;
+  int width_ = 0, height_ = 0;
+  Folder folder_;
+  Estimate estimate_;
 };
 
 }  // namespace
@@ -293,8 +291,8 @@ std::string short_run_stem() {
   return (folder / (".scene-plan.tmp." + temporary_host() + ".")).string();
 }
 
-Estimate estimate_run(const std::string& scene, const Plan& plan, const RunOptions& options) {
-  return Pilots(scene, plan, options).all();
+Estimate estimate_run(const std::string& scene, const Planned& planned, const Wish& wish, Tool& tool) {
+  return Pilots(scene, planned, wish, tool).all();
 }
 
 }  // namespace tempolux::tools

@@ -116,12 +116,6 @@ formats::Identity identity_of(const SceneFrame& frame) {
   return {h.static_geometry, h.moving_geometry, h.materials, h.lights, h.media, frame.frame, frame.frame};
 }
 
-std::vector<formats::ViewSphere> read_importance(Tool& tool, const std::string& file) {
-  if (file.empty()) return {};
-  tool.depends_on(file);
-  return formats::read_view(file);
-}
-
 std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
   std::vector<AimSphere> spheres;
   for (const formats::ViewSphere& sphere : view)

@@ -57,9 +57,7 @@ class SceneInput {
   bool warned_range_ = false;
 };
 
-/// The spheres of --importance, a view file of scene-plan, in world space; none without a name.
-std::vector<formats::ViewSphere> read_importance(Tool& tool, const std::string& file);
-/// The same in scene space; `origin`: that of the frame.
+/// What cameras see (Importance) in scene space; `origin`: that of the frame.
 std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin);
 
 /// Which state of the scene a file made at this frame belongs to.

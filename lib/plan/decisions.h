@@ -1,0 +1,78 @@
+// lib/plan/decisions.h -- what is decided for a segment, and what the user has wished.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lib/render/choose_indirect.h"
+#include "lib/render/choose_moving.h"
+
+namespace tempolux {
+
+enum class Quality : std::uint8_t { draft, final };
+inline constexpr const char* kQualities[] = {"draft", "final"};
+
+enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic };
+inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto"};
+
+/// What the user asks for. Words are options as on a command line, separated by blanks.
+struct Wish {
+  Quality quality = Quality::final;
+  FrameMethod method = FrameMethod::frames;
+  int filter = 0;                       ///< frames of the filter's window, odd; 0: no filter
+  std::string indirect = "auto";        ///< or one of kIndirectMethods
+  std::string moving = "auto";          ///< or one of kMovingMethods
+  std::string split = "auto";           ///< or on, off
+  int width = 640, height = 360;        ///< of the frames, pixels
+  std::uint64_t photons = 0;            ///< paths of light of a map; 0: the preset's
+  int rays = 0;                         ///< of a record at most; 0: the preset's
+  double pixel_error = 0;               ///< 0: the preset's
+  std::string points, records, pixels;  ///< words for irradcache-build points, records and frame-render; "": the preset's
+  std::string channels = "RGBA,Z,N,id";
+  bool textures = false;                ///< SURFACES=textures: indirect light in smoke by light textures
+  std::string texture_words, smoke_words;
+  std::string update;                   ///< share of the photon groups that is traced anew in smoke, "10%"; "": all
+  std::string strategy = "census";      ///< which groups, as photon-trace --strategy
+  int key_distance = 16;                ///< frames between the first keys of a walkthrough
+  double threshold = 0;                 ///< relMSE above which an interval is halved; 0: the preset's
+  int reference_samples = 64;           ///< of a pixel of the reference that a report compares with
+  std::vector<int> report;              ///< frames to compare with path tracing
+  std::string common;                   ///< words of all stages that shape content: --fps, --volume ... (they are hashed, not used)
+  std::string camera;                   ///< name of the camera, or auto (hashed, not used)
+};
+
+/// How the materials of a segment reflect.
+struct MaterialFacts {
+  bool lambert = false, other = false;  ///< some reflect by a Lambert lobe; some by a mirror or glossy lobe
+  std::string lambert_words, other_words;   ///< "2 of 3 materials reflect by a Lambert lobe"
+};
+
+/// A fact that decides whether a stage has work.
+struct Reason {
+  std::string stage;
+  std::string because;
+};
+
+/// What a segment needs. A function of the scene, the wish and the segment.
+struct Decisions {
+  std::string kinds;                    ///< of photons that later stages read: "caustic,indirect"; "": no photons
+  IndirectMethod indirect = IndirectMethod::records;
+  std::uint64_t photon_paths = 700'000; ///< of a photon map
+  int record_rays = 500;
+  bool learn_lights = false;            ///< light from far away comes through openings: it is learned which way
+  bool split = false;                   ///< bright points are divided from the others and sampled explicitly
+  MovingMethod moving = MovingMethod::anew;
+  MovingCost moving_cost;               ///< of a state of light, for estimates
+  bool walk = false;                    ///< key frames and warping pay: METHOD=auto follows it
+  std::string view;                     ///< content of the view file by which photons are aimed and points spread; "": none
+  std::vector<int> looked;              ///< frames of the pilots
+  std::vector<Reason> reasons;
+
+  bool photons() const { return !kinds.empty(); }
+  bool points() const { return photons() && indirect != IndirectMethod::paths; }
+  bool records() const { return photons() && indirect == IndirectMethod::records; }
+  bool caustics() const { return kinds.find("caustic") != std::string::npos; }
+};
+
+}  // namespace tempolux

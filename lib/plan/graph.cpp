@@ -1,0 +1,473 @@
+// lib/plan/graph.cpp -- from decisions to files, stage by stage.
+#include "lib/plan/graph.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <set>
+#include <sstream>
+
+#include "formats/error.h"
+#include "formats/hash.h"
+
+namespace tempolux {
+namespace {
+
+using Names = std::vector<std::string>;
+
+constexpr std::size_t kKeyDigits = 10;   // 40 bits: two of 10 000 files agree by chance once in 20 000 plans
+
+std::string joined(const std::vector<int>& frames) {
+  std::string text;
+  for (const int frame : frames) text += (text.empty() ? "" : ",") + std::to_string(frame);
+  return text;
+}
+
+/// The words without one of them.
+std::string without(const std::string& words, const std::string& word) {
+  std::istringstream stream(words);
+  std::string text;
+  for (std::string w; stream >> w;)
+    if (w != word) text += (text.empty() ? "" : " ") + w;
+  return text;
+}
+
+bool has_word(const std::string& words, const std::string& word) { return without(words, word).size() != without(words, "").size(); }
+
+/// Options of a command, and the files among them.
+struct Command {
+  std::string words;
+  Names inputs;
+  std::string content;   ///< hashes of the states of the scene that it depends on
+
+  void option(const std::string& text) {
+    if (!text.empty()) words += (words.empty() ? "" : " ") + text;
+  }
+  void file(const std::string& option_name, const std::string& name) {
+    if (name.empty()) return;
+    option(option_name.empty() ? name : option_name + " " + name);
+    inputs.push_back(name);
+  }
+};
+
+/// An interval of a walkthrough: frames between two keys that have the same light throughout.
+struct Interval {
+  int first = 0, last = 0;
+  int middle() const { return first + (last - first) / 2; }
+};
+
+class Builder {
+ public:
+  Builder(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, const MajorantsText& majorants)
+      : plan_(plan), wish_(wish), tool_hash_(tool_hash), majorants_(majorants) {
+    size_ = "--size " + std::to_string(wish.width) + "x" + std::to_string(wish.height);
+    pixels_ = without(wish.pixels, "--learn-lights");
+  }
+
+  Graph build() {
+    for (const int frame : plan_.frames) graph_.pictures[frame] = picture(plan_.shows.at(frame));
+    for (const int frame : wish_.report) add_report(frame);
+    return std::move(graph_);
+  }
+
+ private:
+  const PlannedSegment& segment(int frame) const { return plan_.segment_of(frame); }
+  const Decisions& decided(int frame) const { return segment(frame).decisions; }
+  const PlannedFrame& state(int frame) const { return segment(frame).at(frame); }
+  int clamped(int frame) const { return std::clamp(frame, 0, plan_.last_frame); }
+
+  /// Adds a file once; returns its name.
+  std::string add(const StageInfo& stage, const std::string& frames, const Command& command, const Names& beside_extensions = {}) {
+    Hasher hasher;
+    for (const std::string& part : {std::string(stage.name), tool_hash_(std::string(stage.tool)), command.words, command.content, wish_.common})
+      hasher.add(std::string_view(part));
+    const std::string stem = std::string(stage.folder) + "/" + frames + "-" + hasher.hex().substr(0, kKeyDigits);
+    GraphFile file{stem + std::string(stage.extension), {}, std::string(stage.name), command.words, command.inputs};
+    for (const std::string& extension : beside_extensions) file.beside.push_back(stem + extension);
+    if (known_.insert(file.name).second) graph_.files.push_back(file);
+    return file.name;
+  }
+  std::string add(const StageInfo& stage, int frame, const Command& command, const Names& beside_extensions = {}) {
+    return add(stage, frame_digits(frame), command, beside_extensions);
+  }
+  std::string add_state(const char* concern, int first, const std::string& content) {
+    const std::string name = "state/" + frame_digits(first) + "-" + hash_hex(content).substr(0, kKeyDigits) + "." + concern;
+    if (known_.insert(name).second) graph_.states.push_back({name, content});
+    return name;
+  }
+
+  void add_view(int frame, Command& c) {
+    const PlannedSegment& s = segment(frame);
+    if (s.decisions.view.empty()) c.option("--importance none");
+    else c.file("--importance", add_state("view", s.first, s.decisions.view));
+  }
+  std::string majorants_file(int frame) {
+    const PlannedSegment& s = segment(frame);
+    if (!majorants_known_.contains(s.first)) majorants_known_[s.first] = add_state("majorants", s.first, majorants_(s.first, s.last));
+    return majorants_known_.at(s.first);
+  }
+
+  // ---- light ----------------------------------------------------------------------------------------------------
+  std::string photon_words(int frame) const {
+    const Decisions& d = decided(frame);
+    return "--photons " + std::to_string(d.photon_paths) + " --kinds " + d.kinds;
+  }
+  bool moved(int frame) const { return decided(frame).moving != MovingMethod::anew; }
+  /// Hash of what a static map, its points and records depend on.
+  std::string standing_content(int frame) const {
+    Hasher hasher;
+    const PlannedSegment& s = segment(frame);
+    for (const std::string& hash : {s.static_geometry, s.standing, s.frozen}) hasher.add(std::string_view(hash));
+    for (const PlannedFrame& f : s.frames) hasher.add(std::string_view(f.light));   // which paths movers can touch, in any frame
+    return hasher.hex();
+  }
+
+  std::string stands_photons(int frame) {
+    const int first = segment(frame).first;
+    Command c{"--frame " + std::to_string(first) + " --map static", {}, standing_content(frame)};
+    add_view(frame, c);
+    c.option(photon_words(frame));
+    return add(stage::stands_photons, first, c, {".paths"});
+  }
+  std::string paths_of(const std::string& photons) const { return photons.substr(0, photons.rfind('.')) + ".paths"; }
+
+  /// The photon map of a state of light: whole, or what movers change of the map of what stands.
+  std::string photons(int lit) {
+    if (moved(lit)) {
+      Command c{"--frame " + std::to_string(lit) + " --map dynamic", {}, state(lit).light};
+      c.file("--static", paths_of(stands_photons(lit)));
+      add_view(lit, c);
+      return add(stage::moved_photons, lit, c);
+    }
+    Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
+    add_view(lit, c);
+    c.option(photon_words(lit));
+    if (plan_.media && !wish_.update.empty()) add_update(lit, c);
+    return add(stage::photons, lit, c);
+  }
+  /// In smoke: a map is the one before it in its segment, some of its groups traced anew.
+  void add_update(int lit, Command& c) {
+    c.file("--majorants", majorants_file(lit));
+    const std::vector<int> states = segment(lit).states();
+    const auto here = std::ranges::find(states, lit);
+    const bool by_pilots = std::ranges::count(std::array{"fde", "dip", "hybrid", "path"}, wish_.strategy) > 0;
+    if (here == states.begin()) return c.option(by_pilots ? "--pilots 3%" : "");
+    c.file("--update", photons(*std::prev(here)));
+    c.option("--share " + wish_.update + " --strategy " + wish_.strategy);
+  }
+
+  std::string stands_points(int frame) {
+    const int first = segment(frame).first;
+    Command c{"--frame " + std::to_string(first) + " --map static", {}, standing_content(frame)};
+    c.file("--photons", stands_photons(frame));
+    add_view(frame, c);
+    c.option(wish_.points);
+    return add(stage::stands_points, first, c);
+  }
+  std::string points(int lit) {
+    Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
+    if (moved(lit)) {
+      c.file("--update", stands_points(lit));
+      c.file("--photons", stands_photons(lit));
+      c.file("--dynamic", photons(lit));
+    } else {
+      c.file("--photons", photons(lit));
+    }
+    add_view(lit, c);
+    c.option(wish_.points);
+    return add(stage::points, lit, c);
+  }
+  std::string low_points(int lit) {
+    Command c;
+    c.file("", points(lit));
+    return add(stage::split, lit, c, {".high.irradpoints"});
+  }
+  std::string high_of(const std::string& low) const { return low.substr(0, low.size() - std::string_view(".low.irradpoints").size()) + ".high.irradpoints"; }
+  /// Points as options: all, or the low and the high part.
+  void add_points(int lit, Command& c) {
+    if (!decided(lit).split) return c.file("--points", points(lit));
+    const std::string low = low_points(lit);
+    c.file("--points", low);
+    c.file("--high", high_of(low));
+  }
+
+  // ---- records --------------------------------------------------------------------------------------------------
+  std::string record_words(int lit) const {
+    const std::string rays = has_word(wish_.records, "--rays") ? "" : " --rays " + std::to_string(decided(lit).record_rays);
+    return size_ + rays + (wish_.records.empty() ? "" : " " + wish_.records);
+  }
+  /// Hash of the cameras of these frames.
+  std::string cameras(const std::vector<int>& frames) const {
+    Hasher hasher;
+    hasher.add(std::string_view(wish_.camera));
+    for (const int frame : frames) hasher.add(std::string_view(state(frame).camera));
+    return hasher.hex();
+  }
+  std::string stands_records(int frame) {
+    const std::vector<int> pictures = segment(frame).pictures();
+    Command c{"--frames " + joined(pictures) + " --map static", {}, standing_content(frame) + cameras(pictures)};
+    c.file("--points", stands_points(frame));
+    c.option(record_words(frame));
+    return add(stage::stands_records, segment(frame).first, c);
+  }
+  /// The state of light of the frame before, if its records lead to those of this state.
+  int state_before(int lit) const {
+    return lit > segment(lit).first ? state(lit - 1).lit_frame : lit;
+  }
+  /// With records that are kept over time: states that one picture shows. Where a camera moves while light stands, one cache
+  /// serves all its pictures.
+  bool over_time(int lit) const { return decided(lit).moving == MovingMethod::time && segment(lit).pictures(lit).size() == 1; }
+  std::string radsamples_of(const std::string& cache) const { return cache.substr(0, cache.rfind('.')) + ".radsamples"; }
+
+  std::string records(int lit) {
+    if (const auto found = records_.find(lit); found != records_.end()) return found->second;
+    std::string name;
+    if (over_time(lit)) name = kept_records(lit);
+    else if (decided(lit).moving == MovingMethod::records) name = updated_records(lit);
+    else name = placed_records(lit);
+    return records_[lit] = name;
+  }
+  std::string placed_records(int lit) {
+    const std::vector<int> pictures = segment(lit).pictures(lit);
+    Command c{"--frames " + joined(pictures), {}, state(lit).light + cameras(pictures)};
+    add_points(lit, c);
+    c.option(record_words(lit));
+    return add(stage::records, lit, c);
+  }
+  std::string updated_records(int lit) {
+    const std::vector<int> pictures = segment(lit).pictures(lit);
+    Command c{"--frames " + joined(pictures), {}, state(lit).light + cameras(pictures)};
+    c.file("--update", stands_records(lit));
+    c.file("--points", points(lit));
+    // Dynamic photons of up to two states before: where they mattered, records are gathered still.
+    std::vector<int> states{lit};
+    for (int frame = lit; states.size() < 3 && frame > segment(lit).first;) {
+      frame = state_before(frame);
+      if (std::ranges::find(states, frame) != states.end()) break;
+      states.push_back(frame);
+    }
+    for (const int frame : states) c.file("--dynamic", photons(frame));
+    c.option(record_words(lit));
+    return add(stage::records, lit, c);
+  }
+  std::string kept_records(int lit) {
+    Command c{"--frame " + std::to_string(lit), {}, state(lit).light + cameras(segment(lit).pictures(lit))};
+    add_points(lit, c);
+    const int before = state_before(lit);
+    if (before < lit && over_time(before)) c.file("--previous", radsamples_of(records(before)));
+    c.option(record_words(lit));
+    return add(stage::kept, lit, c, {".radsamples"});
+  }
+
+  std::string textures(int lit) {
+    Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
+    c.file("--photons", photons(lit));
+    c.option(wish_.texture_words);
+    return add(stage::textures, lit, c);
+  }
+
+  /// What light from far away reaches what the cameras of the segment see, learned once.
+  std::string lights(int frame) {
+    if (!decided(frame).learn_lights || !has_word(wish_.pixels, "--learn-lights")) return "";
+    const std::vector<int> all = segment(frame).pictures();
+    std::vector<int> pictures;   // first, last and two between: what cameras see changes slowly
+    for (std::size_t i = 0; i < 4; ++i)
+      if (const int f = all[i * (all.size() - 1) / 3]; pictures.empty() || pictures.back() != f) pictures.push_back(f);
+    Command c{"--frames " + joined(pictures) + " --learn-lights " + size_, {}, cameras(pictures)};
+    for (const int f : pictures) c.content += state(f).light;
+    return add(stage::lights, segment(frame).first, c);
+  }
+
+  // ---- pixels ---------------------------------------------------------------------------------------------------
+  /// What lights a frame.
+  void add_light(int frame, Command& c) {
+    const Decisions& d = decided(frame);
+    const int lit = state(frame).lit_frame;
+    c.content += state(frame).light;
+    if (plan_.media && wish_.textures && d.photons()) {
+      c.file("--meshirrad", textures(lit));
+    } else if (d.points()) {
+      if (d.records()) {
+        c.file("--irradcache", records(lit));
+        c.file("--points", points(lit));
+      } else {
+        add_points(lit, c);
+      }
+    }
+    if (d.caustics()) {
+      if (moved(lit)) c.file("--photons", stands_photons(lit));
+      c.file(moved(lit) ? "--dynamic" : "--photons", photons(lit));
+    }
+    c.file("--lights", lights(frame));
+  }
+  Command frame_command(int frame, const std::string& pixels, const std::string& channels) {
+    Command c{"--frame " + std::to_string(frame), {}, cameras({frame})};
+    add_light(frame, c);
+    for (const std::string& words : {size_, pixels, "--channels " + channels}) c.option(words);
+    return c;
+  }
+
+  /// The picture that a frame shows, smoke included.
+  std::string picture(int frame) {
+    frame = state(frame).picture;
+    const std::string clear = clear_picture(frame);
+    if (!plan_.media) return clear;
+    const int lit = state(frame).lit_frame;
+    Command c{"--frame " + std::to_string(frame), {}, state(frame).light + cameras({frame})};
+    c.file("--base", clear);
+    c.file("--photons", photons(lit));
+    if (!wish_.textures && decided(frame).points()) c.file("--points", points(lit));
+    c.option(wish_.smoke_words);
+    return add(stage::smoke, frame, c);
+  }
+  std::string clear_picture(int frame) {
+    if (wish_.filter > 0) return filtered_picture(frame);
+    const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk));
+    if (walk) return walked_picture(frame);
+    return add(stage::pictures, frame, frame_command(frame, pixels_, wish_.channels));
+  }
+
+  /// A frame of few samples, filtered with those around it. The window ends at the animation's ends.
+  std::string filtered_picture(int frame) {
+    const int samples = wish_.quality == Quality::draft ? 1 : 2;
+    std::ostringstream pixels;
+    pixels << "--spp " << samples << " --pixel-error " << wish_.pixel_error << " --for-filter --seed-mode frame --compression none";
+    Command c;
+    std::size_t position = 0;
+    for (int f = frame - wish_.filter / 2; f <= frame + wish_.filter / 2; ++f) {
+      if (f != clamped(f)) continue;
+      const int shown = state(f).picture;
+      const std::string raw = add(stage::raw, shown, frame_command(shown, pixels.str(), "RGBA,layers,Z,N,id,albedo,motion,coverage,samples"));
+      if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
+      if (f == frame) position = c.inputs.size();
+    }
+    c.option("--position " + std::to_string(position) + " --channels " + wish_.channels);
+    return add(stage::filtered, frame, c);
+  }
+
+  // ---- walkthrough ----------------------------------------------------------------------------------------------
+  /// Keys and what lies between them show the same light, so that no light is carried into a frame that does not have it.
+  bool same_light(const Interval& interval) const {
+    for (int f = interval.first; f <= interval.last; ++f)
+      if (state(f).light != state(interval.first).light) return false;
+    return true;
+  }
+  std::string key_picture(int frame) {
+    frame = state(frame).picture;
+    std::string channels = wish_.channels;
+    const auto add_channel = [&](const std::string& name) {
+      if (("," + channels + ",").find("," + name + ",") == std::string::npos) channels += "," + name;
+    };
+    for (const char* name : {"Z", "N", "id"}) add_channel(name);
+    if (("," + channels + ",").find(",layers,") == std::string::npos) add_channel("specular");
+    return add(stage::keys, frame, frame_command(frame, pixels_, channels));
+  }
+  /// The interval of equal light between first keys that holds a frame strictly inside, or none: then the frame is a key.
+  /// Intervals lie at fixed multiples; one whose light changes is halved until it does not.
+  bool interval_around(int frame, Interval& interval) const {
+    const int first = frame - frame % wish_.key_distance;
+    interval = {first, clamped(first + wish_.key_distance)};
+    while (frame > interval.first && frame < interval.last) {
+      if (same_light(interval)) return true;
+      (frame < interval.middle() ? interval.last : interval.first) = interval.middle();
+    }
+    return false;
+  }
+  std::string interval_name(const Interval& i) const { return frame_digits(i.first) + "+" + frame_digits(i.last); }
+
+  /// What decides an interval: its keys, and those of its halves.
+  std::string interval_file(const Interval& i) {
+    if (i.last - i.first < 2) return "";
+    if (const auto found = intervals_.find(i.first * 1'000'000LL + i.last); found != intervals_.end()) return found->second;
+    const std::string left = interval_file({i.first, i.middle()}), right = interval_file({i.middle(), i.last});
+    Command c;
+    c.file("", key_picture(i.first));
+    c.file("", key_picture(i.last));
+    std::ostringstream words;
+    words << c.words << " " << frame_digits(i.middle()) << " " << key_picture(i.middle()) << " " << wish_.threshold << " "
+          << (left.empty() ? "-" : left) << " " << (right.empty() ? "-" : right);
+    c.words = words.str();
+    c.content = tool_hash_("aqm-compare") + cameras({i.middle()});
+    const std::string name = add(stage::walk, interval_name(i), c);
+    intervals_[i.first * 1'000'000LL + i.last] = name;
+    return name;
+  }
+  std::string walked_picture(int frame) {
+    Interval interval;
+    if (!interval_around(frame, interval)) return key_picture(frame);
+    const std::string decided_by = interval_file(interval);
+    if (std::ranges::find(graph_.intervals, decided_by) == graph_.intervals.end()) graph_.intervals.push_back(decided_by);
+    Command light{"", {}, ""};
+    add_light(frame, light);
+    Command c{"", {}, tool_hash_("ibr-warp") + light.content + cameras({frame})};
+    c.file("", decided_by);
+    c.option(frame_digits(frame));
+    for (const std::string& words : {light.words, size_, pixels_, "--channels " + wish_.channels}) c.option(words);
+    c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());
+    return add(stage::walked, frame, c);
+  }
+
+  // ---- report ---------------------------------------------------------------------------------------------------
+  void add_report(int frame) {
+    const int shown = state(plan_.shows.at(frame)).picture;
+    const std::string picture_name = picture(shown);
+    Command path{"--frame " + std::to_string(shown) + " --integrator path --halves " + size_ + " --spp " +
+                     std::to_string(wish_.reference_samples) + " --channels RGBA", {}, state(shown).light + cameras({shown})};
+    const std::string reference = add(stage::reference, shown, path, {"_a.exr", "_b.exr"});
+    const std::string stem = reference.substr(0, reference.rfind('.'));
+    Command compare;
+    compare.file("", picture_name);
+    compare.inputs.push_back(reference);
+    compare.option("--reference-halves " + stem + "_a.exr " + stem + "_b.exr");
+    graph_.errors[frame] = add(stage::error, shown, compare);
+    std::set<std::string> seen;
+    collect_stats(picture_name, seen, graph_.spent[graph_.errors[frame]]);
+  }
+  void collect_stats(const std::string& name, std::set<std::string>& seen, Names& stats) const {
+    if (!seen.insert(name).second) return;
+    const auto found = std::ranges::find_if(graph_.files, [&](const GraphFile& f) {
+      return f.name == name || std::ranges::find(f.beside, name) != f.beside.end();
+    });
+    if (found == graph_.files.end()) return;
+    if (!seen.insert("made " + found->name).second) return;
+    for (const std::string& input : found->inputs) collect_stats(input, seen, stats);
+    stats.push_back(found->name.substr(0, found->name.find('.')) + ".json");
+  }
+
+  const Plan& plan_;
+  const Wish& wish_;
+  const ToolHash& tool_hash_;
+  const MajorantsText& majorants_;
+  std::string size_, pixels_;
+  Graph graph_;
+  std::set<std::string> known_;
+  std::map<int, std::string> majorants_known_, records_;
+  std::map<long long, std::string> intervals_;
+};
+
+}  // namespace
+
+std::string frame_digits(int frame) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%04d", frame);
+  return text.data();
+}
+
+std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish) {
+  std::set<int> helpers;
+  for (const int frame : frames) {
+    for (int f = frame - wish.filter / 2; f <= frame + wish.filter / 2; ++f) helpers.insert(f);
+    if (wish.method == FrameMethod::frames) continue;
+    const int first = frame - frame % wish.key_distance;
+    for (int f = first; f <= first + wish.key_distance; ++f) helpers.insert(f);
+  }
+  return {helpers.begin(), helpers.end()};
+}
+
+Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, const MajorantsText& majorants) {
+  if (wish.filter > 0 && wish.method != FrameMethod::frames)
+    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=" + kFrameMethods[std::size_t(wish.method)] + ": one or the other; leave METHOD out");
+  return Builder(plan, wish, tool_hash, majorants).build();
+}
+
+}  // namespace tempolux

@@ -1,0 +1,39 @@
+// lib/plan/stages.cpp -- the presets.
+#include "lib/plan/stages.h"
+
+#include <sstream>
+
+namespace tempolux {
+namespace {
+
+struct Preset {
+  std::uint64_t photons;
+  const char* points;
+  int rays;                 ///< of a record at most
+  const char* records;      ///< further words
+  double pixel_error;
+  int first_samples;        ///< of a pixel
+  double threshold;         ///< of a walkthrough, relMSE
+};
+constexpr Preset kDraft{100'000, "--point-count 10k --light-samples 2", 150, "--error-bound 0.3", 0.05, 2, 0.035};
+constexpr Preset kFinal{700'000, "", 500, "", 0.016, 4, 0.01};
+
+}  // namespace
+
+Wish with_preset(Wish wish) {
+  const Preset& preset = wish.quality == Quality::draft ? kDraft : kFinal;
+  if (wish.photons == 0) wish.photons = preset.photons;
+  if (wish.rays == 0) wish.rays = preset.rays;
+  if (wish.pixel_error == 0) wish.pixel_error = preset.pixel_error;
+  if (wish.points.empty()) wish.points = preset.points;
+  if (wish.records.empty()) wish.records = preset.records;
+  if (wish.threshold == 0) wish.threshold = preset.threshold;
+  if (wish.pixels.empty()) {
+    std::ostringstream words;
+    words << "--spp " << preset.first_samples << " --pixel-error " << wish.pixel_error << " --learn-lights";
+    wish.pixels = words.str();
+  }
+  return wish;
+}
+
+}  // namespace tempolux

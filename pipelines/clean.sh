@@ -1,0 +1,19 @@
+#!/bin/sh
+# clean.sh -- remove what was built in this tree and what the pipeline made in OUT. Files of others in the same folders stay.
+for preset in release debug asan tsan no-oiio fuzz; do
+  grep -qs '^CMAKE_PROJECT_NAME:STATIC=tempolux$' "$TOP/build/$preset/CMakeCache.txt" && rm -rf "$TOP/build/$preset"
+done
+rmdir "$TOP/build" 2> /dev/null
+cd "$OUT" 2> /dev/null || exit 0
+[ -f plan.mk ] || exit 0
+for folder in state shown stands photons moved stands_points points split textures stands_cache cache kept lights keys walk walked raw filtered \
+  pictures smoky path error report; do
+  [ -d "$folder" ] || continue
+  find "$folder" -maxdepth 1 -type f -regextype egrep \
+    -regex '[a-z_]+/([0-9+]+-[0-9a-f]{10}[._a-z]*|[a-z]+-[0-9a-f]{10}|inputs|files[.0-9]*|.*[.](csv|md|html|svg|png|gp))' -delete
+  rmdir "$folder" 2> /dev/null
+done
+find frames -maxdepth 1 -type f -regextype egrep -regex 'frames/-?[0-9]+[.](exr|png)' -delete 2> /dev/null
+rm -f plan.mk plan.json sheet.png walk.log
+rmdir frames "$OUT" 2> /dev/null
+exit 0

@@ -1,0 +1,51 @@
+#!/bin/sh
+# run.sh GOAL -- ask scene-plan what the frames need, then make the goal inside OUT by the rules of stages.mk.
+#
+# Run by Makefile.example, which exports its variables. Names of files stay in quoted variables from here to the commands.
+set -f   # words are split at blanks and nothing else
+absolute() {   # absolute NAME: the variable, if it names a file, by its whole path
+  eval "value=\$$1"
+  case $value in '' | /* | none) ;; *) eval "$1=\$PWD/\$value" ;; esac
+  export "${1?}"
+}
+[ -n "$SCENE" ] || SCENE=$TOP/pipelines/scenes/S2_cornell_moving.glb
+if [ -z "$BIN" ]; then
+  if [ -f "$TOP/CMakeLists.txt" ]; then BIN=$TOP/build/release/bin; else BIN=$(command -v scene-plan); BIN=${BIN%/*}; fi
+fi
+for name in SCENE OUT BIN ENVIRONMENT VOLUME; do absolute $name; done
+goal=$1
+case $goal in "${OUT#"$PWD/"}"/*) goal=${goal#"${OUT#"$PWD/"}/"} ;; esac
+dry=; case "${MAKEFLAGS%% *}" in *n*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && dry=yes ;; esac
+if [ "$goal" = tidy ]; then exec "$BIN/scene-plan" --tidy "$OUT"; fi
+
+# The wish as options. What is empty is left to the preset.
+set -- "$SCENE" --frames "$FRAMES" --size "$SIZE" --quality "$QUALITY" --channels "$CHANNELS" --camera "$CAMERA" \
+  --method "$METHOD" --indirect "$INDIRECT" --moving "$MOVING" --split "$SPLIT" --strategy "$STRATEGY" \
+  --key-distance "$KEY_DISTANCE" --report "$REPORT_FRAMES" --reference-samples "$PATHS"
+wish() { [ -z "$2" ] || words="$words $1"; }
+for pair in filter:FILTER update:UPDATE photons:PHOTONS rays:RAYS pixel-error:ERROR threshold:THRESHOLD light-units:LIGHT_UNITS \
+  environment-color:SKY environment:ENVIRONMENT volume:VOLUME point-words:POINTS record-words:CACHE pixel-words:PIXELS \
+  smoke-words:SMOKE texture-words:TEXTURES; do
+  eval "value=\$${pair#*:}"
+  [ -z "$value" ] || set -- "$@" "--${pair%%:*}=$value"
+done
+case $SURFACES in gather) ;; textures) set -- "$@" --textures ;; *) echo "SURFACES=$SURFACES: gather or textures" >&2; exit 2 ;; esac
+# shellcheck disable=SC2086
+set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes "$TOP/pipelines/walkthrough.sh"
+if [ "$goal" = estimate ]; then exec "$BIN/scene-plan" "$@" --estimate --jobs 2; fi
+
+rules=$TOP/pipelines/stages.mk plan=plan.mk folder=$OUT
+if [ -n "$dry" ]; then   # make -n: plan aside, leave no trace
+  [ -x "$BIN/scene-plan" ] || { echo "$RUN $BIN/scene-plan $* -o $OUT"; exit; }
+  aside=$(mktemp -d) || exit 3
+  trap 'rm -rf "$aside"' EXIT
+  echo "$RUN $BIN/scene-plan $* -o $OUT"
+  "$BIN/scene-plan" "$@" -o "$aside" -q || exit
+  plan=$aside/plan.mk
+  [ -d "$OUT" ] || folder=$aside
+else
+  # shellcheck disable=SC2086
+  $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
+fi
+export PIPELINES="$TOP/pipelines" RULES="$rules"
+[ "$goal" = plan ] || ${MAKE:-make} --no-print-directory -C "$folder" -f "$rules" PLAN="$plan" "$goal"

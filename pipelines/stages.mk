@@ -1,0 +1,88 @@
+# stages.mk -- one rule for each kind of file of the pipeline. Run inside OUT by run.sh.
+#
+# plan.mk, written by scene-plan, lists the files of this run (formats/plan/plan.md). It has two lines for each file:
+#     points/0012-bcbdec5026.irradpoints: words := --frame 12 --photons photons/0012-6706adedf0.photons
+#     points/0012-bcbdec5026.irradpoints: | photons/0012-6706adedf0.photons
+# `words` are options of the command below. What stands after the bar must exist before. The digits after the frame are a hash
+# of everything that the file is made from, rules of this page included: a file that exists is right, so no times are compared.
+# To replace a stage by a program of your own, change its rule here.
+PLAN = plan.mk
+include $(PLAN)
+# An empty variable leaves out its option. Names of files stay in the environment.
+shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment-color "$$SKY"} $${VOLUME:+--volume "$$VOLUME"} \
+  $${LIGHT_UNITS:+--light-units "$$LIGHT_UNITS"} $$VOLUME_OPTIONS $$TIME
+scene  = "$$SCENE" $(words) $(shared)
+seen   = $(scene) --camera "$$CAMERA"
+run    = $(if $V,,@)$(say)$(RUN) "$$BIN"
+say    = $(if $V,,echo "$(or $(notdir $@),$@)" &&)
+.DELETE_ON_ERROR .SUFFIXES:
+.PHONY: demo report
+demo: $(frames) $(previews) sheet.png $(log)
+
+# Light: photons of a state of light. Where things move, first those of what stands, then what movers change of them.
+photons/%.photons:
+	$(run)/photon-trace $(scene) -o $@ --stats photons/$*.json
+stands/%.photons stands/%.paths:
+	$(run)/photon-trace $(scene) -o stands/$*.photons --paths stands/$*.paths --stats stands/$*.json
+moved/%.photons:
+	$(run)/photon-trace $(scene) -o $@ --stats moved/$*.json
+
+# What photons say of the light on all surfaces: irradiance points, which gather rays read. Bright ones apart, where that pays.
+points/%.irradpoints:
+	$(run)/irradcache-build points $(scene) -o $@ --stats points/$*.json
+stands_points/%.irradpoints:
+	$(run)/irradcache-build points $(scene) -o $@ --stats stands_points/$*.json
+split/%.low.irradpoints split/%.high.irradpoints:
+	$(run)/photonmap-split $(words) --low split/$*.low.irradpoints --high split/$*.high.irradpoints --stats split/$*.json
+
+# Indirect light, gathered in records where the cameras need it; kept: records that keep what they have gathered over time.
+cache/%.irradcache:
+	$(run)/irradcache-build records $(seen) -o $@ --stats cache/$*.json
+stands_cache/%.irradcache:
+	$(run)/irradcache-build records $(seen) -o $@ --stats stands_cache/$*.json
+kept/%.irradcache kept/%.radsamples:
+	$(run)/gather-temporal final $(seen) -o kept/$*.radsamples --cache kept/$*.irradcache --stats kept/$*.json
+# In smoke: light textures, photons counted in elements of the surfaces and smoothed.
+textures/%.meshirrad:
+	$(run)/st-filter mesh $(scene) -o $@ --stats textures/$*.json
+# From where light of sky and suns reaches what the cameras of a segment see.
+lights/%.lightgrid:
+	$(run)/frame-render $(seen) -o $@ --stats lights/$*.json
+
+# Pixels. raw: few samples, for the filter; keys: for warping; smoky: with smoke put in.
+pictures/%.exr:
+	$(run)/frame-render $(seen) -o $@ --stats pictures/$*.json
+raw/%.exr:
+	$(run)/frame-render $(seen) -o $@ --stats raw/$*.json
+filtered/%.exr:
+	$(run)/st-filter $(words) -o $@ --stats filtered/$*.json
+smoky/%.exr:
+	$(run)/volume-compose $(seen) -o $@ --stats smoky/$*.json
+keys/%.exr:
+	$(run)/frame-render $(seen) -o $@ --stats keys/$*.json
+# Between keys: an interval is warped or halved (walkthrough.sh says how); then each of its frames is warped and completed.
+walk/%.done:
+	+$(if $V,,@)MAKE='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
+walked/%.exr:
+	$(if $V,,@)RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
+
+# A frame shows a picture; shown/FRAME-KEY says which. Frames that show the same are copies of one.
+show = $(if $V,,@)rm -f shown/$1-??????????; cp --reflink=auto $| frames/$1.part && mv frames/$1.part frames/$1.exr && touch shown/$2
+# To look at, at one exposure for the whole sequence: the one that suits the first frame.
+shown/exposure-%:
+	$(if $V,,@)"$$BIN"/tempolux-info $| --json | sed -n 's/.*"auto_exposure_stops": *\([^,]*\),*$$/\1/p' | grep . > $@
+exposure = --exposure "$$(cat $(filter shown/exposure-%,$|))"
+preview = $(if $V,,@)rm -f shown/$1-*.png; $(RUN) "$$BIN"/tempolux-info --png frames/$1.png $(exposure) $(firstword $|) && touch shown/$2
+sheet = $(if $V,,@)rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && touch shown/$1
+# A walkthrough's keys have a border in the sheet; its log says where keys were placed and why.
+marks = $(if $(log),--mark "$$(sh "$$PIPELINES/walkthrough.sh" keys)")
+walk_log = $(if $V,,@)rm -f shown/walk-*; sh "$$PIPELINES/walkthrough.sh" log $(intervals) > walk.log && touch shown/$1
+
+# How wrong is a frame, against path tracing in two halves whose noise is known? And what did it cost, all stages counted?
+path/%.exr path/%_a.exr path/%_b.exr:
+	$(run)/frame-render $(seen) -o path/$*.exr --stats path/$*.json
+error/%.json:
+	$(run)/aqm-compare $(words) --json $@ --quiet
+write_report = $(RUN) "$$BIN"/error-report -o report $(report_runs) && rm -f shown/report-* && touch shown/$1
+report: report/index.html
+	@cat report/report.md
