@@ -186,7 +186,7 @@ def speed(tools, scene, out):
         return json.loads((out / "s.json").read_text())
     rows = []
     for _ in range(3):
-        pace = 1 / stats(walk, scene, "--frame", 10, "--photons", 10 ** 6, "--threads", 1)["cpu_s"] if walk.exists() else math.nan
+        pace = 1 / json.loads(run(walk, scene, "--frame", 10, "--photons", 10 ** 6, "--threads", 1).stdout)["cpu_s"] if walk.exists() else math.nan
         one, two, plain = (stats(tools / "aqm-compare", "-q", out / "a.exr", out / "b.exr", *words, "--allow-stale")
                            for words in (["--metric", "aqm", "--threads", 1], ["--metric", "aqm", "--threads", 2], ["--threads", 1]))
         wall = [next(p["wall_s"] for p in s["phases"] if p["name"] == "vision") for s in (one, two)]
