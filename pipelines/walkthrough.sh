@@ -19,10 +19,13 @@ percent() { awk "BEGIN { printf \"%.1f%%\", 100 * $1 / $2 }"; }
 tool() { name=$1; shift; eval "set -- \"\$@\" $SHARED"; $RUN "$BIN/$name" "$@"; }   # SHARED: options in quotes, names in variables
 warp() { tool ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA"; }
 
-# Both keys warped to the middle: how much do they differ where neither is masked, and how much is masked?
+# Both keys warped to the middle: how much do they differ where neither is masked, and how much is masked? A threshold in percent is of AQM,
+# which looks at the frames after one and three quarters of the interval too and takes their flow.
 decide() {
   a=$1 b=$2 middle=$3 threshold=$4 try=$5
-  warp "$a" "$b" --frame "$(number "$middle")" -o "$try/w.exr" --mask "$try/why.exr" --separate --compression none --stats "$try/warp.json"
+  first=$(number "$(frame_of "$a")") last=$(number "$(frame_of "$b")") at=$(number "$middle")
+  case $threshold in *%) at=$(printf '%s\n' $(((3 * first + last) / 4)) "$at" $(((first + 3 * last) / 4)) | awk -v a="$first" -v b="$last" '$1 > a && $1 < b' | sort -nu | paste -sd,) ;; esac
+  warp "$a" "$b" --frames "$at" -o "$try/####.exr" --mask "$try/why.####.exr" --flow "$try/flow.####.exr" --separate --compression none --stats "$try/warp.json"
   pixels=$(count_of pixels "$try/warp.json") traced=$(count_of traced "$try/warp.json")
   distant=0 causes=
   for cause in specular occlusion slow deforming changed_light border edge undersampled; do
@@ -33,13 +36,16 @@ decide() {
   difference=none verdict=warp
   if [ "$traced" -lt "$pixels" ]; then
     code=0
-    $RUN "$BIN/aqm-compare" "$try/w_1.exr" "$try/w_2.exr" --except "$try/why.exr" --fail-by relmse --fail-above "$threshold" --quiet --json "$try/compare.json" || code=$?
+    case $threshold in *%) by=; figure=percent; set -- --flow "$try/flow.####.exr" ;; *) by='--fail-by relmse'; figure=relmse; set -- ;; esac
+    # shellcheck disable=SC2086
+    $RUN "$BIN/aqm-compare" "$try/####_1.exr" "$try/####_2.exr" --frames "$at" --except "$try/why.####.exr" $by --fail-above "$threshold" --quiet \
+      --json "$try/compare.json" "$@" || code=$?
     case $code in 0) ;; 1) verdict=split;; *) exit $code;; esac
-    difference=$(count_of relmse "$try/compare.json")
+    difference=$(count_of $figure "$try/compare.json")
+    [ $figure = relmse ] || difference=$(awk "BEGIN { printf \"%.2f%%\", $difference }")
   fi
   # What no key sees grows with their distance: halving it saves half of that in every frame, and costs a key.
-  between=$(($(number "$(frame_of "$b")") - $(number "$(frame_of "$a")") - 1))
-  [ $((distant * (between + 1))) -gt $((2 * pixels)) ] && verdict=split
+  [ $((distant * (last - first))) -gt $((2 * pixels)) ] && verdict=split
   echo "$(frame_of "$a") $(frame_of "$b")  middle $middle  difference $difference  traced $(percent "$traced" "$pixels"):$causes  $verdict"
 }
 

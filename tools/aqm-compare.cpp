@@ -18,6 +18,7 @@
 #include "lib/report/comparison.h"
 #include "tools/common/compare_inputs.h"
 #include "tools/common/option_words.h"
+#include "tools/common/percent_option.h"
 #include "tools/common/tool_main.h"
 #include "tools/common/vision_options.h"
 
@@ -37,17 +38,6 @@ struct Options {
   std::string layer_or_rgb() const { return layer == "RGB" ? "" : layer; }
   std::vector<std::string> references() const { return halves.empty() ? std::vector{reference} : halves; }
 };
-
-/// "5%" is AQM .05: rewritten before it is read as a number.
-CLI::Validator percent_of_aqm(Options& o) {
-  return CLI::Validator([&o](std::string& word) {
-    double percent = 0;
-    if (!word.ends_with("%") || !CLI::detail::lexical_cast(word.substr(0, word.size() - 1), percent)) return std::string();
-    word = std::to_string(percent / 100);
-    o.fail_by = "aqm";
-    return std::string();
-  }, "");
-}
 
 void declare(tools::Tool& tool, Options& o) {
   CLI::App& app = tool.app();
@@ -75,7 +65,7 @@ void declare(tools::Tool& tool, Options& o) {
   app.add_option("--difference-scale", o.difference_scale, "difference at full red in the PNG; 0: automatic")
       ->type_name("VALUE")->capture_default_str()->check(tools::number_between(0));
   app.add_option("--fail-above", o.fail_above, "exit 1 if the RMSE is above this, or what --fail-by names; 5%: if AQM is")
-      ->type_name("VALUE")->check(tools::number_between(0))->transform(percent_of_aqm(o));
+      ->type_name("VALUE")->check(tools::number_between(0))->transform(tools::percent([&o] { o.fail_by = "aqm"; }));
   app.add_option("--fail-by", o.fail_by, "what --fail-above judges: rmse, relmse or aqm (a share, .05 for 5 %)")->capture_default_str()
       ->check(CLI::IsMember({"rmse", "relmse", "aqm"}));
   tool.leave_out_of_history(
