@@ -1,7 +1,8 @@
-// tempolux-fourier -- Fourier transforms by FFTW; opened by lib/aqm/fourier.cpp when differences are judged as an eye sees them.
+// tempolux-fourier -- Fourier transforms by FFTW; opened by lib/aqm/fourier.cpp when differences are judged
+// as an eye sees them.
 //
-// A shared object of its own, so that comparisons by error figures alone load nothing of FFTW. Plans are FFTW's estimates, never
-// measured: the same operations, so the same bytes, in every run.
+// A shared object of its own, so that comparisons by error figures alone load nothing of FFTW. Plans are
+// FFTW's estimates, never measured: the same operations, so the same bytes, in every run.
 #include <fftw3.h>
 
 #include <map>
@@ -14,7 +15,8 @@ namespace {
 
 using tempolux::FourierRequest;
 
-/// The plan for a kind and size, made with the first call. FFTW's planner is not safe from several threads, what executes plans is.
+/// The plan for a kind and size, made with the first call. FFTW's planner is not safe from several threads,
+/// what executes plans is.
 fftwf_plan plan_for(const FourierRequest& request) {
   static std::mutex planner;
   static std::map<std::tuple<int, int, int>, fftwf_plan> plans;
@@ -23,7 +25,8 @@ fftwf_plan plan_for(const FourierRequest& request) {
   if (plan) return plan;
   auto* out = reinterpret_cast<fftwf_complex*>(request.out);
   if (request.kind == tempolux::fourier_forward)
-    plan = fftwf_plan_dft_r2c_2d(request.height, request.width, request.in, out, FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
+    plan = fftwf_plan_dft_r2c_2d(request.height, request.width, request.in, out,
+                                 FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
   else
     plan = fftwf_plan_dft_2d(request.height, request.width, out, out, FFTW_BACKWARD, FFTW_ESTIMATE);
   return plan;
@@ -31,12 +34,15 @@ fftwf_plan plan_for(const FourierRequest& request) {
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) std::int32_t tempolux_fourier(const FourierRequest* request) {
+extern "C" __attribute__((visibility("default"))) std::int32_t tempolux_fourier(
+    const FourierRequest* request) {
   if (request->abi != tempolux::kFourierAbi) return tempolux::fourier_bad_version;
   const fftwf_plan plan = plan_for(*request);
   if (!plan) return tempolux::fourier_no_memory;
   auto* out = reinterpret_cast<fftwf_complex*>(request->out);
-  if (request->kind == tempolux::fourier_forward) fftwf_execute_dft_r2c(plan, request->in, out);
-  else fftwf_execute_dft(plan, out, out);
+  if (request->kind == tempolux::fourier_forward)
+    fftwf_execute_dft_r2c(plan, request->in, out);
+  else
+    fftwf_execute_dft(plan, out, out);
   return tempolux::fourier_ok;
 }

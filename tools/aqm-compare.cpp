@@ -4,7 +4,8 @@
 //     aqm-compare out.####.exr ref.####.exr --frames 0-47 --layer indirect --difference diff.####.png
 //     aqm-compare a.exr b.exr --flow flow.exr --except why.exr -o seen.png --fail-above 5%
 //
-// Figures: lib/aqm/frame_error.h; what a viewer sees: lib/aqm/visible_difference.h; JSON: formats/comparison/comparison.md.
+// Figures: lib/aqm/frame_error.h; what a viewer sees: lib/aqm/visible_difference.h; JSON:
+// formats/comparison/comparison.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -55,8 +56,10 @@ void declare(tools::Tool& tool, Options& o) {
   app.add_option("--relative-to", o.smooth,
                  "EXR; stands for the reference in relMSE's denominator, where the reference's noise would count")
       ->type_name("FILE");
-  app.add_option("--metric", o.metric, "error: RMSE, relMSE, bias, PSNR, flicker; aqm: the share of pixels seen to differ, too")
-      ->type_name("{error,aqm}")->capture_default_str();
+  app.add_option("--metric", o.metric,
+                 "error: RMSE, relMSE, bias, PSNR, flicker; aqm: the share of pixels seen to differ, too")
+      ->type_name("{error,aqm}")
+      ->capture_default_str();
   tools::declare_vision(tool, o.vision);
   tool.count_option("--min-object-pixels", o.min_object_pixels, "flag the bias of objects of fewer pixels");
   tool.output_option(o.json, "write all figures as JSON; -: standard output", "--json");
@@ -64,9 +67,14 @@ void declare(tools::Tool& tool, Options& o) {
                      "--difference");
   app.add_option("--difference-scale", o.difference_scale, "difference at full red in the PNG; 0: automatic")
       ->type_name("VALUE")->capture_default_str()->check(tools::number_between(0));
-  app.add_option("--fail-above", o.fail_above, "exit 1 if the RMSE is above this, or what --fail-by names; 5%: if AQM is")
-      ->type_name("VALUE")->check(tools::number_between(0))->transform(tools::percent([&o] { o.fail_by = "aqm"; }));
-  app.add_option("--fail-by", o.fail_by, "what --fail-above judges: rmse, relmse or aqm (a share, .05 for 5 %)")->capture_default_str()
+  app.add_option("--fail-above", o.fail_above,
+                 "exit 1 if the RMSE is above this, or what --fail-by names; 5%: if AQM is")
+      ->type_name("VALUE")
+      ->check(tools::number_between(0))
+      ->transform(tools::percent([&o] { o.fail_by = "aqm"; }));
+  app.add_option("--fail-by", o.fail_by,
+                 "what --fail-above judges: rmse, relmse or aqm (a share, .05 for 5 %)")
+      ->capture_default_str()
       ->check(CLI::IsMember({"rmse", "relmse", "aqm"}));
   tool.leave_out_of_history(
       app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
@@ -74,7 +82,8 @@ void declare(tools::Tool& tool, Options& o) {
 }
 
 void check(const tools::Tool& tool, const Options& o, bool frames_given) {
-  if (o.metric != "error" && o.metric != "aqm") throw InputError("--metric " + o.metric + ": unknown; there are: error, aqm");
+  if (o.metric != "error" && o.metric != "aqm")
+    throw InputError("--metric " + o.metric + ": unknown; there are: error, aqm");
   tools::check_vision(o.vision, frames_given && tool.common().frames.size() > 1);
   if (o.reference.empty() == o.halves.empty())
     throw InputError("give the reference either as second file or as --reference-halves A B");
@@ -134,7 +143,8 @@ double relative_error(const Comparison& result) {
 class FrameOutputs {
  public:
   /// Creates the outputs of the first frame, so that an unwritable place is noticed before the work.
-  FrameOutputs(tools::Tool& tool, const Options& o, std::optional<int> first) : scale(o.difference_scale), tool_(tool), o_(o) {
+  FrameOutputs(tools::Tool& tool, const Options& o, std::optional<int> first)
+      : scale(o.difference_scale), tool_(tool), o_(o) {
     open(first);
   }
   /// Creates those of a later frame.
@@ -145,10 +155,11 @@ class FrameOutputs {
   void write(const Compared& pair, std::optional<int> frame) {
     if (difference_) write_difference(tool_, pair, frame, scale, std::move(*difference_));
   }
-  void write(const JudgedFrame& judged, const tools::LoadedFrame& loaded, const VisionOptions& viewing, std::optional<int> frame) {
+  void write(const JudgedFrame& judged, const tools::LoadedFrame& loaded, const VisionOptions& viewing,
+             std::optional<int> frame) {
     if (map_) tools::write_map(tool_, judged, loaded, viewing, frame, std::move(*map_));
   }
-  double scale;   ///< of the PNG of differences, chosen by the first frame
+  double scale;  ///< of the PNG of differences, chosen by the first frame
 
  private:
   std::optional<tools::Output> output(const std::string& name, std::optional<int> frame) {
@@ -161,10 +172,12 @@ class FrameOutputs {
 };
 
 /// Reads, compares and writes all frames.
-Comparison compare_frames(tools::Tool& tool, const Options& o, const std::vector<std::optional<int>>& frames, FrameOutputs& outputs) {
+Comparison compare_frames(tools::Tool& tool, const Options& o, const std::vector<std::optional<int>>& frames,
+                          FrameOutputs& outputs) {
   ComparisonBuilder builder(description(tool, o), o.min_object_pixels);
   tools::IdentityGuard identities(tool, o.allow_stale);
-  const tools::ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb(), o.smooth, o.except, o.vision.flow};
+  const tools::ComparedFiles names{o.test,   o.references(), o.mask,       o.layer_or_rgb(),
+                                   o.smooth, o.except,       o.vision.flow};
   std::optional<VisionOptions> viewing;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     tool.stats().phase("load");
@@ -220,7 +233,8 @@ int compare(tools::Tool& tool, const Options& o, bool frames_given) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("aqm-compare", "Say how wrong a frame or a sequence is, and whether a viewer would see it.", argc, argv);
+  tools::Tool tool("aqm-compare",
+                   "Say how wrong a frame or a sequence is, and whether a viewer would see it.", argc, argv);
   Options options;
   declare(tool, options);
   return tool.run([&] { return compare(tool, options, tool.app().get_option("--frames")->count() > 0); });

@@ -9,15 +9,16 @@ namespace {
 
 using Complex = std::complex<float>;
 
-constexpr int kBorder = 32;                  ///< pixels, 1 / h_5: the width of what the base band averages
-constexpr int kTableSteps = 4096;            ///< of frequencies from 0 to kTableEnd; linear between
-constexpr double kTableEnd = 0.70711;        ///< c/px, the corner of the spectrum
+constexpr int kBorder = 32;            ///< pixels, 1 / h_5: the width of what the base band averages
+constexpr int kTableSteps = 4096;      ///< of frequencies from 0 to kTableEnd; linear between
+constexpr double kTableEnd = 0.70711;  ///< c/px, the corner of the spectrum
 
 int padded(int n) { return 8 * fast_transform_size((n + 2 * kBorder + 7) / 8); }
 
 /// Which of n values stands at place `at` of a period of `period`: reflected at both ends.
 int reflected(int at, int n, int period) {
-  const int place = at - n < period - at ? at : at - period;   // nearer to the right end, or before the left one
+  const int place =
+      at - n < period - at ? at : at - period;  // nearer to the right end, or before the left one
   const int folded = ((place % (2 * n)) + 2 * n) % (2 * n);
   return folded < n ? folded : 2 * n - 1 - folded;
 }
@@ -27,22 +28,30 @@ double upper_edge(int band) { return band == kBaseBand ? 1.0 / 24 : 4.0 / 3 * st
 
 }  // namespace
 
-ChannelGrid::ChannelGrid(int w, int h) : width(w), height(h), padded_width(padded(w)), padded_height(padded(h)) {}
+ChannelGrid::ChannelGrid(int w, int h)
+    : width(w), height(h), padded_width(padded(w)), padded_height(padded(h)) {}
 
 int ChannelGrid::step(int band) {
   constexpr std::array<int, kBands> steps{1, 1, 2, 4, 8, 8};
   return steps[std::size_t(band - 1)];
 }
 
-int ChannelGrid::columns(int band) const { return std::min((width - 1) / step(band) + 2, padded_width / step(band)); }
-int ChannelGrid::rows(int band) const { return std::min((height - 1) / step(band) + 2, padded_height / step(band)); }
+int ChannelGrid::columns(int band) const {
+  return std::min((width - 1) / step(band) + 2, padded_width / step(band));
+}
+int ChannelGrid::rows(int band) const {
+  return std::min((height - 1) / step(band) + 2, padded_height / step(band));
+}
 
-FourierArray<Complex> padded_spectrum(const FourierTransform& transform, const ChannelGrid& grid, const std::vector<float>& values) {
+FourierArray<Complex> padded_spectrum(const FourierTransform& transform, const ChannelGrid& grid,
+                                      const std::vector<float>& values) {
   FourierArray<float> picture(grid.padded_count());
   std::vector<int> column(std::size_t(grid.padded_width));
-  for (int x = 0; x < grid.padded_width; ++x) column[std::size_t(x)] = reflected(x, grid.width, grid.padded_width);
+  for (int x = 0; x < grid.padded_width; ++x)
+    column[std::size_t(x)] = reflected(x, grid.width, grid.padded_width);
   for (int y = 0; y < grid.padded_height; ++y) {
-    const float* from = values.data() + std::size_t(reflected(y, grid.height, grid.padded_height)) * std::size_t(grid.width);
+    const float* from =
+        values.data() + std::size_t(reflected(y, grid.height, grid.padded_height)) * std::size_t(grid.width);
     float* to = picture.data() + std::size_t(y) * std::size_t(grid.padded_width);
     for (int x = 0; x < grid.padded_width; ++x) to[x] = from[column[std::size_t(x)]];
   }
@@ -52,7 +61,8 @@ FourierArray<Complex> padded_spectrum(const FourierTransform& transform, const C
 std::vector<ChannelName> channel_names() {
   std::vector<ChannelName> names;
   for (int band = 1; band < kBands; ++band)
-    for (int orientation = 1; orientation <= kOrientations; ++orientation) names.push_back({band, orientation});
+    for (int orientation = 1; orientation <= kOrientations; ++orientation)
+      names.push_back({band, orientation});
   names.push_back({kBaseBand, 0});
   return names;
 }
@@ -63,16 +73,19 @@ ChannelFilters::ChannelFilters(const ChannelGrid& grid, double pixels_per_degree
     std::vector<double> seen(kTableSteps + 1);
     for (int i = 0; i <= kTableSteps; ++i) {
       const double frequency = kTableEnd * i / kTableSteps;
-      seen[std::size_t(i)] = band_filter(band, frequency) * contrast_sensitivity(frequency * pixels_per_degree, kDriftSpeed);
+      seen[std::size_t(i)] =
+          band_filter(band, frequency) * contrast_sensitivity(frequency * pixels_per_degree, kDriftSpeed);
     }
     const double most = std::ranges::max(seen);
     most_[std::size_t(band - 1)] = most;
-    for (const double value : seen) radial_[std::size_t(band - 1)].push_back(most > 0 ? float(value / most) : 0);
+    for (const double value : seen)
+      radial_[std::size_t(band - 1)].push_back(most > 0 ? float(value / most) : 0);
   }
 }
 
 double ChannelFilters::sensitivity(int band, double speed) const {
-  const double frequency = band_frequency(band) * pixels_per_degree_, still = contrast_sensitivity(frequency, kDriftSpeed);
+  const double frequency = band_frequency(band) * pixels_per_degree_,
+               still = contrast_sensitivity(frequency, kDriftSpeed);
   return still > 0 ? most_[std::size_t(band - 1)] * (contrast_sensitivity(frequency, speed) / still) : 0;
 }
 
@@ -84,20 +97,27 @@ float ChannelFilters::radial(int band, double frequency) const {
   return (1 - t) * table[std::size_t(i)] + t * table[std::size_t(i) + 1];
 }
 
-/// The frequencies of a channel: where they lie, how they are weighted, where they fall in the channel's own spectrum.
+/// The frequencies of a channel: where they lie, how they are weighted, where they fall in the channel's own
+/// spectrum.
 struct ChannelFilters::Lobe {
   const ChannelFilters& filters;
   ChannelName name;
-  int width, height, step, most_x, most_y;   ///< of the padded grid; largest |u|, |v| of the band
-  double cosine, sine;                       ///< of the orientation
+  int width, height, step, most_x, most_y;  ///< of the padded grid; largest |u|, |v| of the band
+  double cosine, sine;                      ///< of the orientation
 
   Lobe(const ChannelFilters& f, ChannelName n)
-      : filters(f), name(n), width(f.grid_.padded_width), height(f.grid_.padded_height), step(ChannelGrid::step(n.band)),
-        most_x(int(std::min(upper_edge(n.band), 0.5) * width)), most_y(int(std::min(upper_edge(n.band), 0.5) * height)),
-        cosine(std::cos(orientation_angle(n.orientation))), sine(std::sin(orientation_angle(n.orientation))) {}
+      : filters(f),
+        name(n),
+        width(f.grid_.padded_width),
+        height(f.grid_.padded_height),
+        step(ChannelGrid::step(n.band)),
+        most_x(int(std::min(upper_edge(n.band), 0.5) * width)),
+        most_y(int(std::min(upper_edge(n.band), 0.5) * height)),
+        cosine(std::cos(orientation_angle(n.orientation))),
+        sine(std::sin(orientation_angle(n.orientation))) {}
 
-  /// Frequency (u, v) counts twice in an oriented channel, its opposite not at all. Nyquist's frequency stands in the spectrum once
-  /// and is of both signs: half each.
+  /// Frequency (u, v) counts twice in an oriented channel, its opposite not at all. Nyquist's frequency
+  /// stands in the spectrum once and is of both signs: half each.
   float weight(int u, int v) const {
     const double x = double(u) / width, y = double(v) / height, square = x * x + y * y;
     if (name.orientation == 0) return filters.radial(name.band, std::sqrt(square));
@@ -110,7 +130,9 @@ struct ChannelFilters::Lobe {
 
   /// What frequency (u, v) is in the half of the spectrum that is stored.
   Complex at(const FourierArray<Complex>& spectrum, int u, int v) const {
-    const auto row = [&](int r) { return std::size_t(r < 0 ? r + height : r >= height ? r - height : r) * std::size_t(width / 2 + 1); };
+    const auto row = [&](int r) {
+      return std::size_t(r < 0 ? r + height : r >= height ? r - height : r) * std::size_t(width / 2 + 1);
+    };
     return u >= 0 ? spectrum[row(v) + std::size_t(u)] : std::conj(spectrum[row(-v) + std::size_t(-u)]);
   }
 
@@ -118,16 +140,18 @@ struct ChannelFilters::Lobe {
   template <class Add>
   void each(const Add& add) const {
     const int columns = width / step, rows = height / step;
-    const bool no_left = name.orientation > 1;   // orientations -60 to 60 degrees have no frequency with u < 0
+    const bool no_left = name.orientation > 1;  // orientations -60 to 60 degrees have no frequency with u < 0
     for (int v = -most_y; v <= most_y; ++v) {
       const std::size_t row = std::size_t(((v % rows) + rows) % rows) * std::size_t(columns);
       for (int u = no_left ? 0 : -most_x; u <= most_x; ++u)
-        if (const float w = weight(u, v)) add(row + std::size_t(((u % columns) + columns) % columns), u, v, w);
+        if (const float w = weight(u, v))
+          add(row + std::size_t(((u % columns) + columns) % columns), u, v, w);
     }
   }
 };
 
-ChannelPair ChannelFilters::channel(const FourierTransform& transform, ChannelName name, const FourierArray<Complex>& first,
+ChannelPair ChannelFilters::channel(const FourierTransform& transform, ChannelName name,
+                                    const FourierArray<Complex>& first,
                                     const FourierArray<Complex>& second) const {
   const Lobe lobe(*this, name);
   const int columns = lobe.width / lobe.step, rows = lobe.height / lobe.step;

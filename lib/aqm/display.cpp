@@ -19,7 +19,9 @@ double pixels_per_degree(double columns, double diagonal_inches, double distance
 }
 
 /// Luminance of black: the display's own, and half a percent of the room's light.
-double black_level(double peak, double contrast, double room_lux) { return peak / contrast + 0.005 * room_lux / std::numbers::pi; }
+double black_level(double peak, double contrast, double room_lux) {
+  return peak / contrast + 0.005 * room_lux / std::numbers::pi;
+}
 
 }  // namespace
 
@@ -40,7 +42,9 @@ Display display_named(const std::string& name) {
   throw InputError("--display " + name + ": unknown; there are: " + names);
 }
 
-std::vector<float> displayed_luminance(const Display& display, const std::vector<const std::vector<float>*>& planes, double exposure) {
+std::vector<float> displayed_luminance(const Display& display,
+                                       const std::vector<const std::vector<float>*>& planes,
+                                       double exposure) {
   constexpr std::array<double, 3> kRec709{0.2126, 0.7152, 0.0722};
   constexpr std::array<double, 3> kGrey{1, 0, 0};
   const auto& weight = planes.size() == 3 ? kRec709 : kGrey;
@@ -51,7 +55,7 @@ std::vector<float> displayed_luminance(const Display& display, const std::vector
       double sum = 0;
       for (std::size_t c = 0; c < planes.size(); ++c) {
         const double value = double((*planes[c])[i]) * exposure;
-        sum += weight[c] * (value > 0 ? std::min(value, largest) : 0);   // not-a-number is not above 0
+        sum += weight[c] * (value > 0 ? std::min(value, largest) : 0);  // not-a-number is not above 0
       }
       luminance[i] = float(display.black + range * sum);
     }

@@ -8,16 +8,18 @@ namespace tempolux {
 inline constexpr std::uint32_t kFourierAbi = 1;
 
 enum FourierKind : std::int32_t {
-  fourier_forward = 0,  ///< `in`: width*height reals; `out`: height rows of width/2 + 1 complex numbers; exp(-i 2 pi ..)
+  fourier_forward =
+      0,  ///< `in`: width*height reals; `out`: height rows of width/2 + 1 complex numbers; exp(-i 2 pi ..)
   fourier_inverse = 1,  ///< `in` = `out`: width*height complex numbers, transformed in place; exp(+i 2 pi ..)
 };
 
-/// One transform of two dimensions, not normalised. Arrays are aligned to kFourierAlignment bytes, complex numbers are pairs of floats.
+/// One transform of two dimensions, not normalised. Arrays are aligned to kFourierAlignment bytes, complex
+/// numbers are pairs of floats.
 struct FourierRequest {
   std::uint32_t abi;  ///< kFourierAbi; another: refused
   std::int32_t kind;  ///< FourierKind
   std::int32_t width, height;
-  float* in;          ///< kept by fourier_forward
+  float* in;  ///< kept by fourier_forward
   float* out;
 };
 inline constexpr std::size_t kFourierAlignment = 64;

@@ -13,7 +13,7 @@ constexpr double kPi = std::numbers::pi;
 /// h of a band's inner mesa, 2^-band.
 double inner(int band) { return std::ldexp(1.0, -band); }
 
-constexpr double kBaseCut = 1.0 / 24;         // h_5 + transition / 2 = 4 h_5 / 3
+constexpr double kBaseCut = 1.0 / 24;  // h_5 + transition / 2 = 4 h_5 / 3
 constexpr double kBaseSigma = kBaseCut / 3;
 
 }  // namespace
@@ -32,7 +32,7 @@ double contrast_sensitivity(double frequency, double speed) {
 }
 
 double receptor_response(double luminance) {
-  const double x = std::pow(luminance, 0.37);   // L / (L + 12.6 L^.63) without its 0 / 0
+  const double x = std::pow(luminance, 0.37);  // L / (L + 12.6 L^.63) without its 0 / 0
   return 100 * x / (x + 12.6);
 }
 
@@ -62,7 +62,7 @@ double band_frequency(int band) {
 double orientation_angle(int orientation) { return (30.0 * (orientation - 1) - 90) * kPi / 180; }
 
 double fan_filter(double cosine) {
-  const double square = cosine * cosine;   // cos 6d of cos d: Chebyshev's polynomial
+  const double square = cosine * cosine;  // cos 6d of cos d: Chebyshev's polynomial
   if (square <= 0.75) return 0;
   return 0.5 * (1 + ((32 * square - 48) * square + 18) * square - 1);
 }

@@ -1,7 +1,9 @@
-// lib/aqm/vision_model.h -- Daly's visible differences predictor as formulas: what an eye sees at which frequency and speed.
+// lib/aqm/vision_model.h -- Daly's visible differences predictor as formulas: what an eye sees at which
+// frequency and speed.
 //
-// Where each constant comes from: docs/methods/vision.md. Frequencies are in cycles per degree (cpd) where the eye matters, in cycles
-// per pixel (c/px) where the picture is taken apart; pixels per degree (ppd) lie between the two.
+// Where each constant comes from: docs/methods/vision.md. Frequencies are in cycles per degree (cpd) where
+// the eye matters, in cycles per pixel (c/px) where the picture is taken apart; pixels per degree (ppd) lie
+// between the two.
 #pragma once
 
 namespace tempolux::vision {
@@ -15,15 +17,15 @@ enum class Gaze {
 /// Slowest motion of an image across the retina, deg/s: eyes drift even when they rest.
 inline constexpr double kDriftSpeed = 0.15;
 
-/// Motion of an image across the retina, signed, deg/s, of what moves across the display at `speed` >= 0 deg/s and is tracked:
-/// v - min(.82 v + .15, 80). Negative where drift is faster than what moves.
+/// Motion of an image across the retina, signed, deg/s, of what moves across the display at `speed` >= 0
+/// deg/s and is tracked: v - min(.82 v + .15, 80). Negative where drift is faster than what moves.
 double tracked_retinal_speed(double speed);
 
 /// What the sensitivity is asked for: |tracked_retinal_speed| or the speed itself, and kDriftSpeed at least.
 double retinal_speed(double speed, Gaze gaze);
 
-/// 1 / (Michelson contrast at threshold) of a grating of `frequency` cpd that moves across the retina at `speed` deg/s: Kelly 1979
-/// as Daly fitted it anew in 1998. 0 at frequency 0. speed > 0.
+/// 1 / (Michelson contrast at threshold) of a grating of `frequency` cpd that moves across the retina at
+/// `speed` deg/s: Kelly 1979 as Daly fitted it anew in 1998. 0 at frequency 0. speed > 0.
 double contrast_sensitivity(double frequency, double speed);
 
 /// Response of a receptor to `luminance` >= 0 cd/m2, from 0 to 100.
@@ -40,17 +42,19 @@ double mesa(double frequency, double h);
 double base_filter(double frequency);
 /// Band 1 (finest) to 5, or kBaseBand. The bands add up to 1 for frequencies up to 2/3 c/px.
 double band_filter(int band, double frequency);
-/// Frequency that stands for a band: where it lets most through, but Nyquist's .5 for band 1, and sqrt(2) sigma for the base band,
-/// the root mean square of the Gaussian's frequencies.
+/// Frequency that stands for a band: where it lets most through, but Nyquist's .5 for band 1, and sqrt(2)
+/// sigma for the base band, the root mean square of the Gaussian's frequencies.
 double band_frequency(int band);
 /// Angle of orientation 1 to 6, radian: -90, -60, .. 60 degrees.
 double orientation_angle(int orientation);
-/// Weight of a frequency that lies at an angle whose cosine to the orientation is `cosine`, of either sign. The six add up to 1.
+/// Weight of a frequency that lies at an angle whose cosine to the orientation is `cosine`, of either sign.
+/// The six add up to 1.
 double fan_filter(double cosine);
 
 /// Slope of masking in a band: how fast thresholds rise with the contrast of what hides a difference.
 double masking_slope(int band);
-/// How many times its threshold contrast a difference must have where a mask has `contrast` (in thresholds, >= 0).
+/// How many times its threshold contrast a difference must have where a mask has `contrast` (in thresholds,
+/// >= 0).
 double threshold_elevation(double contrast, double slope);
 
 /// Exponent of the psychometric function.

@@ -59,7 +59,9 @@ Json error_json(const FrameError& error, ComparisonMode mode) {
 }
 
 /// Share of pixels seen to differ, in percent.
-Json share_json(const SeenShare& share) { return {{"percent", 100 * share.share()}, {"seen", share.seen}, {"pixels", share.pixels}}; }
+Json share_json(const SeenShare& share) {
+  return {{"percent", 100 * share.share()}, {"seen", share.seen}, {"pixels", share.pixels}};
+}
 
 Json quality_json(const AnimationQuality& quality) {
   Json json = share_json(quality.all);
@@ -75,11 +77,16 @@ Json quality_json(const AnimationQuality& quality) {
 
 Json viewing_json(const VisionOptions& viewing, const std::string& flow) {
   const vision::Display& display = viewing.display;
-  return {{"display", display.name},   {"white", display.white}, {"peak", display.peak},
-          {"black", display.black},    {"pixels_per_degree", display.pixels_per_degree},
+  return {{"display", display.name},
+          {"white", display.white},
+          {"peak", display.peak},
+          {"black", display.black},
+          {"pixels_per_degree", display.pixels_per_degree},
           {"eye", viewing.gaze == vision::Gaze::track ? "track" : "fixed"},
-          {"frames_per_second", viewing.frames_per_second}, {"exposure_stops", viewing.exposure_stops},
-          {"flow", flow.empty() ? Json(nullptr) : Json(flow)}, {"seen_above", vision::kSeenProbability}};
+          {"frames_per_second", viewing.frames_per_second},
+          {"exposure_stops", viewing.exposure_stops},
+          {"flow", flow.empty() ? Json(nullptr) : Json(flow)},
+          {"seen_above", vision::kSeenProbability}};
 }
 
 const char* mode_name(ComparisonMode mode) {

@@ -80,15 +80,20 @@ std::string quality_text(const Comparison& comparison) {
     for (const Comparison::Frame& frame : comparison.frames)
       text += format("frame %d: AQM %.2f %%\n", frame.frame, 100 * frame.quality->all.share());
   text += format("AQM %.2f %%: %llu of %llu pixels are seen to differ (P > %.2f)\n", 100 * total.all.share(),
-                 static_cast<unsigned long long>(total.all.seen), static_cast<unsigned long long>(total.all.pixels), vision::kSeenProbability);
+                 static_cast<unsigned long long>(total.all.seen),
+                 static_cast<unsigned long long>(total.all.pixels), vision::kSeenProbability);
   std::vector<std::pair<std::uint32_t, SeenShare>> objects(total.objects.begin(), total.objects.end());
-  std::ranges::stable_sort(objects, std::ranges::greater{}, [](const auto& object) { return object.second.seen; });
+  std::ranges::stable_sort(objects, std::ranges::greater{},
+                           [](const auto& object) { return object.second.seen; });
   for (std::size_t i = 0; i < std::min<std::size_t>(objects.size(), 3) && objects[i].second.seen; ++i)
-    text += format("  object %u: %.2f %% of its pixels, %.1f %% of those seen\n", objects[i].first, 100 * objects[i].second.share(),
+    text += format("  object %u: %.2f %% of its pixels, %.1f %% of those seen\n", objects[i].first,
+                   100 * objects[i].second.share(),
                    100 * double(objects[i].second.seen) / double(total.all.seen));
-  return text + format("display %s, %g cd/m2, %.1f pixels/degree, exposure %+.2f stops, eyes %s at %g frames/s; ", viewing.display.name.c_str(),
-                       viewing.display.peak, viewing.display.pixels_per_degree, viewing.exposure_stops,
-                       viewing.gaze == vision::Gaze::track ? "track" : "fixed", viewing.frames_per_second) +
+  return text +
+         format("display %s, %g cd/m2, %.1f pixels/degree, exposure %+.2f stops, eyes %s at %g frames/s; ",
+                viewing.display.name.c_str(), viewing.display.peak, viewing.display.pixels_per_degree,
+                viewing.exposure_stops, viewing.gaze == vision::Gaze::track ? "track" : "fixed",
+                viewing.frames_per_second) +
          (comparison.flow.empty() ? "no flow: everything stands still" : "flow " + comparison.flow) + "\n";
 }
 

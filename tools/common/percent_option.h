@@ -1,4 +1,5 @@
-// tools/common/percent_option.h -- limits that are numbers, or shares of what a viewer sees when they end in "%".
+// tools/common/percent_option.h -- limits that are numbers, or shares of what a viewer sees when they end in
+// "%".
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,7 +14,8 @@ inline CLI::Validator percent(std::function<void()> given) {
   return CLI::Validator(
       [given = std::move(given)](std::string& word) {
         double number = 0;
-        if (!word.ends_with("%") || !CLI::detail::lexical_cast(word.substr(0, word.size() - 1), number)) return std::string();
+        if (!word.ends_with("%") || !CLI::detail::lexical_cast(word.substr(0, word.size() - 1), number))
+          return std::string();
         word = std::to_string(number / 100);
         given();
         return std::string();

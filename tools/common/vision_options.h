@@ -22,11 +22,12 @@ struct VisionWords {
 void declare_vision(Tool& tool, VisionWords& words);
 /// Throws InputError about words that do not go together, before anything is read.
 void check_vision(const VisionWords& words, bool several_frames);
-/// What the words mean for a sequence whose first frame is `first`: it chooses the exposure and the frame rate that were not given.
+/// What the words mean for a sequence whose first frame is `first`: it chooses the exposure and the frame
+/// rate that were not given.
 VisionOptions vision_options(const VisionWords& words, const LoadedFrame& first);
 
 /// Writes a frame's map: EXR, or PNG with the map over the frame.
-void write_map(Tool& tool, const JudgedFrame& judged, const LoadedFrame& frame, const VisionOptions& options, std::optional<int> number,
-               Output output);
+void write_map(Tool& tool, const JudgedFrame& judged, const LoadedFrame& frame, const VisionOptions& options,
+               std::optional<int> number, Output output);
 
 }  // namespace tempolux::tools
