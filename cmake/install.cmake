@@ -30,5 +30,5 @@ if(TARGET tempolux-vdb)
 endif()
 install(DIRECTORY formats/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/formats FILES_MATCHING PATTERN "*.md")
 install(FILES LICENSE README.md Makefile.example DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY pipelines/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/pipelines FILES_MATCHING PATTERN "*.mk" PATTERN "*.md" PATTERN "*.awk" PATTERN "walkthrough.sh"
+install(DIRECTORY pipelines/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/pipelines FILES_MATCHING PATTERN "*.mk" PATTERN "*.md" PATTERN "*.awk" PATTERN "*.sh"
         PATTERN scenes EXCLUDE PATTERN examples EXCLUDE)

@@ -4,7 +4,7 @@
 #     walkthrough.sh interval TARGET KEY_A KEY_B MIDDLE KEY_MIDDLE THRESHOLD LEFT RIGHT
 #     walkthrough.sh frame TARGET INTERVAL FRAME OPTION...
 #     walkthrough.sh log INTERVAL...          what was decided, in the order of frames
-#     walkthrough.sh keys                     by walk.log the frames that are keys, as frames/F.exr,...
+#     walkthrough.sh marks                    by walk.log the frames that are keys, as an option for the sheet
 #
 # An interval lies between two key pictures; LEFT and RIGHT are its halves, "-" where nothing lies between. TARGET says "warp", or
 # "split" if the picture of the middle frame became a key. A frame looks there which keys it is warped from. OPTIONs are its light.
@@ -91,12 +91,13 @@ log() {
 }
 
 # An interval that was halved has a line and its halves have theirs: ends of those that were not, and middles of those that were.
-keys() {
-  awk '!/split$/ { print "frames/" $1 ".exr"; print "frames/" $2 ".exr" } /split$/ { print "frames/" $4 ".exr" }' walk.log | sort -u |
-    while read -r name; do [ ! -f "$name" ] || echo "$name"; done | paste -sd,
+marks() {
+  keys=$(awk '!/split$/ { print "frames/" $1 ".exr"; print "frames/" $2 ".exr" } /split$/ { print "frames/" $4 ".exr" }' walk.log | sort -u |
+    while read -r name; do [ ! -f "$name" ] || echo "$name"; done | paste -sd,)
+  [ -z "$keys" ] || echo "--mark $keys"
 }
 
 case $command in
-  interval | frame | log | keys) $command "$@";;
-  *) echo "walkthrough.sh: '$command' is none of interval, frame, log, keys" >&2; exit 2;;
+  interval | frame | log | marks) $command "$@";;
+  *) echo "walkthrough.sh: '$command' is none of interval, frame, log, marks" >&2; exit 2;;
 esac
