@@ -24,7 +24,7 @@ sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$n
 # Both keys warped to frame $1 in folder $2: exit 1 if they differ by more than $threshold where neither is masked. Adds to $differences. A
 # threshold in percent is of AQM.
 differ() {
-  warp "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none --stats "$2/$1.warp.json"
+  warp "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none --stats "$2/$1.warp.json" || exit
   [ "$(count_of traced "$2/$1.warp.json")" -lt "$(count_of pixels "$2/$1.warp.json")" ] || return 0
   case $threshold in *%) figure=percent; set -- "$@" --flow "$2/flow.exr" ;; *) figure=relmse; set -- "$@" --fail-by relmse ;; esac
   frame=$1 folder=$2 code=0; shift 2
