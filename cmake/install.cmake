@@ -20,7 +20,7 @@ if(tools)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/share/man ${CMAKE_BINARY_DIR}/share/bash-completion
           DESTINATION ${CMAKE_INSTALL_DATAROOTDIR})
 endif()
-install(TARGETS tempolux-images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
+install(TARGETS tempolux-images tempolux-fourier LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
 install(TARGETS tempolux-decode RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
 if(TARGET tempolux-oiio)
   install(TARGETS tempolux-oiio RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
