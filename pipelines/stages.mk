@@ -79,7 +79,7 @@ exposure = --exposure "$$(cat $(filter shown/exposure-%,$|))"
 preview = rm -f shown/$1-*.png; $(RUN) "$$BIN"/tempolux-info --png frames/$1.png $(exposure) $(picture) && touch $2
 sheet = rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && touch $1
 # A walkthrough's keys have a border in the sheet; its log says where keys were placed and why.
-marks = $(if $(log),--mark "$$(sh "$$PIPELINES/walkthrough.sh" keys)")
+marks = $(if $(log),$$(sh "$$PIPELINES/walkthrough.sh" marks))
 walk_log = rm -f shown/walk-*; sh "$$PIPELINES/walkthrough.sh" log $(intervals) > walk.log && touch $1
 
 # How wrong is a frame, against path tracing in two halves whose noise is known? And what did it cost, all stages counted?

@@ -396,7 +396,8 @@ class Builder {
     c.file("", key_picture(i.first));
     c.file("", key_picture(i.last));
     std::ostringstream words;
-    words << c.words << " " << frame_digits(i.middle()) << " " << key_picture(i.middle()) << " " << wish_.threshold << " "
+    words << c.words << " " << frame_digits(i.middle()) << " " << key_picture(i.middle()) << " "
+          << (wish_.threshold_of_seen ? 100 * wish_.threshold : wish_.threshold) << (wish_.threshold_of_seen ? "% " : " ")
           << (left.empty() ? "-" : left) << " " << (right.empty() ? "-" : right);
     c.words = words.str();
     c.content = tool_hash_("aqm-compare") + cameras({i.middle()});

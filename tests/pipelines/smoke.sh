@@ -48,7 +48,9 @@ run OUT="$work/out"
 expect_made 'frame 2 with more smoke than its majorants allow' 0123
 smoke 2 1
 run OUT="$work/out"
-expect_made 'and back' 0123
-digests "$work/out" | diff "$work/expected" - || bad 'and back: other frames'
+expect_made 'and back: the files are there still' ''
+digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
+grep frames/ "$work/expected" > "$work/frames"
+digests "$work/out" | diff "$work/frames" - || bad 'and back: other frames'
 [ $failed = 0 ] && echo ok
 exit $failed
