@@ -4,7 +4,7 @@
     python3 -B tests/bench/vision.py errors BIN OUT          five errors of equal RMSE, beside FLIP; pictures into OUT
     python3 -B tests/bench/vision.py flow BIN SCENE OUT      two pairs of warped keys of S4, flow x1, x3, x5
     python3 -B tests/bench/vision.py speed BIN SCENE OUT     1920x1080: normalised CPU seconds, threads (BIN/../tests/bench/bare_walk, S2)
-    python3 -B tests/bench/vision.py frames BIN SCENES OUT   preset final of S2, S3, S4 against Cycles; make from the top of the tree
+    python3 -B tests/bench/vision.py frames BIN SCENES OUT   preset final of S2, S3, S4 against Cycles
 
 Tables go to standard output. Only the standard library.
 """
@@ -17,6 +17,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "stress"))
 import exr  # noqa: E402
+import pipeline  # noqa: E402
 
 SIZE, PPD = 192, 37.84          # pixels; of the display office
 
@@ -201,9 +202,10 @@ def frames(tools, scenes, out):
     print("| scene | AQM % | RMSE | largest object | AQM % of the reference's halves |\n|---|---|---|---|---|")
     for name, frame in (("S2_cornell_moving", 10), ("S3_indirect_room", 1), ("S4_atrium", 10)):
         folder = out / name
-        run("make", "-f", "Makefile.example", f"SCENE={scenes}/made/{name}.glb", f"FRAMES={frame}", "SIZE=320x180", "QUALITY=final", f"OUT={folder}")
+        pipeline.run_make(Path(__file__).resolve().parents[2], tools, folder, SCENE=Path(scenes).resolve() / "made" / f"{name}.glb", FRAMES=frame,
+                          SIZE="320x180")
         a, b = (f"{scenes}/ref/{name}_f{frame:04d}_{half}.exr" for half in "ab")
-        made = folder / "frames" / f"{frame:04d}.exr"
+        made = pipeline.frame_of(folder, frame)
         run(tools / "aqm-compare", "-q", made, "--reference-halves", a, b, "--metric", "aqm", "--json", out / "a.json", "--allow-stale")
         total = json.loads((out / "a.json").read_text())["total"]
         run(tools / "aqm-compare", "-q", made, "--reference-halves", a, b, "-o", out / f"{name}.png", "--allow-stale")
