@@ -65,7 +65,7 @@ keys/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats keys/$*.json
 # Between keys: an interval is warped or halved (walkthrough.sh says how); then each of its frames is warped and completed.
 walk/%.done:
-	+$(quiet)MAKE='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
+	+$(quiet)MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
 walked/%.exr:
 	$(quiet)RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
 

@@ -8,7 +8,7 @@
 #
 # An interval lies between two key pictures; LEFT and RIGHT are its halves, "-" where nothing lies between. TARGET says "warp", or
 # "split" if the picture of the middle frame became a key. A frame looks there which keys it is warped from. OPTIONs are its light.
-# The environment has BIN, RUN, SHARED, CAMERA and MAKE, the command that makes a file of the plan.
+# The environment has BIN, RUN, SHARED, CAMERA and MAKE_FILES, the command that makes files of the plan.
 set -e
 command=$1; shift
 
@@ -70,7 +70,7 @@ interval() {
   case $line in
     *split) halves=
             for half in "$left" "$right"; do [ "$half" = - ] || halves="$halves $half"; done
-            eval "$MAKE $middle_key $halves"
+            eval "$MAKE_FILES $middle_key $halves"
             echo "split $middle $middle_key $left $right" > "$try/done" ;;
     *)      echo "warp $a $b" > "$try/done" ;;
   esac

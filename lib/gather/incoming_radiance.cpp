@@ -183,7 +183,7 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
     const bool near = point && depth == 0 && is_near(met, *point, random);
     if (point && !near && points_.is_even_indirect(*point)) {
       ++to.counts.points_read;
-      const bool even = points_.is_even(*point);
+      const bool even = lights_.empty() || points_.is_even(*point);
       if (source) source->partial |= !even;
       result = scale * (even ? point->all : beside_edge(met, *point, from.low, random, to.counts));
       if (from.low) result *= bright_->left(*point, met.distance);
