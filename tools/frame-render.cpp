@@ -19,6 +19,7 @@
 #include "lib/render/frame_renderer.h"
 #include "lib/render/influence_channels.h"
 #include "lib/render/learn_lights.h"
+#include "lib/scene/light_units.h"
 #include "tools/common/audit_input.h"
 #include "tools/common/base_frame.h"
 #include "tools/common/frame_account.h"
@@ -117,7 +118,11 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
                               tool.common().no_clobber);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
-  if (options.integrator == "path" && number == tool.common().frames.front()) warn_of_missing_light(tool, frame);
+  if (options.integrator == "path" && number == tool.common().frames.front()) {
+    warn_of_missing_light(tool, frame);
+    // Other ways need photons or a cache, whose tools have said so.
+    if (const std::string doubt = doubt_of_light_units(input.scene()); tool.common().light_units == "raw" && !doubt.empty()) tool.warn(doubt);
+  }
   const int camera = input.scene().camera_node(tool.common().camera);
   const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
   const MotionFrame next(input, options, camera, number + 1), previous(input, options, camera, number - 1);

@@ -258,6 +258,8 @@ void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options
   EmissionTable emission = input.emission(frame.frame);
   emission.aim = tools::spheres_in_scene(view, frame.origin);
   check_paths(tool, input, file, paths.header, standing, emission_hash(emission, frame.segment), frame.frame);
+  if (tool.app().get_option("--seed")->count() > 0 && tool.common().seed != paths.header.seed)
+    throw InputError("--seed " + std::to_string(tool.common().seed) + ": of --map dynamic the static map has it: " + std::to_string(paths.header.seed));
   const Segment& segment = frame.segment;
   const std::uint64_t bit = std::uint64_t(1) << formats::interval_of(frame.frame, segment.first, segment.last, paths.header.movers.size());
   std::vector<std::uint64_t> touched;
@@ -292,7 +294,7 @@ void check(const CLI::App& app, const Options& options) {
   if (options.map != "dynamic") return;
   if (options.static_paths.empty())
     throw InputError("--map dynamic needs --static: the .paths file that --map static --paths has written");
-  for (const char* name : {"--photons", "--kinds", "--groups", "--seed", "--volume-share"})
+  for (const char* name : {"--photons", "--kinds", "--groups", "--volume-share"})
     if (app.get_option(name)->count() > 0) throw InputError(std::string(name) + ": of --map dynamic the static map has it");
 }
 

@@ -83,6 +83,7 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   const tinygltf::Model model = parse(path, gated);
   Scene scene;
   scene.path = path;
+  scene.generator = model.asset.generator;
   scene.files = gated.files;
   scene.warnings = gated.warnings;
   Import import{model, scene, &gated, &options, kGrowth * gated.byte_count + kSmallScene};

@@ -195,6 +195,7 @@ struct Animation {
 /// A scene as its file describes it. Built by load_gltf.
 struct Scene {
   std::string path;                         ///< as given, for messages
+  std::string generator;                    ///< the program that wrote the file, as it says; may be empty
   std::vector<std::string> files;           ///< every file that was read: the scene, its buffers and images
   std::vector<Node> nodes;                  ///< parents before children; the default scene's nodes only
   std::vector<Mesh> meshes;

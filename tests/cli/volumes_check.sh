@@ -103,8 +103,9 @@ expect 2 'has smoke in its layer volume already' volume-compose "$furnace" $medi
 # Sun and smoke that grows: under the segment's majorants photons of both frames start alike, and the first map can be updated.
 cp smoke.vdb sun.0000.vdb; cp cube.vdb sun.0001.vdb
 sun="$units/U2_directional.gltf --volume sun.####.vdb --volume-frames 0-1"
-scene-plan $sun --frames 0-1 -q -o plan || bad 'plan of sun and smoke'
-sun="$sun --majorants plan/state/majorants.0000 --photons 10k --kinds direct,indirect,volume"
+scene-plan $sun --frames 0-1 --update 10% -q -o plan || bad 'plan of sun and smoke'
+bounds=$(ls plan/state/*.majorants)
+sun="$sun --majorants $bounds --photons 10k --kinds direct,indirect,volume"
 photon-trace $sun --frame 0 -q -o sun0.photons && photon-trace $sun --frame 1 -q -o fresh.photons || bad 'photons of the sun'
 photon-trace $sun --frame 1 --update sun0.photons --strategy all -q -o updated.photons || bad 'update under the sun'
 [ "$(tempolux-info --digest fresh.photons | cut -c 1-32)" = "$(tempolux-info --digest updated.photons | cut -c 1-32)" ] || bad 'an update of all groups is no fresh map'

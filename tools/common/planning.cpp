@@ -150,7 +150,8 @@ Planned make_planned(Tool& tool, const std::string& scene_file, Wish& wish, cons
                            [&](int frame) { return input.emission(frame); }, camera};
   tool.stats().phase("pilots", true);
   for (PlannedSegment& segment : plan.segments) {
-    const std::string key = decision_key(segment, wish, plan.media);
+    const std::string key = hash_hex(decision_key(segment, wish, plan.media) + tool_hash("scene-plan"));
+    tool.progress(double(&segment - plan.segments.data()) / double(plan.segments.size()));
     const auto make = [&] { return decide(segment, wish, plan.media, source); };
     segment.decisions = folder ? folder->decisions(segment, key, make) : make();
   }

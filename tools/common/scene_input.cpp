@@ -5,6 +5,7 @@
 #include "formats/error.h"
 #include "lib/scene/content_camera.h"
 #include "lib/scene/gltf_load.h"
+#include "lib/scene/light_units.h"
 #include "lib/volume/medium.h"
 
 namespace tempolux::tools {
@@ -23,6 +24,7 @@ SceneInput::SceneInput(Tool& tool, const std::string& path, unsigned needs) : to
     scene_.warnings.push_back(path + ": " + add_content_camera(scene_));
   if (needs & a_camera) scene_.camera_node(common.camera);
   for (const std::string& warning : scene_.warnings) tool.warn(warning);
+  if (const std::string doubt = doubt_of_light_units(scene_); needs & light && common.light_units == "raw" && !doubt.empty()) tool.warn(doubt);
   for (const std::string& file : scene_.files) tool.depends_on(file, InputRole::of_scene);
   time_.fps = common.fps;
   time_.segment_length = common.segment_length;

@@ -3,6 +3,7 @@
 #include <limits>
 #include <set>
 
+#include "lib/scene/light_units.h"
 #include "tests/lib/scene/gltf_maker.h"
 
 namespace tempolux {
@@ -282,6 +283,25 @@ TEST(GltfLoad, InstancesThatAreNowhereAreLeftOut) {
   ASSERT_EQ(scene.nodes[0].instances.size(), 2u);
   EXPECT_EQ(scene.nodes[0].instances[1].translation.x, 3);
   EXPECT_TRUE(has_warning(scene, "instances with NaN, infinity or a rotation of zero length are left out (2)"));
+}
+
+TEST(LightUnits, LampsOfBlendersDefaultExportAreDoubted) {
+  // Blender: W / (4 pi) cd, times 683 by default: 25 W are 1358.8 cd, else 2.
+  const auto doubt = [](const char* generator, double intensity, const char* type) {
+    GltfMaker maker;
+    maker.add_node({{"mesh", maker.add_triangle()}});
+    maker.add_light({{"type", type}, {"intensity", intensity}});
+    maker.json["asset"]["generator"] = generator;
+    return doubt_of_light_units(maker.load());
+  };
+  const char* const blender = "Khronos glTF Blender I/O v3.4.50";
+  EXPECT_CONTAINS(doubt(blender, 1358.8, "point"), "has 1359 cd");
+  EXPECT_CONTAINS(doubt(blender, 1358.8, "point"), "--light-units spec (make: LIGHT_UNITS=spec");
+  EXPECT_CONTAINS(doubt(blender, 2049, "directional"), "683");
+  EXPECT_EQ(doubt(blender, 2, "point"), "");
+  EXPECT_EQ(doubt("Khronos glTF Blender I/O v3.4.50, tempolux_export", 1358.8, "point"), "");
+  EXPECT_EQ(doubt("obj2gltf", 1358.8, "point"), "");
+  EXPECT_EQ(doubt("", 1358.8, "point"), "");
 }
 
 TEST(GltfLoad, ABuildingWithNormalsOfNanIsLoaded) {

@@ -1,0 +1,397 @@
+"""Exports a shot of Blender so that tempolux renders what Cycles shows. Page: docs/from-blender.md
+
+    blender -b shot.blend -P tempolux_export.py -- shot.glb     # as a script; the .blend is not changed
+    Edit > Preferences > Add-ons > Install, this file           # as an add-on: File > Export > tempolux (.glb)
+
+Written: shot.glb, and shot_world.exr where the world is more than one colour. Printed: what could not be kept, and the make line that
+renders the shot. What glTF or its exporter would lose is turned into what they keep, in a scene that is thrown away afterwards:
+
+- motion by constraints, drivers and bones becomes keys, one a frame; frames keep their numbers;
+- area lamps become emitting meshes, point lamps with a radius small balls, of the radiance that Cycles gives them;
+- the world becomes an environment map, or a colour;
+- lamps keep Blender's watts (lighting mode Unitless: nothing is multiplied by 683);
+- the camera's lens, sensor, aperture and the shutter become extras of its node.
+"""
+import json
+import math
+import os
+import shlex
+import struct
+import sys
+
+import bpy
+from mathutils import Matrix
+
+bl_info = {"name": "tempolux export", "author": "tempolux", "version": (1, 0), "blender": (3, 4, 0), "category": "Import-Export",
+           "location": "File > Export > tempolux (.glb)", "description": "Export a shot for tempolux"}
+
+BALL_STEPS = 3           # of an icosphere: 642 corners; its mean outline is .6 % less than the ball's, which its radiance makes up for
+WORLD_WIDTH = 1024       # pixels of the environment map
+
+
+class Shot:
+    """One export: what was printed, and the names of what was made."""
+
+    def __init__(self, scene, path):
+        self.scene, self.path = scene, os.path.abspath(path)
+        self.notes, self.sky, self.world_file = [], None, None
+
+    def note(self, text):
+        if text not in self.notes:
+            self.notes.append(text)
+
+    def frames(self):
+        return range(self.scene.frame_start, self.scene.frame_end + 1)
+
+
+# ---- motion -----------------------------------------------------------------------------------------------
+
+def is_driven(item):
+    """Does something other than keys of its own, or a plain parent, move it?"""
+    drivers = item.animation_data and item.animation_data.drivers
+    return bool(item.constraints) or bool(drivers) or (item.parent and item.parent_type not in ("OBJECT", "ARMATURE"))
+
+
+def sampled(shot, items):
+    """World matrices by frame of each object, all constraints and drivers at work."""
+    places = {item: [] for item in items}
+    for frame in shot.frames():
+        shot.scene.frame_set(frame)
+        graph = bpy.context.evaluated_depsgraph_get()
+        for item in items:
+            places[item].append(item.evaluated_get(graph).matrix_world.copy())
+    return places
+
+
+def moves(places):
+    return any(abs(a - b) > 1e-6 * max(1.0, abs(a)) for m in places[1:] for r, s in zip(places[0], m) for a, b in zip(r, s))
+
+
+def bake_motion(shot):
+    """Driven objects get keys in world space, one a frame, and lose parent, constraints and drivers. Children stay with them."""
+    driven = [item for item in shot.scene.objects if is_driven(item)]
+    for item, places in sampled(shot, driven).items():
+        if item.animation_data:
+            item.animation_data_clear()
+        item.constraints.clear()
+        item.parent = None
+        item.matrix_parent_inverse = Matrix.Identity(4)
+        item.rotation_mode = "QUATERNION"
+        item.delta_location, item.delta_scale = (0, 0, 0), (1, 1, 1)
+        item.delta_rotation_euler, item.delta_rotation_quaternion = (0, 0, 0), (1, 0, 0, 0)
+        before = None
+        for frame, place in zip(shot.frames(), places):
+            where, turned, scale = place.decompose()
+            if before and before.dot(turned) < 0:
+                turned.negate()
+            before = turned
+            item.location, item.rotation_quaternion, item.scale = where, turned, scale
+            if not moves(places):
+                break
+            for channel in ("location", "rotation_quaternion", "scale"):
+                item.keyframe_insert(channel, frame=frame)
+        if item.animation_data and item.animation_data.action:
+            for curve in item.animation_data.action.fcurves:
+                for key in curve.keyframe_points:
+                    key.interpolation = "LINEAR"
+
+
+# ---- lamps ------------------------------------------------------------------------------------------------
+
+def emitter(name, colour, radiance):
+    """A material that emits from its front and reflects nothing."""
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    material.use_backface_culling = True
+    shader = material.node_tree.nodes["Principled BSDF"]
+    shader.inputs["Base Color"].default_value = (0, 0, 0, 1)
+    shader.inputs["Specular"].default_value = 0
+    shader.inputs["Roughness"].default_value = 1
+    top = max(max(colour), 1e-9)
+    shader.inputs["Emission"].default_value = (*(c / top for c in colour), 1)
+    shader.inputs["Emission Strength"].default_value = radiance * top
+    return material
+
+
+def outline(lamp):
+    """Corners of an area lamp in its own plane, counter-clockwise seen from where it shines to, along -z."""
+    across = lamp.size
+    down = lamp.size_y if lamp.shape in ("RECTANGLE", "ELLIPSE") else lamp.size
+    if lamp.shape in ("SQUARE", "RECTANGLE"):
+        ring = [(-1, -1), (-1, 1), (1, 1), (1, -1)]
+    else:
+        ring = [(math.cos(a), -math.sin(a)) for a in (2 * math.pi * k / 64 for k in range(64))]
+    return [(x * across / 2, y * down / 2, 0) for x, y in ring]
+
+
+def area_of(corners):
+    return abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(corners, corners[1:] + corners[:1]))) / 2
+
+
+def ball(radius):
+    """Corners and faces of an icosphere, and the ball's outline by its own, in the mean: a quarter of the surface of each."""
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=BALL_STEPS, radius=radius)
+    made = bpy.context.object
+    mesh = made.data
+    bpy.data.objects.remove(made)
+    return mesh, 4 * math.pi * radius ** 2 / sum(face.area for face in mesh.polygons)
+
+
+def replace_lamp(shot, item):
+    """A mesh of a lamp's shape and light in the lamp's place, or nothing where glTF has such a lamp."""
+    item.data = lamp = item.data.copy()   # others may use it
+    scale = item.matrix_world.median_scale
+    if lamp.type == "AREA":
+        corners = outline(lamp)
+        mesh = bpy.data.meshes.new(item.name)
+        mesh.from_pydata(corners, [], [list(range(len(corners)))])
+        radiance = lamp.energy / (4 * area_of(corners) * scale ** 2)   # Cycles: W/m^2/sr of an area lamp of so many watts
+        if lamp.spread < math.pi - 1e-3:
+            shot.note(f"{item.name}: spread of an area lamp is not kept: it shines to all sides")
+    elif lamp.type == "POINT" and lamp.shadow_soft_size > 0:
+        mesh, larger = ball(lamp.shadow_soft_size / scale)             # a lamp's radius is in metres, whatever its object's scale
+        radiance = larger * lamp.energy / (4 * math.pi ** 2 * lamp.shadow_soft_size ** 2)
+    else:
+        if lamp.type == "SPOT" and lamp.shadow_soft_size > 0:
+            shot.note(f"{item.name}: a spot lamp has no radius in glTF: its shadows are sharp")
+        if lamp.type == "SUN" and lamp.angle > 0.001:
+            shot.note(f"{item.name}: a sun has no angle in glTF: its shadows are sharp; the sun in the world's map has one")
+        return
+    mesh.materials.clear()
+    mesh.materials.append(emitter(item.name, lamp.color, radiance))
+    body = bpy.data.objects.new(item.name + " (light)", mesh)
+    for collection in item.users_collection:
+        collection.objects.link(body)
+    body.parent = item   # the lamp's motion, whatever it is made of
+    if lamp.animation_data and lamp.animation_data.action:
+        shot.note(f"{item.name}: changes of a lamp's power or colour are not exported; its light is that of frame {shot.scene.frame_current}")
+    lamp.type, lamp.energy = "POINT", 0   # taken out of the file (sign)
+
+
+def replace_lamps(shot):
+    shot.scene.frame_set(shot.scene.frame_start)
+    for item in [i for i in shot.scene.objects if i.type == "LIGHT" and not i.hide_render]:
+        if item.data.use_nodes and any(n.type not in ("EMISSION", "OUTPUT_LIGHT") for n in item.data.node_tree.nodes):
+            shot.note(f"{item.name}: nodes of a lamp are not kept, but its power and colour")
+        replace_lamp(shot, item)
+
+
+# ---- world ------------------------------------------------------------------------------------------------
+
+def plain_colour(world):
+    """Radiance of a world of one colour; None if there is more to it."""
+    if not world.use_nodes:
+        return tuple(world.color)
+    output = next((n for n in world.node_tree.nodes if n.type == "OUTPUT_WORLD" and n.is_active_output), None)
+    shader = output.inputs["Surface"].links[0].from_node if output and output.inputs["Surface"].links else None
+    if shader is None:
+        return (0.0, 0.0, 0.0)
+    if shader.type != "BACKGROUND" or any(i.is_linked for i in shader.inputs):
+        return None
+    strength = shader.inputs["Strength"].default_value
+    return tuple(c * strength for c in shader.inputs["Color"].default_value[:3])
+
+
+def bake_world(shot):
+    """Cycles renders the world alone, all around: the map's middle column is glTF's +z, Blender's -y (formats/conventions.md)."""
+    if shot.scene.world is None:
+        return
+    colour = plain_colour(shot.scene.world)
+    if colour is not None:
+        shot.sky = colour if max(colour) > 0 else None
+        return
+    stage = bpy.data.scenes.new("tempolux world")
+    stage.world = shot.scene.world
+    stage.render.engine = "CYCLES"
+    stage.cycles.samples, stage.cycles.use_denoising, stage.cycles.device = 16, False, "CPU"
+    stage.cycles.pixel_filter_type = "BOX"
+    stage.render.resolution_x, stage.render.resolution_y, stage.render.resolution_percentage = WORLD_WIDTH, WORLD_WIDTH // 2, 100
+    stage.render.film_transparent = False
+    stage.render.image_settings.file_format, stage.render.image_settings.color_depth = "OPEN_EXR", "32"
+    stage.render.image_settings.color_mode = "RGB"
+    lens = bpy.data.cameras.new("tempolux world")
+    lens.type, lens.cycles.panorama_type = "PANO", "EQUIRECTANGULAR"
+    eye = bpy.data.objects.new("tempolux world", lens)
+    eye.rotation_euler = (math.pi / 2, 0, math.pi)   # looks along -y
+    stage.collection.objects.link(eye)
+    stage.camera = eye
+    shot.world_file = os.path.splitext(shot.path)[0] + "_world.exr"
+    stage.render.filepath = shot.world_file
+    bpy.ops.render.render(write_still=True, scene=stage.name)
+    bpy.data.scenes.remove(stage)
+
+
+# ---- camera, what is lost, the file ------------------------------------------------------------------------
+
+def describe_cameras(shot):
+    for item in shot.scene.objects:
+        if item.type != "CAMERA":
+            continue
+        lens = item.data
+        item["lens_mm"], item["sensor_width_mm"] = lens.lens, lens.sensor_width
+        item["shutter_frames"] = shot.scene.render.motion_blur_shutter if shot.scene.render.use_motion_blur else 0.0
+        if lens.dof.use_dof:
+            item["f_stop"] = lens.dof.aperture_fstop
+            shot.note(f"{item.name}: depth of field is not rendered (f-stop kept in extras)")
+        if lens.animation_data and lens.animation_data.action:
+            shot.note(f"{item.name}: changes of a camera's lens are not exported")
+    if shot.scene.render.use_motion_blur:
+        shot.note("motion blur is not rendered (shutter kept in the camera's extras)")
+
+
+def list_losses(shot):
+    for item in shot.scene.objects:
+        if item.hide_render:
+            continue
+        if item.type in ("VOLUME", "GPENCIL", "CURVES", "HAIR", "POINTCLOUD"):
+            shot.note(f"{item.name}: {item.type.lower()} is not exported" + ("; give its files by VOLUME=smoke.####.vdb" if item.type == "VOLUME" else ""))
+        if item.particle_systems:
+            shot.note(f"{item.name}: particles and hair are not exported; make them meshes")
+        curves = item.animation_data.action.fcurves if item.animation_data and item.animation_data.action else []
+        if any(curve.data_path in ("hide_render", "hide_viewport") for curve in curves):
+            shot.note(f"{item.name}: being there or not is not exported; scale it to 0 instead")
+    for material in bpy.data.materials:
+        tree = material.node_tree
+        if material.users and tree and tree.animation_data and tree.animation_data.action:
+            shot.note(f"material {material.name}: changes over time are not exported")
+
+
+def write_gltf(shot):
+    words = dict(filepath=shot.path, export_format="GLB", export_cameras=True, export_lights=True, export_extras=True, export_apply=True,
+                 export_yup=True, use_renderable=True, use_active_scene=True, export_animations=True, export_frame_range=True,
+                 export_force_sampling=True, export_tangents=False)
+    known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
+    for name in ("convert_lighting_mode", "export_import_convert_lighting_mode"):
+        if name in known:
+            words[name] = "COMPAT"   # watts as Blender has them
+    bpy.ops.export_scene.gltf(**{k: v for k, v in words.items() if k in known})
+    sign(shot.path)
+
+
+def sign(path):
+    """The file says that its lamps are not multiplied (lib/scene/light_units.h); lamps that became meshes are taken out. Specular 0 is
+    none at all: the exporter blackens its colour, which leaves a gloss at grazing angles that takes 20 % of a wall's light."""
+    data = open(path, "rb").read()
+    size = struct.unpack("<I", data[12:16])[0]
+    document = json.loads(data[20:20 + size])
+    document["asset"]["generator"] += ", tempolux_export"
+    for material in document.get("materials", []):
+        gloss = material.get("extensions", {}).get("KHR_materials_specular")
+        if gloss and max(gloss.get("specularColorFactor", [1])) == 0:
+            gloss["specularFactor"] = 0
+    lights = document.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", [])
+    dark = {i for i, light in enumerate(lights) if light.get("intensity", 1) == 0}
+    numbers = {old: new for new, old in enumerate(i for i in range(len(lights)) if i not in dark)}
+    for node in document.get("nodes", []):
+        use = node.get("extensions", {}).get("KHR_lights_punctual")
+        if use is None:
+            continue
+        if use["light"] in numbers:
+            use["light"] = numbers[use["light"]]
+            continue
+        del node["extensions"]["KHR_lights_punctual"]
+        if not node["extensions"]:
+            del node["extensions"]
+    if dark:
+        document["extensions"]["KHR_lights_punctual"]["lights"] = [light for i, light in enumerate(lights) if i not in dark]
+        if not numbers:
+            del document["extensions"]["KHR_lights_punctual"]
+            if not document["extensions"]:
+                del document["extensions"]
+            for words in ("extensionsUsed", "extensionsRequired"):
+                if "KHR_lights_punctual" in document.get(words, []):
+                    document[words].remove("KHR_lights_punctual")
+                    if not document[words]:
+                        del document[words]
+    text = json.dumps(document, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[20 + size:]
+    with open(path, "wb") as out:
+        out.write(struct.pack("<4sII", b"glTF", 2, 20 + len(text) + len(rest)) + struct.pack("<I4s", len(text), b"JSON") + text + rest)
+
+
+def make_line(shot):
+    render = shot.scene.render
+    width, height = (int(side * render.resolution_percentage / 100) for side in (render.resolution_x, render.resolution_y))
+    name = os.path.splitext(os.path.basename(shot.path))[0]
+    words = [f"SCENE={shot.path}", f"FRAMES={shot.scene.frame_start}-{shot.scene.frame_end}", f"SIZE={width}x{height}", f"OUT={name}", "QUALITY=draft"]
+    options = []
+    rate = render.fps / render.fps_base
+    if abs(rate - 24) > 1e-6:
+        options.append(f"--fps {rate:g}")
+    if shot.sky:
+        options.append("--environment-color " + ",".join(f"{c:.6g}" for c in shot.sky))
+    if options:
+        words.append("TIME=" + " ".join(options))
+    if shot.world_file:
+        words.append(f"ENVIRONMENT={shot.world_file}")
+    if sum(item.type == "CAMERA" for item in shot.scene.objects) > 1 and shot.scene.camera:
+        words.append(f"CAMERA={shot.scene.camera.name}")
+    return "make -f Makefile.example " + " ".join(map(shlex.quote, words))
+
+
+def export(scene, path):
+    """Writes the files; returns notes and the make line. Changes the open file: undo, or do not save."""
+    shot = Shot(scene, path)
+    if bpy.context.object and bpy.context.object.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    list_losses(shot)
+    bake_motion(shot)
+    replace_lamps(shot)
+    bake_world(shot)
+    describe_cameras(shot)
+    write_gltf(shot)
+    return shot.notes, make_line(shot)
+
+
+# ---- as an add-on, as a script ------------------------------------------------------------------------------
+
+class ExportTempolux(bpy.types.Operator):
+    """Export a shot for tempolux; the scene is as before afterwards"""
+    bl_idname, bl_label, bl_options = "export_scene.tempolux", "Export for tempolux", {"UNDO"}
+    filepath: bpy.props.StringProperty(subtype="FILE_PATH", default="shot.glb")
+
+    def invoke(self, context, event):
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context):
+        bpy.ops.ed.undo_push(message="before the export for tempolux")
+        notes, line = export(context.scene, bpy.path.ensure_ext(self.filepath, ".glb"))
+        bpy.ops.ed.undo_push(message="export for tempolux")
+        bpy.ops.ed.undo()
+        for text in notes:
+            self.report({"WARNING"}, text)
+        self.report({"INFO"}, line)
+        print(line)
+        return {"FINISHED"}
+
+
+def menu(self, context):
+    self.layout.operator(ExportTempolux.bl_idname, text="tempolux (.glb)")
+
+
+def register():
+    bpy.utils.register_class(ExportTempolux)
+    bpy.types.TOPBAR_MT_file_export.append(menu)
+
+
+def unregister():
+    bpy.types.TOPBAR_MT_file_export.remove(menu)
+    bpy.utils.unregister_class(ExportTempolux)
+
+
+def main():
+    words = sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else []
+    if len(words) != 1 or not words[0].endswith(".glb"):
+        sys.exit("tempolux_export.py: name the file to write: blender -b shot.blend -P tempolux_export.py -- shot.glb")
+    notes, line = export(bpy.context.scene, words[0])
+    for text in notes:
+        print("tempolux_export.py:", text, file=sys.stderr)
+    print(line)
+
+
+if __name__ == "__main__" and bpy.app.background:
+    main()
+elif __name__ == "__main__":
+    register()

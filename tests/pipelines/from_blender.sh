@@ -1,0 +1,37 @@
+#!/bin/sh
+# from_blender.sh BIN_DIR -- pipelines/blender/tempolux_export.py: lamps, constraints, world and numbers of frames come through. Skipped without Blender.
+command -v blender > /dev/null || { echo 'there is no blender'; exit 77; }
+work=$(mktemp -d) || exit 3
+trap 'rm -rf "$work"' EXIT
+bad() { echo "from Blender: $*" >&2; exit 1; }
+blender -b --factory-startup -P tests/pipelines/from_blender_shot.py -- "$work/shot.blend" > "$work/log" 2>&1 || bad "$(tail -3 "$work/log")"
+blender -b --factory-startup "$work/shot.blend" -P pipelines/blender/tempolux_export.py -- "$work/shot.glb" > "$work/log" 2>&1
+grep -q "No module named 'numpy'" "$work/log" && { echo "Blender's glTF exporter needs python3-numpy"; exit 77; }
+[ -f "$work/shot.glb" ] || bad "$(tail -3 "$work/log")"
+line="make -f Makefile.example SCENE=$work/shot.glb FRAMES=3-6 SIZE=1920x1080 OUT=shot QUALITY=draft 'TIME=--fps 30 --environment-color 1,1.2,1.6'"
+grep -qxF "$line" "$work/log" || bad "does not print $line: $(grep make "$work/log")"
+python3 - "$work/shot.glb" << 'END' || bad 'the file'
+import json, math, struct, sys
+data = open(sys.argv[1], "rb").read()
+size = struct.unpack("<I", data[12:16])[0]
+shot = json.loads(data[20:20 + size])
+strength = {m["name"]: m["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] for m in shot["materials"]}
+panel = 60 / (4 * 0.8 * 0.4)                        # Cycles: P / (4 area)
+ball = 15 / (4 * math.pi ** 2 * 0.05 ** 2)          # P / 4 pi W/sr over the ball's outline, pi r^2
+assert abs(strength["Panel"] / panel - 1) < 1e-5 and abs(strength["Panel.twin"] / panel - 1) < 1e-5, strength
+assert 1 < strength["Bulb"] / ball < 1.03, strength   # an icosphere's outline is a little smaller
+lights = shot["extensions"]["KHR_lights_punctual"]["lights"]
+assert len(lights) == 1 and abs(lights[0]["intensity"] - 10 / (4 * math.pi)) < 1e-4, lights
+used = [n["extensions"]["KHR_lights_punctual"]["light"] for n in shot["nodes"] if "KHR_lights_punctual" in n.get("extensions", {})]
+assert used == [0], used
+eye = next(i for i, n in enumerate(shot["nodes"]) if n["name"] == "Eye")
+moved = {c["target"]["path"]: (a, c) for a in shot["animations"] for c in a["channels"] if c["target"]["node"] == eye}
+assert {"rotation", "translation"} <= set(moved), moved
+animation, channel = moved["rotation"]
+times = shot["accessors"][animation["samplers"][channel["sampler"]]["input"]]
+assert abs(times["min"][0] - 3 / 30) < 1e-5 and abs(times["max"][0] - 6 / 30) < 1e-5, times   # frames keep their numbers
+assert shot["asset"]["generator"].endswith("tempolux_export")
+END
+"$1/frame-render" "$work/shot.glb" --frame 4 --fps 30 --environment-color 1,1.2,1.6 --size 16x9 --integrator path --spp 1 -o "$work/f.exr" > "$work/log" 2>&1 || bad "$(cat "$work/log")"
+[ -s "$work/log" ] && bad "a message: $(cat "$work/log")"
+echo 'from Blender: lamps, constraints, world and frames are right'
