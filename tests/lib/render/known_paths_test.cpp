@@ -272,5 +272,27 @@ TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
     }
 }
 
+/// A room with a point lamp: from a place whose indirect and caustic light is known a ray could meet a light only where one can be met. Without that ray the
+/// same light to the bit, and no bounce but those of gloss, of which a matte room has none.
+TEST(KnownPaths, NoRayGoesOnWhereNoLightCanBeMet) {
+  HandMadeScene scene;
+  scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
+  scene.add_point_light({0, 0, 0}, Rgb(1.0f));
+  const Chain chain(scene, 20000, 1000, 64);
+  const PhotonLight photons(chain.tracer, chain.traced.photons, {}, {});
+  ASSERT_TRUE(photons.has_indirect());
+  KnownLight known;
+  known.photons = &photons;
+  std::array<std::vector<double>, 2> seen;
+  std::array<RayCounts, 2> counts;
+  for (const bool met : {false, true}) {
+    known.lights_are_met = met;
+    counts[met] = look_everywhere(chain, known, 1000, [&](const Layers& layers) { seen[met].push_back(total(layers)); });
+  }
+  EXPECT_EQ(seen[0], seen[1]);
+  EXPECT_EQ(counts[0].bounce, 0u);
+  EXPECT_GT(counts[1].bounce, 900u);
+}
+
 }  // namespace
 }  // namespace tempolux
