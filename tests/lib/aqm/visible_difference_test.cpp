@@ -134,12 +134,14 @@ TEST(VisibleDifferenceTest, AUniformChangeIsNotSeen) {
   for (const float p : detection_map(pair, {}, {30, Gaze::track}).probability) EXPECT_LT(p, 1e-3);
 }
 
-// What does not count is taken for equal, whatever it holds, and does not leak into its neighbours.
+// What does not count is taken for equal, whatever it holds, and does not leak into its neighbours. Those
+// differ by .01 cd/m2, which nobody sees, so that none of them is passed over as equal.
 TEST(VisibleDifferenceTest, WhatDoesNotCountIsNotSeen) {
   DisplayedPair pair = grating(1.0 / 12, 0, 0, 64);
+  for (float& value : pair.second) value += 0.01f;
   pair.counted.assign(pair.first.size(), 1);
   for (std::size_t i = 20 * 64; i < 30 * 64; ++i) pair.second[i] = 0, pair.counted[i] = 0;
-  for (const float p : detection_map(pair, {}, {30, Gaze::track}).probability) EXPECT_EQ(p, 0);
+  for (const float p : detection_map(pair, {}, {30, Gaze::track}).probability) EXPECT_LT(p, 1e-3);
 }
 
 TEST(VisibleDifferenceTest, SinglePixelsAndNarrowPicturesHaveAnAnswer) {
