@@ -70,6 +70,8 @@ class FrameAudit {
     std::array<std::uint32_t, kLayerCount> splat_count{};
     std::array<double, kLayerCount> difference{};      ///< of the pair of runs at hand
     std::array<double, kLayerCount> pairs_square{};    ///< sum over pairs of their difference squared; of layer direct over photons
+    static constexpr std::size_t kPairs = 32;
+    std::array<std::array<double, kPairs>, kLayerCount> by_pair{};   ///< sum over groups of the differences of their pair k
     std::array<double, kLayerCount> paths{}, paths_square{}, paths_largest{};
     std::size_t path_count = 0;
     std::array<std::size_t, kLayerCount> met{};        ///< paths that found light

@@ -44,8 +44,8 @@ class NoiseCheck {
   std::uint64_t seed() const { return seed_; }
   /// Mean of the second rendering by part. Thread-safe for different slots.
   PathParts& again(std::uint32_t slot) { return again_[slot]; }
-  /// Noise of `picture`, whose pixels are `as_sampled(pixel)` where nothing has been done to them, else what spread_outliers made of them: with z for the latter the error is
-  /// E (z - y)^2 - E (x - y)^2 / 2, the bias of single pixels included.
+  /// Noise of `picture`, whose pixels are `as_sampled(pixel)` where nothing has been done to them, else what spread_outliers made of them. With z for the latter and g for what the pixel
+  /// got, x' = x + g and y' = y + g, the variance of z is about E (z - y')^2 - E (x' - y')^2 / 2: what x gave away is taken off twice from that of x, as y has as much of it.
   template <class AsSampled>
   FrameNoise measure(const std::vector<Layers>& picture, const AsSampled& as_sampled) const {
     std::vector<Triple> triples;
