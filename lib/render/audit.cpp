@@ -68,11 +68,16 @@ void FrameAudit::for_parts_of(std::size_t pixel, const Body& body) const {
   body(std::size_t(object_part_[pixel]));
 }
 
-/// What splats scatter by. The groups of a map are no samples of it: each is a box of the space of starting paths, so their means differ by far more than the map errs.
-/// But within a group paths follow each other, and a run of photons whose bounce does not fall holds all photons of one or more whole paths
-/// (photon-trace: of 64). Runs of a group that follow each other have equal means, so the square of the difference of two has the variance of their sum.
-/// All groups go through the space of starts in the same order, so their k-th differences may agree: the square of the sum over the groups is looked at as well, and the larger variance counts.
-/// A group's last run may have fewer paths and is left out; so is one without a partner. The sum of squares is scaled by photons.
+/// What splats scatter by. The groups of a map are no samples of it: each is a box of the space of starting
+/// paths, so their means differ by far more than the map errs.
+/// But within a group paths follow each other, and a run of photons whose bounce does not fall holds all
+/// photons of one or more whole paths
+/// (photon-trace: of 64). Runs of a group that follow each other have equal means, so the square of the
+/// difference of two has the variance of their sum.
+/// All groups go through the space of starts in the same order, so their k-th differences may agree: the
+/// square of the sum over the groups is looked at as well, and the larger variance counts.
+/// A group's last run may have fewer paths and is left out; so is one without a partner. The sum of squares
+/// is scaled by photons.
 class FrameAudit::PairedRuns {
  public:
   explicit PairedRuns(FrameAudit& audit) : audit_(audit) {}

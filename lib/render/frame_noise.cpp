@@ -62,7 +62,8 @@ class Mean {
   Squares sum_, square_;
 };
 
-/// error(colour) of a pixel's image and of its layers, with colour(layers) for the part of them that is looked at.
+/// error(colour) of a pixel's image and of its layers, with colour(layers) for the part of them that is
+/// looked at.
 struct ImageAndLayers {
   Mean image, layer[kLayerCount];
   template <class Error>
