@@ -17,7 +17,8 @@ void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& 
   join(sum.onward, first.onward, count.onward, means.onward);
 }
 
-/// What a pixel that has `have` lacks to `wanted`. Samples of lit and onward need camera rays that they start from.
+/// What a pixel that has `have` lacks to `wanted`. Samples of lit and onward need camera rays that they start
+/// from.
 PartCounts missing(const PartCounts& have, const PartCounts& wanted, bool even) {
   const auto further = [](int has, int wants) { return std::max(0, wants - has); };
   PartCounts more{further(have.own, wanted.own), further(have.lit, wanted.lit), further(have.onward, wanted.onward)};
@@ -149,8 +150,10 @@ void AdaptiveFrame::spread() {
   frame_.spread = spread_outliers(samples, pixels);
 }
 
-/// Noise is measured after each pass, and the next one is as large as what is left asks for. Errors fall as the number of samples to the power of -1/2 to -5/6: with -.6 passes come near from
-/// above. Most of what a pass brings is known only when it is there, so no pass has more than four times the samples of those before.
+/// Noise is measured after each pass, and the next one is as large as what is left asks for. Errors fall as
+/// the number of samples to the power of -1/2 to -5/6: with -.6 passes come near from
+/// above. Most of what a pass brings is known only when it is there, so no pass has more than four times the
+/// samples of those before.
 void AdaptiveFrame::reach_seen_error() {
   constexpr double kSteepness = 0.6, kMostTimes = 4, kLeastTimes = 1.1;
   constexpr int kMostIdle = 8;   // passes without a sample: all pixels are at their limit, or show no noise

@@ -68,10 +68,16 @@ void FrameAudit::for_parts_of(std::size_t pixel, const Body& body) const {
   body(std::size_t(object_part_[pixel]));
 }
 
-/// What splats scatter by. The groups of a map are no samples of it: each is a box of the space of starting paths, so their means differ by far more than the map errs.
-/// But within a group paths follow each other, and a run of photons whose bounce does not fall holds all photons of one or more whole paths
-/// (photon-trace: of 64). Runs of a group that follow each other have equal means, so the square of the difference of two has the variance of their sum.
-/// A group's last run may have fewer paths and is left out; so is one without a partner. The sum of squares is scaled by photons.
+/// What splats scatter by. The groups of a map are no samples of it: each is a box of the space of starting
+/// paths, so their means differ by far more than the map errs.
+/// But within a group paths follow each other, and a run of photons whose bounce does not fall holds all
+/// photons of one or more whole paths
+/// (photon-trace: of 64). Runs of a group that follow each other have equal means, so the square of the
+/// difference of two has the variance of their sum.
+/// All groups go through the space of starts in the same order, so their k-th differences may agree: the
+/// square of the sum over the groups is looked at as well, and the larger variance counts.
+/// A group's last run may have fewer paths and is left out; so is one without a partner. The sum of squares
+/// is scaled by photons.
 class FrameAudit::PairedRuns {
  public:
   explicit PairedRuns(FrameAudit& audit) : audit_(audit) {}
@@ -103,11 +109,13 @@ class FrameAudit::PairedRuns {
       for (const Seen& seen : pair_) {
         double& difference = audit_.sums_[seen.part].difference[seen.layer];
         audit_.sums_[seen.part].pairs_square[seen.layer] += difference * difference;
+        audit_.sums_[seen.part].by_pair[seen.layer][pair_number_ % Sums::kPairs] += difference;
         difference = 0;   // so that it counts once
       }
       audit_.paired_photons_ += double(pair_photons_);
       pair_.clear();
       pair_photons_ = 0;
+      ++pair_number_;
     }
     second_ = !second_;
   }
@@ -116,12 +124,14 @@ class FrameAudit::PairedRuns {
     pair_.clear();
     run_.clear();
     run_photons_ = pair_photons_ = 0;
+    pair_number_ = 0;
     second_ = false;
   }
 
   FrameAudit& audit_;
   std::vector<Seen> run_, pair_;
   std::uint64_t run_photons_ = 0, pair_photons_ = 0;
+  std::size_t pair_number_ = 0;   ///< in the group
   std::uint32_t group_ = 0;
   std::uint8_t bounce_ = 0;
   bool started_ = false, second_ = false;
@@ -219,7 +229,10 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
   Estimate by_splats;
   const bool of_direct = Layer(layer) == Layer::direct;
   if (holds_[layer] && sums.splat_count[layer] >= kFewestSplats && (of_direct || paired_photons_ > 0)) {
-    entry.splats = {sums.splats[layer] / n, std::sqrt(sums.pairs_square[layer] * (of_direct ? 1 : photons_ / paired_photons_)) / n};
+    double together = 0;
+    for (const double difference : sums.by_pair[layer]) together += difference * difference;
+    const double square = of_direct ? sums.pairs_square[layer] : std::max(sums.pairs_square[layer], together) * photons_ / paired_photons_;
+    entry.splats = {sums.splats[layer] / n, std::sqrt(square) / n};
     const double noise = frame_.noise.known() ? std::max(0.0, frame_.noise.layer[layer].linear) : 0;
     by_splats = {entry.shown - entry.splats.value, std::sqrt(entry.splats.error * entry.splats.error + noise * noise / n)};
   }

@@ -18,7 +18,8 @@ struct Estimate {
   bool known() const { return error >= 0; }
 };
 
-/// One layer over one part of the picture. Radiances are means over the part's pixels and channels [W/m^2/sr].
+/// One layer over one part of the picture. Radiances are means over the part's pixels and channels
+/// [W/m^2/sr].
 struct AuditEntry {
   Layer layer = Layer::indirect;
   std::string part;             ///< "picture", "tile 2 3" (column, row of 4 x 4) or "object N"
@@ -52,7 +53,8 @@ class FrameAudit {
   void add_splats(const Tracer& tracer, const AuditPhotons& photons);
   /// Picture of the splats alone, by layer; for `frame-render --integrator light`.
   const std::vector<Layers>& splats() const { return splats_; }
-  /// Of `count` camera rays, spread over the picture, what the frame's way of finding light says less what paths find from the same first hit: bias without photons, where none are
+  /// Of `count` camera rays, spread over the picture, what the frame's way of finding light says less what
+  /// paths find from the same first hit: bias without photons, where none are
   /// in view. `scene` as the frame was rendered.
   void add_paths(const RenderScene& scene, const FrameOptions& options, std::size_t count);
   /// Layers that any estimate was made of, over the picture, the tiles and the objects, in this order.
@@ -70,6 +72,8 @@ class FrameAudit {
     std::array<std::uint32_t, kLayerCount> splat_count{};
     std::array<double, kLayerCount> difference{};      ///< of the pair of runs at hand
     std::array<double, kLayerCount> pairs_square{};    ///< sum over pairs of their difference squared; of layer direct over photons
+    static constexpr std::size_t kPairs = 32;
+    std::array<std::array<double, kPairs>, kLayerCount> by_pair{};   ///< sum over groups of the differences of their pair k
     std::array<double, kLayerCount> paths{}, paths_square{}, paths_largest{};
     std::size_t path_count = 0;
     std::array<std::size_t, kLayerCount> met{};        ///< paths that found light
@@ -91,7 +95,8 @@ class FrameAudit {
   double picture_ = 0;                       ///< sum over pixels of the mean channel of all layers
 };
 
-/// What is to be said of the entries: bias of a layer over the picture that is above 2 % of the picture's light and above three standard errors.
+/// What is to be said of the entries: bias of a layer over the picture that is above 2 % of the picture's
+/// light and above three standard errors.
 bool is_biased(const AuditEntry& entry);
 inline constexpr double kAuditLimit = 0.02, kAuditErrors = 3;
 

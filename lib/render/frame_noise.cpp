@@ -62,7 +62,8 @@ class Mean {
   Squares sum_, square_;
 };
 
-/// error(colour) of a pixel's image and of its layers, with colour(layers) for the part of them that is looked at.
+/// error(colour) of a pixel's image and of its layers, with colour(layers) for the part of them that is
+/// looked at.
 struct ImageAndLayers {
   Mean image, layer[kLayerCount];
   template <class Error>
@@ -117,9 +118,12 @@ FrameNoise NoiseCheck::measure(const std::vector<Triple>& triples, double exposu
   ImageAndLayers sums;
   for (const Triple& of : triples)
     sums.add([&](const auto& colour) {
-      const Rgbd again = colour(of.again);
-      Squares error = squares(colour(of.shown), again, exposure);
-      error += squares(colour(of.sampled), again, exposure) * -0.5;
+      const Rgbd shown = colour(of.shown), sampled = colour(of.sampled);
+      Rgbd given(0.0);
+      for (int c = 0; c < 3; ++c) given[c] = std::max(0.0, shown[c] - sampled[c]);
+      const Rgbd again = colour(of.again) + given;
+      Squares error = squares(shown, again, exposure);
+      error += squares(sampled + given, again, exposure) * -0.5;
       return error;
     });
   return sums.noise(exposure, triples.size());

@@ -27,15 +27,19 @@ struct FrameNoise {
 
 /// sRGB code of a linear value, 0 to 255, not rounded; the value is clipped at 0 and 1.
 double srgb_code(double value);
-/// Factor that puts the median of the pixels' mean channels at .18; if more than half are black, the median of those that are not; 1 of a black picture.
+/// Factor that puts the median of the pixels' mean channels at .18; if more than half are black, the median
+/// of those that are not; 1 of a black picture.
 double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask);
 
-/// Pixels of a grid are rendered a second time, with random numbers of their own and as many samples: x and y. Then E (x - y)^2 / 2 is the variance of x,
-/// whatever stratification leaves of it. The two halves of a pixel's own samples do not say that: samples that are stratified together
+/// Pixels of a grid are rendered a second time, with random numbers of their own and as many samples: x and
+/// y. Then E (x - y)^2 / 2 is the variance of x,
+/// whatever stratification leaves of it. The two halves of a pixel's own samples do not say that: samples
+/// that are stratified together
 /// have halves with opposite errors, so their difference is too large, by up to 4 times in variance.
 class NoiseCheck {
  public:
-  /// One pixel of each square of edge 5 to 8, so that a frame has 1000 or more of them where it can. Costs 1/64 to 1/25 of the frame's rays.
+  /// One pixel of each square of edge 5 to 8, so that a frame has 1000 or more of them where it can. Costs
+  /// 1/64 to 1/25 of the frame's rays.
   NoiseCheck(const CameraView& view, std::uint64_t seed, std::span<const std::uint8_t> mask);
   /// Index of the pixel among those that are rendered twice, or kNone.
   std::uint32_t slot(int x, int y) const;
@@ -44,8 +48,10 @@ class NoiseCheck {
   std::uint64_t seed() const { return seed_; }
   /// Mean of the second rendering by part. Thread-safe for different slots.
   PathParts& again(std::uint32_t slot) { return again_[slot]; }
-  /// Noise of `picture`, whose pixels are `as_sampled(pixel)` where nothing has been done to them, else what spread_outliers made of them: with z for the latter the error is
-  /// E (z - y)^2 - E (x - y)^2 / 2, the bias of single pixels included.
+  /// Noise of `picture`, whose pixels are `as_sampled(pixel)` where nothing has been done to them, else what
+  /// spread_outliers made of them. With z for the latter and g for what the pixel
+  /// got, x' = x + g and y' = y + g, the variance of z is about E (z - y')^2 - E (x' - y')^2 / 2: what x gave
+  /// away is taken off twice from that of x, as y has as much of it.
   template <class AsSampled>
   FrameNoise measure(const std::vector<Layers>& picture, const AsSampled& as_sampled) const {
     std::vector<Triple> triples;

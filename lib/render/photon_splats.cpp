@@ -10,7 +10,8 @@
 namespace tempolux {
 namespace {
 
-/// A ray to x meets x's own surface this near to x: in distances from the eye, measured off the surface and along it. Positions are exact to 1e-7 of the scene; the rest is for rays that
+/// A ray to x meets x's own surface this near to x: in distances from the eye, measured off the surface and
+/// along it. Positions are exact to 1e-7 of the scene; the rest is for rays that
 /// graze. What lies on top of something else nearer than that is not told from it.
 constexpr float kOff = 1e-4f, kAlong = 1e-2f;
 

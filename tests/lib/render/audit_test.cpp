@@ -1,4 +1,5 @@
-// Photons seen by the camera against light known on paper; their standard error; biases that are there and such that are not.
+// Photons seen by the camera against light known on paper; their standard error; biases that are there and
+// such that are not.
 #include "lib/render/audit.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,8 @@ using test::matte;
 constexpr int kWidth = 64, kHeight = 36;
 constexpr std::size_t kPixels = kWidth * kHeight;
 
-/// Looks along -z from `eye`, 90 degrees high: pixels at the border are far from the axis, where powers of the cosine tell.
+/// Looks along -z from `eye`, 90 degrees high: pixels at the border are far from the axis, where powers of
+/// the cosine tell.
 CameraView wide_view(Vec3d eye) {
   PlacedCamera camera;
   camera.camera.kind = Camera::Kind::perspective;
@@ -67,8 +69,10 @@ const AuditEntry* find(const std::vector<AuditEntry>& entries, Layer layer, cons
   return nullptr;
 }
 
-/// A plane of 45 degrees, z = y - 2, under a lamp of 3 W/sr at (0, 1, 0), seen from the origin: radiance rho I cos / (pi d^2) at each place. By the middles of pixels, whose
-/// mean errs by less than .1 % here. A power of the cosine to the axis too many or too few is 20 to 40 % at the sides; a distance in place of the depth likewise.
+/// A plane of 45 degrees, z = y - 2, under a lamp of 3 W/sr at (0, 1, 0), seen from the origin: radiance rho
+/// I cos / (pi d^2) at each place. By the middles of pixels, whose
+/// mean errs by less than .1 % here. A power of the cosine to the axis too many or too few is 20 to 40 % at
+/// the sides; a distance in place of the depth likewise.
 TEST(PhotonSplats, ObliquePlaneUnderALamp) {
   HandMadeScene made;
   made.add_quad({-60, -30, -32}, {60, -30, -32}, {60, 1.9f, -0.1f}, {-60, 1.9f, -0.1f}, matte(Rgb(0.6f)));
@@ -101,9 +105,12 @@ TEST(PhotonSplats, ObliquePlaneUnderALamp) {
   }
 }
 
-/// In a sphere light that was reflected once or more is the same everywhere: E = F rho / (S (1 - rho)), seen as rho E / pi. A polyhedron of 1152 faces is smaller by .6 % in S. Over 24 seeds the
-/// standard errors are right: of (splats - exact) / error squared the mean is 1; over 16 tiles and the seeds, 384 values, 4 sigma of a chi square are .29, and what one mean of the seeds is off by .6 %
-/// adds .3 where errors are 1 %. Were photon groups taken for samples the mean would be below .1: each holds starting paths of one kind.
+/// In a sphere light that was reflected once or more is the same everywhere: E = F rho / (S (1 - rho)), seen
+/// as rho E / pi. A polyhedron of 1152 faces is smaller by .6 % in S. Over 24 seeds the
+/// standard errors are right: of (splats - exact) / error squared the mean is 1; over 16 tiles and the seeds,
+/// 384 values, 4 sigma of a chi square are .29, and what one mean of the seeds is off by .6 %
+/// adds .3 where errors are 1 %. Were photon groups taken for samples the mean would be below .1: each holds
+/// starting paths of one kind.
 TEST(PhotonSplats, SphereIsLitEvenlyAndTheErrorIsKnown) {
   test::ClosedBox box(test::Shape::sphere, 0.5f, Rgb(1.0f));
   const SceneFrame& frame = box.scene.frame();
@@ -149,7 +156,8 @@ TEST(PhotonSplats, TheOtherSideOfAThinWallIsDark) {
   EXPECT_EQ(sum, 0);
 }
 
-/// A frame whose indirect light is a tenth too dark is found out, one that is right is not; the share is of the picture's light.
+/// A frame whose indirect light is a tenth too dark is found out, one that is right is not; the share is of
+/// the picture's light.
 TEST(FrameAudit, FindsALayerThatIsTooDark) {
   test::ClosedBox box(test::Shape::sphere, 0.5f, Rgb(1.0f));
   const SceneFrame& frame = box.scene.frame();
@@ -166,7 +174,8 @@ TEST(FrameAudit, FindsALayerThatIsTooDark) {
   EXPECT_FALSE(is_biased(*find(audit(traced, view, even_frame(Layer::indirect, float(exact))), Layer::indirect, "picture")));
 }
 
-/// A way of finding light that says there is no indirect light errs by all of it: paths say so, within 4 of their standard errors, against a picture of 64 samples.
+/// A way of finding light that says there is no indirect light errs by all of it: paths say so, within 4 of
+/// their standard errors, against a picture of 64 samples.
 TEST(FrameAudit, PathsSayWhatIsMissing) {
   const test::Cornell c;
   const test::NoLight none(c.tracer);

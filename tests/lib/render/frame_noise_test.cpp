@@ -13,7 +13,8 @@ namespace {
 using test::Cornell;
 using test::NoLight;
 
-/// .18 x 12.92 no longer: 255 (1.055 x .18^(1/2.4) - .055) = 117.6; below .0031308 the line 255 x 12.92 v; clipped at both ends.
+/// .18 x 12.92 no longer: 255 (1.055 x .18^(1/2.4) - .055) = 117.6; below .0031308 the line 255 x 12.92 v;
+/// clipped at both ends.
 TEST(FrameNoise, CodesAreThoseOfSrgb) {
   EXPECT_NEAR(srgb_code(0.18), 117.65, 0.05);
   EXPECT_NEAR(srgb_code(0.001), 3.2946, 1e-4);
@@ -21,7 +22,8 @@ TEST(FrameNoise, CodesAreThoseOfSrgb) {
   EXPECT_NEAR(srgb_code(7), 255, 1e-9);
 }
 
-/// Median to .18: of 1, 2, 4 the exposure is .09; what a mask leaves out does not count; black that is more than half of a picture neither.
+/// Median to .18: of 1, 2, 4 the exposure is .09; what a mask leaves out does not count; black that is more
+/// than half of a picture neither.
 TEST(FrameNoise, ExposureIsByTheMedian) {
   std::vector<Layers> pixels(3);
   pixels[0][Layer::direct] = Rgb(1.0f), pixels[1][Layer::direct] = Rgb(4.0f), pixels[2][Layer::direct] = Rgb(2.0f);
@@ -33,8 +35,10 @@ TEST(FrameNoise, ExposureIsByTheMedian) {
   EXPECT_EQ(exposure_of(std::vector<Layers>(4), {}), 1);
 }
 
-/// Mean squares over 12 seeds of what frames say, against the variance between the seeds' pictures, by samples fixed and adaptive. 84 pixels are looked at in each frame, so a frame's variance is known
-/// within 15 to 30 % and the mean of the seeds within 10; band 25 %. Halves of the pixels' own samples would say 1.9 times as much of direct light.
+/// Mean squares over 12 seeds of what frames say, against the variance between the seeds' pictures, by
+/// samples fixed and adaptive. 84 pixels are looked at in each frame, so a frame's variance is known
+/// within 15 to 30 % and the mean of the seeds within 10; band 25 %. Halves of the pixels' own samples would
+/// say 1.9 times as much of direct light.
 TEST(FrameNoise, IsThatBetweenSeeds) {
   const Cornell c;
   const NoLight none(c.tracer);
@@ -67,7 +71,8 @@ TEST(FrameNoise, IsThatBetweenSeeds) {
   }
 }
 
-/// Asked for 2 codes and for half of that, frames of paths have, between two seeds, at most 15 % more and at least half of it; what --pixel-limit does not allow is not reached and said.
+/// Asked for 2 codes and for half of that, frames of paths have, between two seeds, at most 15 % more and at
+/// least half of it; what --pixel-limit does not allow is not reached and said.
 TEST(FrameNoise, SeenErrorIsReachedOrNot) {
   const Cornell c;
   FrameOptions options;
