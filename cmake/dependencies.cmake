@@ -13,6 +13,7 @@ find_package(PNG REQUIRED)
 find_package(draco CONFIG REQUIRED)          # these three are linked by the helper tempolux-decode alone
 find_package(meshoptimizer CONFIG REQUIRED)
 find_library(WEBP_LIBRARY NAMES webp REQUIRED)
+find_library(FFTWF_LIBRARY NAMES fftw3f REQUIRED)   # linked by the module tempolux-fourier alone
 find_package(JPEG REQUIRED)
 find_package(Threads REQUIRED)
 find_library(XXHASH_LIBRARY NAMES xxhash REQUIRED)

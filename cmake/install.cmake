@@ -20,15 +20,15 @@ if(tools)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/share/man ${CMAKE_BINARY_DIR}/share/bash-completion
           DESTINATION ${CMAKE_INSTALL_DATAROOTDIR})
 endif()
-install(TARGETS tempolux-images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
+install(TARGETS tempolux-images tempolux-fourier LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
 install(TARGETS tempolux-decode RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
 if(TARGET tempolux-oiio)
-  install(TARGETS tempolux-oiio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
+  install(TARGETS tempolux-oiio RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
 endif()
 if(TARGET tempolux-vdb)
   install(TARGETS tempolux-vdb RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR}/tempolux)
 endif()
 install(DIRECTORY formats/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/formats FILES_MATCHING PATTERN "*.md")
 install(FILES LICENSE README.md Makefile.example DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY pipelines/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/pipelines FILES_MATCHING PATTERN "*.mk" PATTERN "*.md" PATTERN "*.awk" PATTERN "walkthrough.sh"
+install(DIRECTORY pipelines/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/pipelines FILES_MATCHING PATTERN "*.mk" PATTERN "*.md" PATTERN "*.awk" PATTERN "*.sh"
         PATTERN scenes EXCLUDE PATTERN examples EXCLUDE)

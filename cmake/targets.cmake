@@ -46,6 +46,9 @@ function(tempolux_tool name)
   target_precompile_headers(${name} REUSE_FROM tempolux_tool_main)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
   add_dependencies(${name} tempolux-images tempolux-decode)   # opened when a scene has images, started when it is packed
+  if(name STREQUAL "aqm-compare")
+    add_dependencies(${name} tempolux-fourier)   # opened by the model of vision
+  endif()
   set_property(GLOBAL APPEND PROPERTY TEMPOLUX_TOOLS ${name})
 endfunction()
 

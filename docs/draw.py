@@ -121,7 +121,7 @@ def plan(document, out):
     columns = []
     for segment in document["segments"]:
         for frame in segment["frames"]:
-            if frame["asked"]:
+            if frame["frame"] in document["frames"]:
                 hashes = {**segment["hashes"], **frame["hashes"]}
                 columns.append([hashes[k] for k in ("static_geometry", "materials", "moving_geometry", "lights", "camera")])
     step, tall, image = max(2, 320 // len(columns)), 18, []

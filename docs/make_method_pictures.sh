@@ -66,7 +66,7 @@ window=../shared/scenes/made/S8_window_room.glb
 if [ -f $window ]; then
   for keep in '' ' --keep-outliers'; do
     make -s -f Makefile.example BIN="$(realpath "$bin")" OUT="$work/window" SCENE=$window FRAMES=17 SIZE=320x180 CAMERA=auto \
-      TIME='--light-units spec --environment-color 1.1,1.5,2' PIXELS="--spp 4 --pixel-error 0.016 --learn-lights$keep" "$work/window/frames/0017.exr"
+      LIGHT_UNITS=spec SKY=1.1,1.5,2 PIXELS="--spp 4 --pixel-error 0.016 --learn-lights$keep" "$work/window/frames/0017.exr"
     "$info" --png "$work/window${keep:+kept}.png" "$work/window/frames/0017.exr"
   done
   "$info" --sheet $out/outliers.png --columns 2 --tile 480 "$work/windowkept.png" "$work/window.png"

@@ -60,14 +60,19 @@ done
 "$info" --sheet $out/light-textures-beside.png --columns 3 --tile 240 "$work/counted.exr" "$work/smoothed.exr" "$work/f.exr"
 
 # A walk: every fourth frame, keys marked; one frame as it was warped, and what of it is traced.
-make -f Makefile.example --no-print-directory demo BIN="$bin" METHOD=walkthrough SCENE=pipelines/scenes/S4_atrium.glb SIZE=320x180 OUT="$work/walk"
+tools=$(realpath "$bin") top=$PWD
+make -f Makefile.example --no-print-directory demo BIN="$tools" METHOD=walkthrough SCENE=pipelines/scenes/S4_atrium.glb SIZE=320x180 OUT="$work/walk"
 every_fourth=$(for f in $(seq 0 4 44); do printf '%s/walk/frames/%04d.exr ' "$work" "$f"; done)
-marks=$(OUT="$work/walk" sh pipelines/walkthrough.sh keys | tr , '\n' | while read -r key; do
-  case " $every_fourth " in *" $key "*) echo "$key";; esac; done | paste -sd,)
+marks=$(cd "$work/walk" && sh "$top/pipelines/walkthrough.sh" keys | tr , '\n' | while read -r key; do
+  case " $every_fourth " in *" $work/walk/$key "*) echo "$work/walk/$key";; esac; done | paste -sd,)
 # shellcheck disable=SC2086
-"$info" --sheet $out/walkthrough.png --columns 4 --tile 160 --mark "$marks" --exposure "$(cat "$work/walk/exposure")" $every_fourth
-"$info" --png "$work/warped.png" --exposure "$(cat "$work/walk/exposure")" "$work/walk/walk/0008.exr"
-"$info" --png "$work/why.png" "$work/walk/walk/0008.mask.exr"
+exposure=$(cat "$work"/walk/shown/exposure-*)
+"$info" --sheet $out/walkthrough.png --columns 4 --tile 160 --mark "$marks" --exposure "$exposure" $every_fourth
+keys=$(cd "$work/walk" && sed -n 's/^walk\/0000+0016-[^ ]*: words := \([^ ]* [^ ]*\) .*/\1/p' plan.mk)
+# shellcheck disable=SC2086
+(cd "$work/walk" && "$tools/ibr-warp" $keys --scene "$top/pipelines/scenes/S4_atrium.glb" --frame 8 -o "$work/warped.exr" --mask "$work/why.exr")
+"$info" --png "$work/warped.png" --exposure "$exposure" "$work/warped.exr"
+"$info" --png "$work/why.png" "$work/why.exr"
 "$info" --sheet $out/ibr-warp.png --columns 1 --tile 160 --exposure 0 "$work/warped.png" "$work/why.png"
 
 # Where light is bright: a room lit by indirect light alone.

@@ -12,6 +12,7 @@
 
 #include "lib/core/unpack.h"
 #include "modules/decode.h"
+#include "modules/guard.h"
 
 namespace {
 
@@ -71,6 +72,10 @@ std::string decode(Piece& piece) {
 }
 
 int run() {
+  if (const std::string trouble = guard_process(); !trouble.empty()) {
+    std::fprintf(stderr, "%s\n", trouble.c_str());
+    return 2;
+  }
   std::uint32_t version = 0;
   if (!read_all(&version, sizeof version) || version != kUnpackVersion) {
     std::fputs("is of another version than the tool that started it: install both together\n", stderr);

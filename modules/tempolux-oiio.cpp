@@ -1,75 +1,105 @@
-// tempolux-oiio -- reads JPEG and TIFF through OpenImageIO; opened by lib/image/any_io.cpp at
-// need.
+// tempolux-oiio -- reads one JPEG or TIFF through OpenImageIO and prints its pixels: lib/image/image_pipe.h.
 //
-// A shared object of its own because linking Debian's OpenImageIO costs 0.4 s and 130 MB at every start.
+// A program of its own, started by lib/image/any_io.cpp under limits of memory and time: linking Debian's OpenImageIO costs 0.4 s
+// and 130 MB at every start, and files of strangers reach 261 libraries through it. The file is opened before it is looked at;
+// then modules/guard.h takes away what reading does not need.
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <cstring>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <new>
 #include <string>
+#include <vector>
 
-#include "lib/image/module.h"
+#include "lib/image/image_pipe.h"
+#include "modules/guard.h"
 
 namespace {
 
-using tempolux::ImageModuleRequest;
+using tempolux::ImagePipeAsk;
+using tempolux::ImagePipeHead;
 
-std::int32_t fail(ImageModuleRequest& request, std::int32_t result, const std::string& text) {
-  const std::size_t size = std::min(text.size(), sizeof request.message - 1);
-  std::memcpy(request.message, text.data(), size);
-  request.message[size] = 0;
-  return result;
+struct Refused {
+  std::string words;
+};
+
+struct Request {
+  ImagePipeAsk ask;
+  std::string format, path;
+};
+
+Request take_request() {
+  Request request;
+  if (std::fread(&request.ask, sizeof request.ask, 1, stdin) != 1 || request.ask.magic != ImagePipeAsk{}.magic)
+    throw Refused{"tempolux-oiio is of another version than the tool that started it; install both together"};
+  for (int c = 0; (c = std::fgetc(stdin)) != EOF;) request.path += char(c);
+  for (const char c : request.ask.format)
+    if (c != 0) request.format += c;
+  if (request.format != "jpeg" && request.format != "tiff")
+    throw Refused{"format " + request.format + " is not one that tempolux-oiio opens"};
+  return request;
 }
 
-std::int32_t read(ImageModuleRequest& request) {
-  using namespace tempolux;
-  const auto bad = [&](const std::string& text) { return fail(request, image_module_bad_input, text); };
-  const std::string format = request.format;
-  if (format != "jpeg" && format != "tiff")
-    return bad("format " + format + " is not one this module opens");
-
-  // Limits before any file is touched. No plugin folders, no threads of its own.
-  const std::uint64_t megabytes = request.max_pixels * request.max_channels * sizeof(float) / (1 << 20) + 1;
+/// Limits before any file is touched. No plugin folders, no threads of its own.
+std::unique_ptr<OIIO::ImageInput> reader(const Request& request) {
+  const std::uint64_t megabytes = request.ask.max_pixels * request.ask.max_channels * sizeof(float) / (1 << 20) + 1;
   OIIO::attribute("limits:imagesize_MB", int(std::min<std::uint64_t>(megabytes, 1 << 20)));
-  OIIO::attribute("limits:channels", int(request.max_channels));
+  OIIO::attribute("limits:channels", int(request.ask.max_channels));
   OIIO::attribute("threads", 1);
-  const std::unique_ptr<OIIO::ImageInput> input =
-      OIIO::ImageInput::create(format, false, nullptr, nullptr, "");
-  if (!input) return bad(OIIO::geterror());
-  OIIO::ImageSpec spec;
-  if (!input->open(request.path, spec)) return bad(input->geterror());
-  if (spec.width < 1 || spec.height < 1 || spec.depth != 1 || spec.nchannels < 1 ||
-      std::uint64_t(spec.width) * std::uint64_t(spec.height) > request.max_pixels ||
-      std::uint32_t(spec.nchannels) > request.max_channels)
-    return bad("size out of range: " + std::to_string(spec.width) + " x " + std::to_string(spec.height) +
-               ", " + std::to_string(spec.nchannels) + " channels");
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::create(request.format, false, nullptr, nullptr, "");
+  if (!input) throw Refused{OIIO::geterror()};
+  return input;
+}
 
-  const int bits = spec.format.is_floating_point() ? 32 : int(spec.format.size()) * 8;
-  if (bits > 16 && !spec.format.is_floating_point()) return bad("integer samples of more than 16 bits");
-  float* pixels = request.allocate(request.user, spec.width, spec.height, spec.nchannels, bits);
-  if (!pixels) return fail(request, image_module_no_memory, "not enough memory for its pixels");
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels))
-    return bad(input->geterror());
-  input->close();
-  return image_module_ok;
+ImagePipeHead head_of(const OIIO::ImageSpec& spec, const ImagePipeAsk& ask) {
+  if (spec.width < 1 || spec.height < 1 || spec.depth != 1 || spec.nchannels < 1 ||
+      std::uint64_t(spec.width) * std::uint64_t(spec.height) > ask.max_pixels ||
+      std::uint64_t(spec.nchannels) > ask.max_channels)
+    throw Refused{"size out of range: " + std::to_string(spec.width) + " x " + std::to_string(spec.height) + ", " +
+                  std::to_string(spec.nchannels) + " channels"};
+  ImagePipeHead head;
+  head.width = spec.width, head.height = spec.height, head.channels = spec.nchannels;
+  head.bits = spec.format.is_floating_point() ? 32 : int(spec.format.size()) * 8;
+  if (head.bits > 16 && !spec.format.is_floating_point()) throw Refused{"integer samples of more than 16 bits"};
+  return head;
+}
+
+void run() {
+  const Request request = take_request();
+  const std::unique_ptr<OIIO::ImageInput> input = reader(request);
+  std::FILE* const file = std::fopen(request.path.c_str(), "rb");
+  if (!file) throw Refused{"cannot be opened"};
+  if (const std::string trouble = tempolux::guard_process(); !trouble.empty()) throw Refused{"tempolux-oiio " + trouble};
+  OIIO::Filesystem::IOFile bytes(file, OIIO::Filesystem::IOProxy::Read);
+  if (!input->set_ioproxy(&bytes)) throw Refused{input->geterror()};
+  OIIO::ImageSpec spec;
+  if (!input->open(request.path, spec)) throw Refused{input->geterror()};
+  const ImagePipeHead head = head_of(spec, request.ask);
+  std::vector<float> pixels(std::size_t(head.width) * std::size_t(head.height) * std::size_t(head.channels));
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data())) throw Refused{input->geterror()};
+  std::fwrite(&head, sizeof head, 1, stdout);
+  std::fwrite(pixels.data(), sizeof(float), pixels.size(), stdout);
+  if (std::fflush(stdout) != 0) throw Refused{"its pixels could not be handed over"};
 }
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) std::int32_t tempolux_image_module(
-    ImageModuleRequest* request) {
-  using namespace tempolux;
-  if (request->abi != kImageModuleAbi)
-    return fail(*request, image_module_bad_input,
-                "the module tempolux-oiio.so is of another version; install both together");
+int main() {
+  std::string words;
   try {
-    return read(*request);
+    run();
+    std::_Exit(0);   // at a plain end 261 libraries would put their things away, which the guard need not allow
+  } catch (const Refused& refused) {
+    words = refused.words;
   } catch (const std::bad_alloc&) {
-    return fail(*request, image_module_no_memory, "not enough memory");
-  } catch (const std::exception& e) {
-    return fail(*request, image_module_bad_input, e.what());
+    words = "needs more memory than reading it may take; convert it to EXR or PNG, or make it smaller";
+  } catch (const std::exception& error) {
+    words = error.what();
   }
+  std::fprintf(stderr, "%s\n", words.substr(0, words.find('\n')).c_str());
+  std::_Exit(2);
 }

@@ -1,12 +1,18 @@
 // tempolux-vdb -- reads one density of each OpenVDB file that it is asked for and prints its voxels: lib/volume/vdb_pipe.h.
 //
 // A program of its own, started by lib/volume/vdb_file.cpp under limits of memory and time: damaged files crash or hang
-// OpenVDB 10, and starting with it costs .06 s and 32 MB that scenes without smoke need not pay.
+// OpenVDB 10, and starting with it costs .06 s and 32 MB that scenes without smoke need not pay. All files are opened before the
+// first is looked at; then modules/guard.h takes away what reading does not need. openvdb::io::File opens files by itself, so
+// that its part is done here: finding grids by their descriptors.
+#include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -17,6 +23,7 @@
 #include <vector>
 
 #include "lib/volume/vdb_pipe.h"
+#include "modules/guard.h"
 
 namespace {
 
@@ -30,10 +37,8 @@ struct Refused {
 constexpr std::size_t kMostNames = 12;   ///< of grids, in a message
 constexpr std::int32_t kMostGrids = 1024;
 
-/// Reads the file up to its first descriptor, so that what is no VDB is told apart from what is damaged.
-void look_at_beginning(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Refused{"cannot be opened"};
+/// Refuses what is no VDB by other words than what is damaged. The file is at its beginning before and after.
+void look_at_beginning(std::istream& file) {
   char bytes[12] = {};
   file.read(bytes, sizeof bytes);
   if (file.gcount() < 8 || std::string(bytes, 8) != std::string(" BDV\0\0\0\0", 8))
@@ -44,6 +49,7 @@ void look_at_beginning(const std::string& path) {
   if (version < 213 || version > openvdb::OPENVDB_FILE_VERSION)
     throw Refused{"has file version " + std::to_string(version) + "; 213 to " + std::to_string(openvdb::OPENVDB_FILE_VERSION) +
                   " can be read, save it again with a newer program"};
+  file.seekg(0);
 }
 
 std::string printable(std::string text, std::size_t most) {
@@ -54,8 +60,9 @@ std::string printable(std::string text, std::size_t most) {
 }
 
 struct Candidate {
-  std::string unique, name;                  ///< as OpenVDB tells grids of one name apart: "density[1]"
-  openvdb::GridBase::Ptr metadata;
+  openvdb::io::GridDescriptor place;         ///< where the grid lies in the file
+  std::string name;
+  openvdb::GridBase::Ptr metadata;           ///< the grid: whole, or its description alone
   bool is_number() const {
     return metadata->isType<openvdb::FloatGrid>() || metadata->isType<openvdb::DoubleGrid>();
   }
@@ -74,19 +81,83 @@ std::string listed(const std::vector<Candidate>& grids) {
   return text + (grids.size() > kMostNames ? ", ..." : "");
 }
 
-std::vector<Candidate> all_grids(openvdb::io::File& file) {
-  std::vector<Candidate> grids;
-  for (auto name = file.beginName(); name != file.endName(); ++name) {
-    if (grids.size() == std::size_t(kMostGrids)) throw Refused{"has more than 1024 grids"};
-    const std::string unique = *name;
-    const std::size_t bracket = unique.rfind('[');
-    const bool numbered = bracket != std::string::npos && bracket > 0 && unique.back() == ']';
-    grids.push_back({unique, numbered ? unique.substr(0, bracket) : unique, file.readGridMetadata(unique)});
-    if (!grids.back().metadata) throw Refused{"has a grid without a description"};
+/// A file that is open already, as openvdb::io::File would read it.
+class OpenFile : openvdb::io::Archive {
+ public:
+  explicit OpenFile(std::istream& file) : file_(file) {}
+
+  /// All grids, in the order of their names; of files with a table of places the descriptions alone.
+  std::vector<Candidate> grids() {
+    readHeader(file_);
+    metadata_->setSeekable(true);
+    openvdb::io::setStreamMetadataPtr(file_, metadata_, false);
+    setFormatVersion(file_);
+    setLibraryVersion(file_);
+    setDataCompression(file_);
+    if (!inputHasGridOffsets()) return grids_in_sequence();
+    openvdb::MetaMap().readMeta(file_);
+    std::map<std::string, Candidate> found;
+    const std::int32_t count = counted(readGridCount(file_));
+    for (std::int32_t i = 0; i < count; ++i) {
+      Candidate grid;
+      grid.metadata = grid.place.read(file_);
+      if (!grid.metadata || !file_) throw Refused{"has a grid without a description"};
+      grid.name = grid.place.gridName();
+      grid.place.seekToGrid(file_);
+      readGridCompression(file_);
+      grid.metadata->readMeta(file_);
+      grid.place.seekToEnd(file_);
+      found.emplace(grid.place.uniqueName(), std::move(grid));
+    }
+    std::vector<Candidate> grids;
+    for (auto& [unique, grid] : found) grids.push_back(std::move(grid));
+    return grids;
   }
-  if (grids.empty()) throw Refused{"has no grid"};
-  return grids;
-}
+
+  /// The whole grid; one that has its voxels from another (an instance) with these.
+  openvdb::GridBase::Ptr whole(const Candidate& grid, const std::vector<Candidate>& all) {
+    if (!inputHasGridOffsets()) return grid.metadata;
+    const openvdb::GridBase::Ptr loaded = voxels_of(grid.place);
+    if (!grid.place.isInstance()) return loaded;
+    for (const Candidate& parent : all) {
+      if (parent.place.uniqueName() != grid.place.instanceParentName()) continue;
+      const openvdb::GridBase::Ptr other = voxels_of(parent.place);
+      if (parent.place.isInstance() || other->type() != loaded->type()) break;
+      loaded->setTree(other->baseTreePtr());
+      return loaded;
+    }
+    throw Refused{"has a grid that shares the voxels of another one that is not there"};
+  }
+
+ private:
+  static std::int32_t counted(std::int32_t count) {
+    if (count > kMostGrids) throw Refused{"has more than 1024 grids"};
+    if (count <= 0) throw Refused{"has no grid"};
+    return count;
+  }
+
+  /// A file that was written to a pipe: one grid follows the other, and all are read.
+  std::vector<Candidate> grids_in_sequence() {
+    file_.clear();
+    file_.seekg(0);
+    const openvdb::GridPtrVecPtr read = openvdb::io::Stream(file_, false).getGrids();
+    counted(read ? std::int32_t(std::min<std::size_t>(read->size(), kMostGrids + 1)) : 0);
+    std::vector<Candidate> grids;
+    for (const openvdb::GridBase::Ptr& grid : *read) grids.push_back({{}, grid->getName(), grid});
+    return grids;
+  }
+
+  openvdb::GridBase::Ptr voxels_of(const openvdb::io::GridDescriptor& place) {
+    const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(place.gridType());
+    if (place.saveFloatAsHalf()) grid->setSaveFloatAsHalf(true);
+    place.seekToGrid(file_);
+    readGrid(grid, place, file_);
+    return grid;
+  }
+
+  std::istream& file_;
+  openvdb::io::StreamMetadata::Ptr metadata_ = std::make_shared<openvdb::io::StreamMetadata>();   ///< the stream points here
+};
 
 /// The one to read: by name, else "density", else the only density.
 const Candidate& chosen(const std::vector<Candidate>& grids, const std::string& wanted) {
@@ -184,17 +255,35 @@ void print(Grid& grid, const std::string& name) {
   if (std::fflush(stdout) != 0) throw Refused{"its voxels could not be handed over"};
 }
 
-void read(const std::string& path, const std::string& wanted) {
-  look_at_beginning(path);
-  openvdb::initialize();
-  openvdb::io::File file(path);
-  file.open(false);                          // not by and by, from a mapped file
-  const std::vector<Candidate> grids = all_grids(file);
-  const Candidate& grid = chosen(grids, wanted);
-  const openvdb::GridBase::Ptr loaded = file.readGrid(grid.unique);
+struct Request {
+  std::string path, grid;
+  std::ifstream file;
+};
+
+/// All that is asked for, each file opened and none looked at.
+std::vector<Request> open_all() {
+  std::vector<Request> requests;
+  for (std::string path, grid; std::getline(std::cin, path) && std::getline(std::cin, grid);)
+    requests.push_back({path, grid, std::ifstream(path, std::ios::binary)});
+  return requests;
+}
+
+void read(Request& request) {
+  if (!request.file) throw Refused{"cannot be opened"};
+  look_at_beginning(request.file);
+  OpenFile file(request.file);
+  const std::vector<Candidate> grids = file.grids();
+  const Candidate& grid = chosen(grids, request.grid);
+  const openvdb::GridBase::Ptr loaded = file.whole(grid, grids);
   if (auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(loaded)) print(*floats, grid.name);
   else if (auto doubles = openvdb::gridPtrCast<openvdb::DoubleGrid>(loaded)) print(*doubles, grid.name);
   else throw Refused{"its grid could not be read"};
+}
+
+/// What OpenVDB and TBB do at first use: types are registered, numbers of processors read, other libraries opened.
+void warm_up() {
+  openvdb::initialize();
+  tbb::parallel_for(0, 2, [](int) {});
 }
 
 /// Standard input, whole, as a file on standard output.
@@ -207,7 +296,6 @@ void write() {
   if (head.magic != tempolux::VdbWriteHead{}.magic || head.name_size > 256) throw Refused{"is of another version than its caller"};
   std::string name(head.name_size, ' ');
   take(name.data(), name.size());
-  openvdb::initialize();
   auto grid = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
   grid->setName(name);
   openvdb::Mat4d place = openvdb::Mat4d::identity();   // of row vectors
@@ -228,14 +316,22 @@ void write() {
   if (!std::cout.flush()) throw Refused{"could not hand over the file"};
 }
 
+void run(bool writes) {
+  warm_up();
+  std::vector<Request> requests = writes ? std::vector<Request>{} : open_all();
+  if (const std::string trouble = tempolux::guard_process(); !trouble.empty()) throw Refused{trouble};
+  if (writes) return write();
+  for (Request& request : requests) read(request);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string path, grid, words;
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);   // a guarded process starts no other
+  std::string words;
   try {
-    if (argc > 1 && std::string(argv[1]) == "write") return write(), 0;
-    while (std::getline(std::cin, path) && std::getline(std::cin, grid)) read(path, grid);
-    return 0;
+    run(argc > 1 && std::string(argv[1]) == "write");
+    std::_Exit(0);   // at a plain end TBB would start threads again, to take things down
   } catch (const Refused& refused) {
     words = refused.words;
   } catch (const std::bad_alloc&) {
@@ -244,5 +340,5 @@ int main(int argc, char** argv) {
     words = "OpenVDB cannot read it: " + printable(error.what(), 300) + "; is it whole?";
   }
   std::fprintf(stderr, "%s\n", words.c_str());
-  return 2;
+  std::_Exit(2);
 }

@@ -10,12 +10,13 @@ PLAN = plan.mk
 include $(PLAN)
 # An empty variable leaves out its option. Names of files stay in the environment.
 shared = $${ENVIRONMENT:+--environment "$$ENVIRONMENT"} $${SKY:+--environment-color "$$SKY"} $${VOLUME:+--volume "$$VOLUME"} \
-  $${LIGHT_UNITS:+--light-units "$$LIGHT_UNITS"} $$VOLUME_OPTIONS $$TIME
+  $${LIGHT_UNITS:+--light-units "$$LIGHT_UNITS"} $$VOLUME_OPTIONS $$TIME --said state/warnings
 scene  = "$$SCENE" $(words) $(shared)
 seen   = $(scene) --camera "$$CAMERA"
-run    = $(if $V,,@)$(say)$(RUN) "$$BIN"
+quiet  = $(if $V,,@)
+run    = $(quiet)$(say)$(RUN) "$$BIN"
 say    = $(if $V,,echo "$(or $(notdir $@),$@)" &&)
-.DELETE_ON_ERROR .SUFFIXES:
+.SUFFIXES:
 .PHONY: demo report
 demo: $(frames) $(previews) sheet.png $(log)
 
@@ -26,6 +27,8 @@ stands/%.photons stands/%.paths:
 	$(run)/photon-trace $(scene) -o stands/$*.photons --paths stands/$*.paths --stats stands/$*.json
 moved/%.photons:
 	$(run)/photon-trace $(scene) -o $@ --stats moved/$*.json
+refined/%.photons:
+	$(run)/photon-trace $(scene) -o $@ --stats refined/$*.json
 
 # What photons say of the light on all surfaces: irradiance points, which gather rays read. Bright ones apart, where that pays.
 points/%.irradpoints:
@@ -62,27 +65,29 @@ keys/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats keys/$*.json
 # Between keys: an interval is warped or halved (walkthrough.sh says how); then each of its frames is warped and completed.
 walk/%.done:
-	+$(if $V,,@)MAKE='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
+	+$(quiet)MAKE='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
 walked/%.exr:
-	$(if $V,,@)RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
+	$(quiet)RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
 
 # A frame shows a picture; shown/FRAME-KEY says which. Frames that show the same are copies of one.
-show = $(if $V,,@)rm -f shown/$1-??????????; cp --reflink=auto $| frames/$1.part && mv frames/$1.part frames/$1.exr && touch shown/$2
+picture = $(filter-out shown/%,$|)
+show = rm -f shown/$1-??????????; cp --reflink=auto $(picture) frames/.$1.$$$$ && mv -f frames/.$1.$$$$ frames/$1.exr && touch $2
 # To look at, at one exposure for the whole sequence: the one that suits the first frame.
 shown/exposure-%:
-	$(if $V,,@)"$$BIN"/tempolux-info $| --json | sed -n 's/.*"auto_exposure_stops": *\([^,]*\),*$$/\1/p' | grep . > $@
+	$(quiet)$(RUN) "$$BIN"/tempolux-info $| --json | sed -n 's/.*"auto_exposure_stops": *\([^,]*\),*$$/\1/p' | grep . > $@.$$$$ && mv -f $@.$$$$ $@
 exposure = --exposure "$$(cat $(filter shown/exposure-%,$|))"
-preview = $(if $V,,@)rm -f shown/$1-*.png; $(RUN) "$$BIN"/tempolux-info --png frames/$1.png $(exposure) $(firstword $|) && touch shown/$2
-sheet = $(if $V,,@)rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && touch shown/$1
+preview = rm -f shown/$1-*.png; $(RUN) "$$BIN"/tempolux-info --png frames/$1.png $(exposure) $(picture) && touch $2
+sheet = rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && touch $1
 # A walkthrough's keys have a border in the sheet; its log says where keys were placed and why.
-marks = $(if $(log),--mark "$$(sh "$$PIPELINES/walkthrough.sh" keys)")
-walk_log = $(if $V,,@)rm -f shown/walk-*; sh "$$PIPELINES/walkthrough.sh" log $(intervals) > walk.log && touch shown/$1
+marks = $(if $(log),$$(sh "$$PIPELINES/walkthrough.sh" marks))
+walk_log = rm -f shown/walk-*; sh "$$PIPELINES/walkthrough.sh" log $(intervals) > walk.log && touch $1
 
 # How wrong is a frame, against path tracing in two halves whose noise is known? And what did it cost, all stages counted?
 path/%.exr path/%_a.exr path/%_b.exr:
 	$(run)/frame-render $(seen) -o path/$*.exr --stats path/$*.json
 error/%.json:
 	$(run)/aqm-compare $(words) --json $@ --quiet
-write_report = $(RUN) "$$BIN"/error-report -o report $(report_runs) && rm -f shown/report-* && touch shown/$1
+write_report = $(RUN) "$$BIN"/error-report -o report $(report_runs) && rm -f shown/report-* && touch $1
 report: report/index.html
 	@cat report/report.md
+	$(if $(kept),@awk -f "$$PIPELINES/temporal_report.awk" $(kept))

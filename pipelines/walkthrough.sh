@@ -4,7 +4,7 @@
 #     walkthrough.sh interval TARGET KEY_A KEY_B MIDDLE KEY_MIDDLE THRESHOLD LEFT RIGHT
 #     walkthrough.sh frame TARGET INTERVAL FRAME OPTION...
 #     walkthrough.sh log INTERVAL...          what was decided, in the order of frames
-#     walkthrough.sh keys                     by walk.log the frames that are keys, as frames/F.exr,...
+#     walkthrough.sh marks                    by walk.log the frames that are keys, as an option for the sheet
 #
 # An interval lies between two key pictures; LEFT and RIGHT are its halves, "-" where nothing lies between. TARGET says "warp", or
 # "split" if the picture of the middle frame became a key. A frame looks there which keys it is warped from. OPTIONs are its light.
@@ -19,28 +19,45 @@ percent() { awk "BEGIN { printf \"%.1f%%\", 100 * $1 / $2 }"; }
 tool() { name=$1; shift; eval "set -- \"\$@\" $SHARED"; $RUN "$BIN/$name" "$@"; }   # SHARED: options in quotes, names in variables
 warp() { tool ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA"; }
 
-# Both keys warped to the middle: how much do they differ where neither is masked, and how much is masked?
+sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$name" "$file"))); done; echo "$total"; }
+
+# Both keys warped to frame $1 in folder $2: exit 1 if they differ by more than $threshold where neither is masked. Adds to $differences. A
+# threshold in percent is of AQM.
+differ() {
+  warp "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none --stats "$2/$1.warp.json" || exit
+  [ "$(count_of traced "$2/$1.warp.json")" -lt "$(count_of pixels "$2/$1.warp.json")" ] || return 0
+  case $threshold in *%) figure=percent; set -- "$@" --flow "$2/flow.exr" ;; *) figure=relmse; set -- "$@" --fail-by relmse ;; esac
+  frame=$1 folder=$2 code=0; shift 2
+  $RUN "$BIN/aqm-compare" "$folder/w_1.exr" "$folder/w_2.exr" --except "$folder/why.exr" --fail-above "$threshold" --quiet --json "$folder/compare.json" \
+    "$@" || code=$?
+  [ $code -le 1 ] || exit $code
+  differences="$differences $(count_of $figure "$folder/compare.json")"
+  return $code
+}
+
+# Do the keys differ in the middle, or, as AQM judges, after one, two or three quarters of the interval? How much is masked there?
 decide() {
-  a=$1 b=$2 middle=$3 threshold=$4 try=$5
-  warp "$a" "$b" --frame "$(number "$middle")" -o "$try/w.exr" --mask "$try/why.exr" --separate --compression none --stats "$try/warp.json"
-  pixels=$(count_of pixels "$try/warp.json") traced=$(count_of traced "$try/warp.json")
-  distant=0 causes=
+  a=$1 b=$2 middle=$3 threshold=$4 try=$5 differences= verdict=warp causes= distant=0
+  first=$(number "$(frame_of "$a")") last=$(number "$(frame_of "$b")") at=$(number "$middle") unit=
+  case $threshold in *%) at="$(((3 * first + last) / 4)) $at $(((first + 3 * last) / 4))" unit=% ;; esac
+  before=$first
+  set --
+  for f in $at; do
+    [ "$f" -gt "$before" ] || continue   # short intervals have fewer frames
+    before=$f
+    differ "$f" "$try" || verdict=split
+    set -- "$@" "$try/$f.warp.json"
+  done
+  pixels=$(sum_of pixels "$@") traced=$(sum_of traced "$@")
   for cause in specular occlusion slow deforming changed_light border edge undersampled; do
-    n=$(count_of "traced_$cause" "$try/warp.json")
+    n=$(sum_of "traced_$cause" "$@")
     [ "$n" = 0 ] || causes="$causes $cause $(percent "$n" "$pixels")"
     case $cause in occlusion | changed_light | border | undersampled) distant=$((distant + n));; esac
   done
-  difference=none verdict=warp
-  if [ "$traced" -lt "$pixels" ]; then
-    code=0
-    $RUN "$BIN/aqm-compare" "$try/w_1.exr" "$try/w_2.exr" --except "$try/why.exr" --fail-by relmse --fail-above "$threshold" --quiet --json "$try/compare.json" || code=$?
-    case $code in 0) ;; 1) verdict=split;; *) exit $code;; esac
-    difference=$(count_of relmse "$try/compare.json")
-  fi
   # What no key sees grows with their distance: halving it saves half of that in every frame, and costs a key.
-  between=$(($(number "$(frame_of "$b")") - $(number "$(frame_of "$a")") - 1))
-  [ $((distant * (between + 1))) -gt $((2 * pixels)) ] && verdict=split
-  echo "$(frame_of "$a") $(frame_of "$b")  middle $middle  difference $difference  traced $(percent "$traced" "$pixels"):$causes  $verdict"
+  [ $((distant * (last - first))) -gt $((2 * pixels)) ] && verdict=split
+  difference=$(printf '%s\n' $differences | sort -g | tail -n 1)
+  echo "$(frame_of "$a") $(frame_of "$b")  middle $middle  difference ${difference:-none}${difference:+$unit}  traced $(percent "$traced" "$pixels"):$causes  $verdict"
 }
 
 interval() {
@@ -85,12 +102,13 @@ log() {
 }
 
 # An interval that was halved has a line and its halves have theirs: ends of those that were not, and middles of those that were.
-keys() {
-  awk '!/split$/ { print "frames/" $1 ".exr"; print "frames/" $2 ".exr" } /split$/ { print "frames/" $4 ".exr" }' walk.log | sort -u |
-    while read -r name; do [ ! -f "$name" ] || echo "$name"; done | paste -sd,
+marks() {
+  keys=$(awk '!/split$/ { print "frames/" $1 ".exr"; print "frames/" $2 ".exr" } /split$/ { print "frames/" $4 ".exr" }' walk.log | sort -u |
+    while read -r name; do [ ! -f "$name" ] || echo "$name"; done | paste -sd,)
+  [ -z "$keys" ] || echo "--mark $keys"
 }
 
 case $command in
-  interval | frame | log | keys) $command "$@";;
-  *) echo "walkthrough.sh: '$command' is none of interval, frame, log, keys" >&2; exit 2;;
+  interval | frame | log | marks) $command "$@";;
+  *) echo "walkthrough.sh: '$command' is none of interval, frame, log, marks" >&2; exit 2;;
 esac

@@ -1,9 +1,11 @@
-// tools/aqm-compare.cpp -- how wrong a frame or a sequence is.
+// tools/aqm-compare.cpp -- how wrong a frame or a sequence is, and whether a viewer would see that.
 //
 //     aqm-compare frame.exr --reference-halves ref_a.exr ref_b.exr --json - | jq .total.rmse
 //     aqm-compare out.####.exr ref.####.exr --frames 0-47 --layer indirect --difference diff.####.png
+//     aqm-compare a.exr b.exr --flow flow.exr --except why.exr -o seen.png --fail-above 5%
 //
-// Figures: lib/aqm/frame_error.h; JSON: formats/comparison/comparison.md.
+// Figures: lib/aqm/frame_error.h; what a viewer sees: lib/aqm/visible_difference.h; JSON:
+// formats/comparison/comparison.md.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -17,7 +19,9 @@
 #include "lib/report/comparison.h"
 #include "tools/common/compare_inputs.h"
 #include "tools/common/option_words.h"
+#include "tools/common/percent_option.h"
 #include "tools/common/tool_main.h"
+#include "tools/common/vision_options.h"
 
 using namespace tempolux;
 
@@ -25,11 +29,13 @@ namespace {
 
 struct Options {
   std::string test, reference, layer, mask, except, smooth, json, difference, metric = "error", fail_by = "rmse";
+  tools::VisionWords vision;
   std::vector<std::string> halves;
-  bool own_halves = false, perceptual = false, allow_stale = false;
+  bool own_halves = false, allow_stale = false;
   double fail_above = -1, difference_scale = 0;
   std::uint64_t min_object_pixels = 64;
 
+  bool needs_vision() const { return metric == "aqm" || fail_by == "aqm" || vision.used(); }
   std::string layer_or_rgb() const { return layer == "RGB" ? "" : layer; }
   std::vector<std::string> references() const { return halves.empty() ? std::vector{reference} : halves; }
 };
@@ -50,30 +56,35 @@ void declare(tools::Tool& tool, Options& o) {
   app.add_option("--relative-to", o.smooth,
                  "EXR; stands for the reference in relMSE's denominator, where the reference's noise would count")
       ->type_name("FILE");
-  app.add_option("--metric", o.metric, "error: RMSE, relMSE, bias, PSNR, flicker")->type_name("NAME")
+  app.add_option("--metric", o.metric,
+                 "error: RMSE, relMSE, bias, PSNR, flicker; aqm: the share of pixels seen to differ, too")
+      ->type_name("{error,aqm}")
       ->capture_default_str();
-  app.add_flag("--perceptual", o.perceptual, "refused: the model of vision is not in this version");
+  tools::declare_vision(tool, o.vision);
   tool.count_option("--min-object-pixels", o.min_object_pixels, "flag the bias of objects of fewer pixels");
   tool.output_option(o.json, "write all figures as JSON; -: standard output", "--json");
   tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)",
                      "--difference");
   app.add_option("--difference-scale", o.difference_scale, "difference at full red in the PNG; 0: automatic")
       ->type_name("VALUE")->capture_default_str()->check(tools::number_between(0));
-  app.add_option("--fail-above", o.fail_above, "exit 1 if the RMSE is above this, or what --fail-by names")->type_name("VALUE")
-      ->check(tools::number_between(0));
-  app.add_option("--fail-by", o.fail_by, "what --fail-above judges: rmse or relmse")->capture_default_str()
-      ->check(CLI::IsMember({"rmse", "relmse"}));
+  app.add_option("--fail-above", o.fail_above,
+                 "exit 1 if the RMSE is above this, or what --fail-by names; 5%: if AQM is")
+      ->type_name("VALUE")
+      ->check(tools::number_between(0))
+      ->transform(tools::percent([&o] { o.fail_by = "aqm"; }));
+  app.add_option("--fail-by", o.fail_by,
+                 "what --fail-above judges: rmse, relmse or aqm (a share, .05 for 5 %)")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"rmse", "relmse", "aqm"}));
   tool.leave_out_of_history(
       app.add_flag("--allow-stale", o.allow_stale, "compare frames of different scene states"));
   tool.common_options(tools::uses_frames);
 }
 
 void check(const tools::Tool& tool, const Options& o, bool frames_given) {
-  if (o.perceptual || o.metric == "aqm")
-    throw InputError(
-        (o.perceptual ? "--perceptual" : "--metric aqm") +
-        std::string(": the model of vision is not in this version; leave it out for the error figures"));
-  if (o.metric != "error") throw InputError("--metric " + o.metric + ": unknown; there is: error");
+  if (o.metric != "error" && o.metric != "aqm")
+    throw InputError("--metric " + o.metric + ": unknown; there are: error, aqm");
+  tools::check_vision(o.vision, frames_given && tool.common().frames.size() > 1);
   if (o.reference.empty() == o.halves.empty())
     throw InputError("give the reference either as second file or as --reference-halves A B");
   if (o.own_halves && !o.halves.empty())
@@ -114,6 +125,7 @@ Comparison description(const tools::Tool& tool, const Options& o) {
   comparison.test = o.test;
   comparison.references = o.references();
   comparison.relative_to = o.smooth;
+  comparison.flow = o.vision.flow;
   comparison.layer = o.layer_or_rgb();
   comparison.mode = !o.halves.empty() ? ComparisonMode::reference_halves
                     : o.own_halves    ? ComparisonMode::own_halves
@@ -127,55 +139,102 @@ double relative_error(const Comparison& result) {
   return result.total.squared_error.root() > 0 ? INFINITY : 0;
 }
 
-int compare(tools::Tool& tool, const Options& o, bool frames_given) {
-  check(tool, o, frames_given);
-  std::optional<tools::Output> json, difference;
-  const auto difference_output = [&](std::optional<int> frame) {
-    return tools::Output(frame ? tools::frame_name(o.difference, *frame) : o.difference,
-                         tool.common().no_clobber);
-  };
-  std::vector<std::optional<int>> frames{std::nullopt};
-  if (frames_given) frames.assign(tool.common().frames.begin(), tool.common().frames.end());
-  if (!o.json.empty()) json.emplace(o.json, tool.common().no_clobber, tools::Output::Kind::text);
-  if (!o.difference.empty()) difference = difference_output(frames.front());
+/// What is written for each frame.
+class FrameOutputs {
+ public:
+  /// Creates the outputs of the first frame, so that an unwritable place is noticed before the work.
+  FrameOutputs(tools::Tool& tool, const Options& o, std::optional<int> first)
+      : scale(o.difference_scale), tool_(tool), o_(o) {
+    open(first);
+  }
+  /// Creates those of a later frame.
+  void open(std::optional<int> frame) {
+    difference_ = output(o_.difference, frame);
+    map_ = output(o_.vision.map, frame);
+  }
+  void write(const Compared& pair, std::optional<int> frame) {
+    if (difference_) write_difference(tool_, pair, frame, scale, std::move(*difference_));
+  }
+  void write(const JudgedFrame& judged, const tools::LoadedFrame& loaded, const VisionOptions& viewing,
+             std::optional<int> frame) {
+    if (map_) tools::write_map(tool_, judged, loaded, viewing, frame, std::move(*map_));
+  }
+  double scale;  ///< of the PNG of differences, chosen by the first frame
 
+ private:
+  std::optional<tools::Output> output(const std::string& name, std::optional<int> frame) {
+    if (name.empty()) return std::nullopt;
+    return tools::Output(frame ? tools::frame_name(name, *frame) : name, tool_.common().no_clobber);
+  }
+  tools::Tool& tool_;
+  const Options& o_;
+  std::optional<tools::Output> difference_, map_;
+};
+
+/// Reads, compares and writes all frames.
+Comparison compare_frames(tools::Tool& tool, const Options& o, const std::vector<std::optional<int>>& frames,
+                          FrameOutputs& outputs) {
   ComparisonBuilder builder(description(tool, o), o.min_object_pixels);
   tools::IdentityGuard identities(tool, o.allow_stale);
-  const tools::ComparedFiles names{o.test, o.references(), o.mask, o.layer_or_rgb(), o.smooth, o.except};
-  double scale = o.difference_scale;
+  const tools::ComparedFiles names{o.test,   o.references(), o.mask,       o.layer_or_rgb(),
+                                   o.smooth, o.except,       o.vision.flow};
+  std::optional<VisionOptions> viewing;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     tool.stats().phase("load");
     const tools::LoadedFrame loaded(tool, names, frames[i]);
     identities.check(loaded.inputs());
+    if (i) outputs.open(frames[i]);
     tool.stats().phase("compare");
     const Compared pair = compare_layers(loaded.inputs());
     builder.add(pair, frames[i].value_or(loaded.frame_number()), loaded.inputs().test.name);
+    if (o.needs_vision()) {
+      tool.stats().phase("vision");
+      if (!viewing) viewing = tools::vision_options(o.vision, loaded);
+      const JudgedFrame judged = judge_frame(pair, loaded.flow(), *viewing, loaded.inputs().test.name);
+      builder.add(judged.quality, *viewing);
+      outputs.write(judged, loaded, *viewing, frames[i]);
+    }
     tool.stats().phase("write");
-    if (difference && i) difference = difference_output(frames[i]);
-    if (difference) write_difference(tool, pair, frames[i], scale, std::move(*difference));
+    outputs.write(pair, frames[i]);
     tool.progress(double(i + 1) / double(frames.size()));
   }
-  const Comparison result = builder.finish();
+  return builder.finish();
+}
+
+/// The figure that --fail-above judges.
+double judged_figure(const Options& o, const Comparison& result) {
+  if (o.fail_by == "aqm") return result.quality->all.share();
+  return o.fail_by == "rmse" ? result.total.squared_error.root() : relative_error(result);
+}
+
+int compare(tools::Tool& tool, const Options& o, bool frames_given) {
+  check(tool, o, frames_given);
+  std::vector<std::optional<int>> frames{std::nullopt};
+  if (frames_given) frames.assign(tool.common().frames.begin(), tool.common().frames.end());
+  std::optional<tools::Output> json;
+  if (!o.json.empty()) json.emplace(o.json, tool.common().no_clobber, tools::Output::Kind::text);
+  FrameOutputs outputs(tool, o, frames.front());
+  const Comparison result = compare_frames(tool, o, frames, outputs);
 
   const std::string text = comparison_json(result);
   if (json) json->write(text.data(), text.size()), json->commit();
   tool.stats().count("frames", double(frames.size()));
   tool.stats().count("pixels", double(result.total.pixels));
   tool.stats().set("rmse", result.total.squared_error.root());
+  if (result.quality) tool.stats().set("aqm", result.quality->all.share());
   std::string table = comparison_text(result);
   char line[80];
-  std::snprintf(line, sizeof line, ": red +%g, blue -%g\n", scale, scale);
+  std::snprintf(line, sizeof line, ": red +%g, blue -%g\n", outputs.scale, outputs.scale);
   if (o.difference.ends_with(".png")) table += o.difference + line;
   if (!tool.common().quiet) std::fputs(table.c_str(), json && json->is_stdout() ? stderr : stdout);
-  const double judged = o.fail_by == "rmse" ? result.total.squared_error.root() : relative_error(result);
-  const bool fails = o.fail_above >= 0 && judged > o.fail_above;
-  return fails ? tools::exit_differs : tools::exit_ok;
+  return o.fail_above >= 0 && judged_figure(o, result) > o.fail_above ? tools::exit_differs : tools::exit_ok;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::Tool tool("aqm-compare", "Say how wrong a frame or a sequence is.", argc, argv);
+  tools::Tool tool("aqm-compare",
+                   "Say how wrong a frame or a sequence is, and whether a viewer would see it.", argc, argv);
   Options options;
   declare(tool, options);
   return tool.run([&] { return compare(tool, options, tool.app().get_option("--frames")->count() > 0); });

@@ -19,7 +19,9 @@
 #include "lib/render/frame_renderer.h"
 #include "lib/render/influence_channels.h"
 #include "lib/render/learn_lights.h"
+#include "tools/common/audit_input.h"
 #include "tools/common/base_frame.h"
+#include "tools/common/frame_account.h"
 #include "tools/common/frame_output.h"
 #include "tools/common/indirect_light.h"
 #include "tools/common/light_grid_file.h"
@@ -34,12 +36,12 @@ namespace {
 
 struct Options {
   std::string scene, output, integrator = "auto", compression = "zip", mask, base, lights;
-  std::vector<std::string> channels{"RGBA", "Z", "N", "id"};
+  std::vector<std::string> channels{"RGBA", "Z", "N", "id"}, audit;
   FrameOptions frame;
   tools::IndirectLightOptions light;
   double pixel_error = -1;
   bool half_float = false, learn_lights = false, keep_outliers = false;
-  int width = 640, height = 360;
+  int width = 640, height = 360, audit_paths = -1;
 
   bool only_learns() const { return output.ends_with(".lightgrid"); }
   bool traces_paths() const { return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty(); }
@@ -62,6 +64,7 @@ void count_work(tools::Tool& tool, const RenderedFrame& rendered, const Tracer& 
   stats.count("camera_rays", double(rendered.rays.camera));
   stats.count("bounce_rays", double(rendered.rays.bounce));
   stats.count("shadow_rays", double(rendered.rays.shadow));
+  stats.count("noise_rays", double(rendered.noise_rays.camera + rendered.noise_rays.bounce + rendered.noise_rays.shadow));
   stats.count("lookups", double(rendered.rays.lookups));
   stats.count("refused_rays", double(tracer.refused_ray_count()));
   stats.count("gathered_in_pixels", double(rendered.rays.gathered));
@@ -79,6 +82,34 @@ void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
   const std::string& name = frame.materials[smooth].name;
   tool.warn(frame.scene->path + ": materials" + (name.empty() ? "" : " \"" + name + "\"") +
             ": what point, spot and sun lights send by way of mirrors and smooth glass is missing: no path finds it; photons do (--photons)");
+}
+
+/// Paths that light is to be compared with. By themselves: where photons leave more than kUncertain of the picture's light open, kPathShare of the frame's camera rays; none where paths
+/// lack light that the frame has.
+std::size_t audit_path_count(const Options& options, const std::vector<AuditEntry>& by_photons, const SceneFrame& frame, const RenderedFrame& rendered) {
+  constexpr double kUncertain = 0.01, kPathShare = 0.02;
+  if (options.audit_paths >= 0) return std::size_t(options.audit_paths);
+  if (options.traces_paths() || (!frame.lights.empty() && first_smooth_material(frame) != kNone)) return 0;
+  const bool known = std::ranges::any_of(by_photons, [](const AuditEntry& entry) {
+    return entry.part == "picture" && entry.layer == Layer::indirect && entry.share_error() <= kUncertain;
+  });
+  return known ? 0 : std::size_t(kPathShare * double(rendered.rays.camera));
+}
+
+/// Bias of the frame's layers by splats of --audit; by paths as well where photons leave more than 1 % of the picture's light uncertain.
+std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const RenderScene& scene, const CameraView& view, const FrameOptions& frame_options,
+                              const RenderedFrame& rendered) {
+  if (options.audit.empty()) return {};
+  tool.stats().phase("audit", true);
+  Image ids{view.width(), view.height(), {}, {}, {}, {}};
+  add_data_channels(scene, view, {"id"}, {}, {}, ids);
+  FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
+  audit.add_splats(scene.tracer, tools::audit_photons(tool, options.audit, scene.frame(), scene.frame().frame));
+  const std::vector<AuditEntry> by_photons = audit.entries();
+  const std::size_t paths = audit_path_count(options, by_photons, scene.frame(), rendered);
+  if (paths == 0) return by_photons;
+  audit.add_paths(scene, frame_options, paths);
+  return audit.entries();
 }
 
 void render(tools::Tool& tool, tools::SceneInput& input, const Options& options, int number, StandingTree& standing) {
@@ -119,10 +150,10 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   frame_options.seed = tool.common().seed_for_frame(number);
   if (options.integrator != "path") frame_options.known = &light.get();
   frame_options.spread_outliers = !options.keep_outliers && options.integrator != "path";
-  frame_options.sample_halves = wants_sample_halves(options.channels);
   frame_options.progress = [&](double fraction) { tool.progress(fraction); };
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
+  const std::vector<AuditEntry> audited = audit(tool, options, scene, view, frame_options, rendered);
   tool.stats().phase("data channels", true);
   Image image{options.width, options.height, {}, {}, {}, {}};
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
@@ -131,14 +162,17 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   tool.stats().phase("write");
   const ExrWriteOptions exr{options.half_float, options.compression == "none" ? ExrWriteOptions::Compression::none
                                                                               : ExrWriteOptions::Compression::zip};
-  const tools::FrameDescription description{tools::identity_of(frame), light.history() + tool.history_line(number),
-                                            frame.frame, input.time().fps, view.world_to_camera(), view.world_to_ndc()};
+  const tools::FrameDescription description{tools::identity_of(frame), light.history() + tool.history_line(number), frame.frame, input.time().fps,
+                                            view.world_to_camera(), view.world_to_ndc(), tools::account_of(rendered, audited)};
   outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
   count_work(tool, rendered, tracer);
+  tools::say_account(tool, rendered, audited, frame_options);
 }
 
 constexpr std::size_t kMostViews = 8;
+/// One code of a pixel at the median, .18: its share of the pixel's radiance. The slope of the sRGB curve there is 255 x 1.055 / 2.4 x .18^(1 / 2.4 - 1) = 305 codes.
+constexpr double kPixelErrorOfCode = 1 / (305 * 0.18);
 
 /// Of all frames named the cameras, kMostViews of them at most, and of the one in the middle the scene.
 void learn(tools::Tool& tool, tools::SceneInput& input, const Options& options, const std::vector<int>& frames) {
@@ -202,6 +236,8 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
   options.light.photons_alone = options.integrator == "photons";
   tools::check_influence(options.light.influence);
+  if (options.audit_paths > 0 && options.audit.empty()) throw InputError("--audit-paths: name photons with --audit FILE");
+  if (options.audit_paths > 0 && options.traces_paths()) throw InputError("--audit-paths: paths would be compared with paths; leave it out");
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
@@ -214,7 +250,18 @@ void check(Options& options, const std::vector<int>& frames) {
   if (halves && options.frame.samples % 2 != 0) throw InputError("--spp: halves need an even number of samples");
   if (halves && options.pixel_error > 0)
     throw InputError("--pixel-error: halves take the same samples everywhere; leave out one");
+  if (halves && options.frame.seen_error > 0)
+    throw InputError("--seen-error: halves take the same samples everywhere; leave out one");
+  if (options.frame.seen_error > 0 && options.pixel_error < 0) options.frame.pixel_error = options.frame.seen_error * kPixelErrorOfCode;
+  if (options.frame.seen_error > 0 && !(options.frame.pixel_error > 0))
+    throw InputError("--pixel-error 0: --seen-error needs it to share samples out; leave it out");
   if (halves) options.frame.pixel_error = 0;
+  options.frame.sample_halves = wants_sample_halves(options.channels);
+  options.frame.independent_halves = wants_independent_halves(options.channels);
+  if (options.frame.independent_halves && options.frame.samples % 2 != 0)
+    throw InputError("--spp " + std::to_string(options.frame.samples) + ": the channels halves need an even number of samples");
+  if (options.frame.independent_halves && halves)
+    throw InputError("--channels halves and --halves or --target-error: halves are channels or files; leave out one");
   check_channels(options.channels);
 }
 
@@ -277,19 +324,29 @@ void add_options(tools::Tool& tool, Options& options) {
       ->check(tools::number_between(-1.0, 1.0));
   app.add_option("--pixel-limit", options.frame.adaptive_limit, "never more samples than this for --pixel-error")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
+  app.add_option("--seen-error", options.frame.seen_error,
+                 "more samples until the noise of the picture is below this, in 8-bit sRGB codes at the exposure that puts its median at .18; --pixel-error then "
+                 "only shares them out; 0: off")
+      ->capture_default_str()->check(tools::number_between(0.0, 255.0));
   app.add_flag("--for-filter", options.frame.for_filter,
                "the frame will be filtered by st-filter: --pixel-error counts noise of the layer specular alone, which passes it");
   app.add_flag("--keep-outliers", options.keep_outliers,
                "leave light that one sample alone claims where it is: with --pixel-error it is spread over the pixels around, which keeps each layer's sum; "
                "so does --integrator path");
   add_light_options(tool, options);
+  app.add_option("--audit", options.audit,
+                 ".photons file, or a pattern, or STATIC,DYNAMIC: say how far direct, caustic and indirect light are off, measured by these photons as the camera sees them")
+      ->delimiter(',')->type_name("FILES");
+  app.add_option("--audit-paths", options.audit_paths, "with --audit: camera rays of which paths find the light as well; -1: 2 % of all where photons leave more than 1 % of the picture's light uncertain")
+      ->capture_default_str()->check(tools::number_between(-1, 1 << 24));
   app.add_flag("--learn-lights", options.learn_lights,
                "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that; with -o FILE.lightgrid "
                "learn for the cameras of all frames named, write that and no frame");
   app.add_option("--lights", options.lights, ".lightgrid file, or a pattern: what --learn-lights has learned before, in place of learning it for each frame")
       ->type_name("FILE");
   app.add_flag("--halves", options.frame.halves,
-               "also write NAME_a.exr and NAME_b.exr: independent halves of spp/2 samples each");
+               "also write NAME_a.exr and NAME_b.exr: halves of spp/2 samples each, independent of each other and of frames without "
+               "--halves, of the same --seed too");
   app.add_option("--target-error", options.frame.target_error,
                  "double the samples until the estimated RMSE is below this fraction of the mean; 0: off")
       ->capture_default_str()->check(tools::number_between(0));
@@ -297,7 +354,7 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()->check(tools::number_between(1, 1 << 24));
   app.add_option("--channels", options.channels,
                  "RGBA, layers (or emission, specular, direct, caustic, indirect, volume), Z, N, P, id, albedo, motion, "
-                 "coverage, influence, variance, diffuse.variance, samples")
+                 "coverage, influence, variance, diffuse.variance, samples, halves")
       ->delimiter(',')->type_name("NAMES")->default_str("RGBA,Z,N,id");
   app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")
       ->type_name("FILE");

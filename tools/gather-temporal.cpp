@@ -39,8 +39,21 @@ struct Options {
 struct Chain {
   KeptHemispheres kept;
   std::optional<SceneFrame> before;   ///< none: nothing is kept
+  std::string places_hash;            ///< of the points that its anchors name
   tools::KeptFiles files;
+
+  void follow(SceneFrame frame, const tools::FramePoints& points) {
+    before.emplace(std::move(frame));
+    places_hash = points.places_hash;
+  }
 };
+
+/// Anchors are numbers of points: these must lie where those of the frame before lay.
+void check_points(const Chain& chain, const std::string& file, const tools::FramePoints& points) {
+  if (!chain.before || chain.places_hash.empty() || chain.places_hash == points.places_hash) return;
+  throw InputError(file + ": its " + std::to_string(points.anchored) + " points on what stands still lie elsewhere than those of frame " +
+                   std::to_string(chain.before->frame) + " before it; make the points of all frames of a segment with the same options");
+}
 
 void write_cache(const Options& options, const SceneFrame& frame, const RecordStore& store, const std::string& history, tools::Output& output) {
   formats::IrradcacheHeader header;
@@ -106,7 +119,7 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   if (resume && std::filesystem::is_regular_file(cache))
     if (std::optional<KeptHemispheres> found = chain.files.find(samples, frame, points, history, tools::nothing_kept(tool, samples))) {
       chain.kept = std::move(*found);
-      chain.before.emplace(std::move(frame));
+      chain.follow(std::move(frame), points);
       tool.say("frame " + std::to_string(number) + ": found");
       return;
     }
@@ -117,6 +130,7 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
     tools::read_kept(tool, input, options.previous, frame, points, chain.kept, chain.before);
   }
   if (chain.before && chain.before->segment.first != frame.segment.first) chain.before.reset();
+  check_points(chain, tools::frame_name(options.points, number), points);
   if (!chain.before) chain.kept = tools::nothing_kept(tool, samples);
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
@@ -151,7 +165,7 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
   chain.files.write(chain.kept, frame, points, history, kept_output);
   tool.stats().end_phase();
   count(tool, counts, number, !chain.before);
-  chain.before.emplace(std::move(frame));
+  chain.follow(std::move(frame), points);
 }
 
 void check(const CLI::App& app, const Options& options, const std::vector<int>& frames) {

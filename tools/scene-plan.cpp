@@ -20,6 +20,7 @@
 #include "lib/core/parallel.h"
 #include "lib/plan/estimate.h"
 #include "tools/common/option_words.h"
+#include "tools/common/percent_option.h"
 #include "tools/common/pilot.h"
 #include "tools/common/planning.h"
 #include "tools/common/tidy.h"
@@ -64,7 +65,7 @@ Wish wish_of(const tools::Tool& tool, const Options& options) {
     if (i == 0 || (shared[i - 1] != "--environment" && shared[i - 1] != "--volume")) wish.common += shared[i] + '\n';
   for (const auto& [name, words] : {std::pair{"--point-words", wish.points}, {"--record-words", wish.records}, {"--pixel-words", wish.pixels},
                                     {"--channels", wish.channels}, {"--texture-words", wish.texture_words}, {"--smoke-words", wish.smoke_words},
-                                    {"--update", wish.update}, {"--strategy", wish.strategy}})
+                                    {"--update", wish.update}, {"--refine", wish.refine}, {"--strategy", wish.strategy}})
     tools::check_words(name, words);
   const std::vector<int>& frames = tool.common().frames;
   if (options.report == "ends") wish.report = {frames.front(), frames.back()};
@@ -128,10 +129,12 @@ void add_wishes(tools::Tool& tool, Options& options) {
   words("--smoke-words", wish.smoke_words, "options of volume-compose");
   app.add_flag("--textures", wish.textures, "in smoke: indirect light of surfaces by light textures");
   app.add_option("--update", wish.update, "in smoke: trace this share of each photon map anew, keep the rest, such as 10%")->type_name("SHARE");
+  app.add_option("--refine", wish.refine, "in smoke: further paths for each map where light in the smoke is noisy, as a share of its paths, such as 5%")
+      ->type_name("SHARE");
   app.add_option("--strategy", wish.strategy, "which groups of photons --update takes, as photon-trace --strategy")->capture_default_str();
   app.add_option("--key-distance", wish.key_distance, "frames between the first keys of a walkthrough")->capture_default_str()->check(tools::number_between(2, 1000));
-  app.add_option("--threshold", wish.threshold, "relMSE between two keys above which an interval is halved; 0: the preset's")->capture_default_str()
-      ->check(tools::number_between(0, 100));
+  app.add_option("--halve-above", wish.threshold, "relMSE between two keys above which an interval is halved; 5%: AQM, the share seen to differ; 0: the preset's")
+      ->capture_default_str()->check(tools::number_between(0, 100))->transform(tools::percent([&] { wish.threshold_of_seen = true; }));
   app.add_option("--report", options.report, "frames to compare with path tracing; ends: the first and the last")->type_name("FRAMES");
   app.add_option("--reference-samples", wish.reference_samples, "samples of a pixel of what they are compared with")->capture_default_str()
       ->check(tools::number_between(2, 1 << 20));

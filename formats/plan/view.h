@@ -1,4 +1,4 @@
-// formats/plan/view.h -- state/view.SSSS: the spheres that hold what cameras see (plan.md, "Views").
+// formats/plan/view.h -- state/SSSS-KEY.view: the spheres that hold what cameras see (plan.md, "Views").
 #pragma once
 
 #include <array>

@@ -20,7 +20,7 @@
 #include <thread>
 
 #include "formats/error.h"
-#include "lib/core/module_folders.h"
+#include "lib/core/machine_memory.h"
 
 namespace tempolux {
 namespace {
@@ -202,6 +202,9 @@ std::string ending(int status, const std::string& words, const ChildLimits& limi
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     if (signal == SIGXCPU) return "took more than " + std::to_string(limits.processor_s) + " s of processor time";
+    if (signal == SIGSYS)
+      return "was ended by its guard: it asked the system for more than reading needs, such as to open a file or a socket. "
+             "Data that does so is damaged or made to do harm; use a copy that you trust";
     const char* name = ::sigdescr_np(signal);
     return "died by signal " + std::to_string(signal) + (name ? " (" + std::string(name) + ")" : "");
   }
@@ -277,15 +280,21 @@ class Exchange {
 
 }  // namespace
 
-std::string helper_program(const std::string& name, const std::string& purpose) {
+std::uint64_t memory_that_fits(std::uint64_t wanted) {
+  constexpr std::uint64_t least = 512ull << 20;
+  return std::min(wanted, std::max(least, machine_memory() / 2));
+}
+
+std::string helper_program(const std::string& name, const std::string& purpose, const std::string& remedy,
+                           const std::vector<std::string>& folders) {
   std::string looked;
-  for (const std::string& folder : default_module_folders()) {
+  for (const std::string& folder : folders) {
     std::error_code ignored;
     if (std::filesystem::is_regular_file(folder + "/" + name, ignored)) return folder + "/" + name;
     looked += (looked.empty() ? "" : ", ") + folder;
   }
   throw InputError(purpose + " needs " + name + ", which was not built or not installed (looked in " + looked +
-                   "); install all of tempolux together");
+                   "); " + remedy);
 }
 
 ChildResult run_child(const std::string& program, const std::vector<std::string>& arguments,

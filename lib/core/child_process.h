@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "lib/core/module_folders.h"
+
 namespace tempolux {
 
 /// What a helper may use. Each has a value that is right for a small job; large ones say how much they need.
@@ -27,15 +29,23 @@ struct ChildLimits {
 struct ChildResult {
   std::vector<unsigned char> output;  ///< all that it printed, also when it died: its work so far
   /// Why the output is not whole, as the end of a sentence that begins with the helper's name: "died by signal 11
-  /// (Segmentation fault)", "took more than 60 s of processor time", "printed more than 1024 bytes", "ended with code 1",
+  /// (Segmentation fault)", "was ended by its guard ...", "took more than 60 s of processor time", "printed more than 1024 bytes", "ended with code 1",
   /// or the first line that it wrote to its standard error when it ended with another code than 0. Empty: it ended with
   /// code 0.
   std::string trouble;
 };
 
+/// The memory that a helper may have by default: `wanted`, but at most half of what this process may fill (the machine's memory,
+/// or the limit of a container), as what the helper prints lies in this process at the same time. At least 512 MiB, since
+/// RLIMIT_AS counts libraries too, which stay on disk. So a file that claims to need more than there is ends its helper, not
+/// the machine.
+std::uint64_t memory_that_fits(std::uint64_t wanted);
+
 /// Path of a helper program that was installed or built with this one. Throws InputError "PURPOSE needs NAME, which was not
-/// built or not installed (looked in ...); install all of tempolux together".
-std::string helper_program(const std::string& name, const std::string& purpose);
+/// built or not installed (looked in ...); REMEDY".
+std::string helper_program(const std::string& name, const std::string& purpose,
+                           const std::string& remedy = "install all of tempolux together",
+                           const std::vector<std::string>& folders = default_module_folders());
 
 /// Runs a program to its end: writes `input` to its standard input, closes that, reads its standard output and standard
 /// error, waits. The program gets `arguments` after its name, this process's environment, no other open files, and default
@@ -50,7 +60,8 @@ std::string helper_program(const std::string& name, const std::string& purpose);
 /// ends without reading all input, the rest is dropped: the output says whether it knew enough.
 ///
 /// Throws ResourceError if no process can be started or the result does not fit memory. In builds with address or thread
-/// sanitizers memory is not limited: these take terabytes of address space themselves.
+/// sanitizers memory is not limited: these take terabytes of address space themselves. Helpers give up opening files, sockets
+/// and programs by themselves (modules/guard.h); one that tries to is ended by SIGSYS.
 ChildResult run_child(const std::string& program, const std::vector<std::string>& arguments,
                       std::span<const unsigned char> input, const ChildLimits& limits);
 

@@ -40,7 +40,7 @@ ChildLimits limits_for(const std::vector<PackedPiece>& pieces) {
     limits.output_bytes += piece.unpacked_bytes;
     largest = std::max(largest, 2 * piece.bytes.size() + 20 * piece.unpacked_bytes);
   }
-  limits.memory_bytes = (256ull << 20) + largest;
+  limits.memory_bytes = memory_that_fits((256ull << 20) + largest);
   limits.processor_s = int(std::min<std::uint64_t>(20 + limits.output_bytes / 1'000'000, 3600));
   limits.wall_s = 60 + 5 * limits.processor_s;
   return limits;

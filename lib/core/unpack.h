@@ -46,7 +46,7 @@ inline constexpr std::uint32_t kUnpackVersion = 1;
 /// Its limits follow from the sizes: memory 256 MiB, twice the packed and 20 times the unpacked bytes of the largest piece
 /// (Draco takes most: 6 times, on a sphere of 10^6 triangles with normals and texture coordinates; some 12 times with indices
 /// of 16 bits and positions alone); processor time 20 s and one second per unpacked MB (Draco is the slowest: 65 MB in a
-/// second).
+/// second). Never more memory than fits the machine (memory_that_fits).
 ///
 /// Throws InputError "PLACE: WHAT; REMEDY" for the first piece that the helper cannot unpack or on which it dies, or if the
 /// helper is missing; ResourceError if it cannot be started.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 #include <unordered_set>
 
 #include "lib/core/parallel.h"
@@ -18,6 +19,7 @@ namespace {
 /// Sites of a point. Those of a spot are drawn from at random: with 16 of them a cell of points is known to some per cent.
 constexpr double kSitesPerPoint = 16;
 constexpr float kFadeFrom = 4, kFadeTo = 6;   ///< radii R
+constexpr float kCellsPerReach = 8;           ///< of photons that no point stands for, in kBesideLamp spacings
 
 /// Cubes in which a point that is asked for may be.
 class NearPoints {
@@ -46,6 +48,17 @@ class NearPoints {
   std::unordered_set<std::uint64_t> cubes_;   ///< by hash: one too many costs a look-up
 };
 
+/// A cube, and the axis that the normal is nearest to.
+std::uint64_t cell_of(const LampPhoton& photon, float per_metre) {
+  std::uint64_t key = 0;
+  int axis = 0;
+  for (int a = 0; a < 3; ++a) {
+    key = mix64(key ^ std::uint64_t(std::int64_t(std::floor(std::clamp(photon.place.position[a] * per_metre, -1e15f, 1e15f)))));
+    if (std::abs(photon.normal[a]) > std::abs(photon.normal[axis])) axis = a;
+  }
+  return mix64(key ^ std::uint64_t(2 * axis + (photon.normal[axis] > 0)));
+}
+
 }  // namespace
 
 BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::vector<float> high_shares,
@@ -54,11 +67,21 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
       points_(points),
       high_(std::move(high_shares)),
       near_factor_(options.near_factor),
-      radius_(points.spacing() * std::sqrt(kInvPi)) {
+      radius_(points.spacing() * std::sqrt(kInvPi)),
+      lamp_reach_(kBesideLamp * points.spacing()) {
+  high_.resize(points.size(), 0.0f);
   // Rays go on from where a point's indirect light is not that of the hit: what they find there is not the point's light, so that no share of it
-  // may be sampled explicitly.
+  // may be sampled explicitly. Beside a lamp direct light has a division of its own.
   for (std::uint32_t i = 0; i < high_.size(); ++i)
-    if (high_[i] > 0 && !points.is_even_indirect(points.light(i))) high_[i] = 0;
+    if (high_[i] > 0 && (points.light(i).beside_lamp || !points.is_even_indirect(points.light(i)))) high_[i] = 0;
+  if (std::ranges::any_of(high_, [](float share) { return share > 0; })) place_high(lights, options);
+  place_lamp_light(options.beside_lamps);
+  gather_spots();
+}
+
+/// Sites of the points that have a high part.
+void BrightPoints::place_high(const Lights& lights, const BrightOptions& options) {
+  const PointLookup& points = points_;
   // A point stands for places up to PointLookup::kReach spacings away.
   NearPoints near(PointLookup::kReach * points.spacing());
   std::vector<std::uint32_t> objects;
@@ -74,7 +97,7 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
   const double spacing = double(points.spacing());
   // May be asked for: up to a cube of `near` beyond them. The pieces of a sphere cover all within 3/4 of its radius.
   const AimSphere around{Vec3d(box.lower + box.upper) * 0.5, (0.5 * double(length(box.upper - box.lower)) + 4 * double(PointLookup::kReach) * spacing) / 0.75, 1};
-  const std::vector<PlacedSite> placed = place_sites(tracer.frame(), objects, around, spacing * spacing / kSitesPerPoint, options.seed,
+  const std::vector<PlacedSite> placed = place_sites(tracer_.frame(), objects, around, spacing * spacing / kSitesPerPoint, options.seed,
                                                      [&](Vec3 position) { return near.may_hold(position); });
   std::vector<std::optional<Site>> found(placed.size());
   parallel_chunks(placed.size(), 256, [&](std::size_t first, std::size_t last) {
@@ -82,17 +105,32 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
   });
   for (std::optional<Site>& site : found)
     if (site) sites_.push_back(std::move(*site));
-  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.point < b.point; });
+  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.spot < b.spot; });
   std::vector<std::uint32_t> uneven;
   for (std::uint32_t i = 0; i < sites_.size(); ++i)
     if (!points.is_even(*points.find(sites_[i].place.position, sites_[i].normal))) uneven.push_back(i);
   sample_uneven(lights, uneven, options);
+}
 
+/// Sites of lamps' photons.
+void BrightPoints::place_lamp_light(std::span<const LampPhoton> photons) {
+  std::unordered_map<std::uint64_t, std::uint32_t> cells;   // of places for which no point stands
+  for (const LampPhoton& photon : photons) {
+    std::uint32_t spot = photon.point;
+    if (spot == kNone)
+      spot = std::uint32_t(high_.size()) + cells.emplace(cell_of(photon, kCellsPerReach / lamp_reach_), std::uint32_t(cells.size())).first->second;
+    sites_.push_back({photon.place, photon.normal, photon.flux, photon.bsdf, 0, 1, spot, photon.lamp_distance});
+  }
+}
+
+/// Sites of one point become a spot.
+void BrightPoints::gather_spots() {
+  std::stable_sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) { return a.spot < b.spot; });
   std::vector<LightBounds> spots;
   for (std::size_t i = 0, end = 0; i < sites_.size(); i = end) {
     LightBounds spot;
-    spot.axis = points.points()[sites_[i].point].normal;
-    for (end = i; end < sites_.size() && sites_[end].point == sites_[i].point; ++end) {
+    spot.axis = sites_[i].spot < high_.size() ? points_.points()[sites_[i].spot].normal : sites_[i].normal;
+    for (end = i; end < sites_.size() && sites_[end].spot == sites_[i].spot; ++end) {
       const Site& site = sites_[end];
       spot.box.add(site.place.position);
       spot.cos_spread = std::min(spot.cos_spread, dot(site.normal, spot.axis));
@@ -138,14 +176,26 @@ void BrightPoints::sample_uneven(const Lights& lights, const std::vector<std::ui
   update_direct(tracer_, lights, nullptr, sampling, sampled);
   for (std::size_t i = 0; i < uneven.size(); ++i) {
     Site& site = sites_[uneven[i]];
-    const IrradiancePoint& point = points_.points()[site.point];
-    site.irradiance = (point.indirect + point.caustic + sampled[i].direct) * high_[site.point];
+    const IrradiancePoint& point = points_.points()[site.spot];
+    site.irradiance = (point.indirect + point.caustic + sampled[i].direct) * high_[site.spot];
   }
 }
 
 float BrightPoints::explicit_share(float distance) const {
   const float t = std::clamp((distance / radius_ - kFadeFrom) / (kFadeTo - kFadeFrom), 0.0f, 1.0f);
   return t * t * (3 - 2 * t);
+}
+
+/// The same of a lamp's light: w of a spot whose radius is the lamp's distance.
+float BrightPoints::lamp_share(float distance, float lamp_distance) {
+  const float t = std::clamp((distance / lamp_distance - kFadeFrom) / (kFadeTo - kFadeFrom), 0.0f, 1.0f);
+  return t * t * (3 - 2 * t);
+}
+
+/// Of a site's light at `distance` m.
+float BrightPoints::share(const Site& site, float distance, bool reads_near) const {
+  if (site.lamp_distance > 0) return lamp_share(distance, site.lamp_distance);
+  return explicit_share(distance) * (reads_near ? 1 : share_of_far(site, distance));
 }
 
 /// Probability that a ray which meets the site reads its point (IncomingRadiance: nearer than near_factor radii x a number from 1/2
@@ -179,12 +229,12 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
     const double distance = length(d), here = dot(n, d), there = -dot(m, d);   // cosines x distance
     const Vec3 wi(d * (1 / std::max(distance, 1e-300)));
     if (!(here > 0 && there > 0 && dot(wi, geometric) > 0)) continue;
-    const float share = explicit_share(float(distance)) * (at.reads_near ? 1 : share_of_far(site, float(distance)));
-    if (!(share > 0)) continue;
+    const float part = share(site, float(distance), at.reads_near);
+    if (!(part > 0)) continue;
     ++counts.shadow_rays;
     const Ray shadow = spawn_shadow_ray(place, site.place.position, site.place.offset);
     if (tracer_.occluded(shadow)) continue;
-    Rgbd seen(radiance(site, -wi) * share);
+    Rgbd seen(radiance(site, -wi) * part);
     if (media) [[unlikely]]
       seen *= double(media_transmittance(*media, shadow, {random, number, way_shadow}));
     const double d2 = distance * distance, cosine = here / distance;

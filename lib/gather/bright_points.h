@@ -4,10 +4,12 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "lib/core/random.h"
 #include "lib/gather/incoming_radiance.h"
+#include "lib/gather/lamp_light.h"
 #include "lib/irradcache/points.h"
 #include "lib/irradcache/records.h"
 #include "lib/light/light_tree.h"
@@ -21,6 +23,7 @@ struct BrightOptions {
   std::uint64_t seed = 0;
   float near_factor = 2;     ///< GatherOptions::near_factor
   int light_samples = 16;    ///< shadow rays of a site where a point's direct light is not that of the places near it
+  std::span<const LampPhoton> beside_lamps = {};   ///< of lamps beside surfaces; their points are noted (PointLookup::note_lamp)
 };
 
 /// Light from bright points that arrives at a place.
@@ -43,6 +46,10 @@ struct BrightLight {
 ///
 /// The explicit part is an integral over surfaces, of h w L cos cos / l^2. It is sampled at sites: places uniform by area, 16 for each
 /// point, each with the light of the point that stands for it. The sites of a point are a spot; spots are drawn as lamps are (LightTree).
+///
+/// So is direct light of lamps beside surfaces, which light spots smaller than points can hold (lamp_light.h). Of the light of a place z on a lamp that
+/// reaches y, d = |z - y| below kBesideLamp spacings, the share w is explicit with d for R: from 4 d on. Where a point beside a lamp stands for y rays
+/// sample direct light, as they do where none stands for it, and bring 1 - w of such samples. Sites are photons from the lamps: as dense as the light, however small its spot.
 /// Thread-safe.
 class BrightPoints {
  public:
@@ -60,6 +67,11 @@ class BrightPoints {
   }
   /// w.
   float explicit_share(float distance) const;
+  /// Share of the direct light of a lamp `lamp_distance` m from a place y that rays bring which meet y at `distance` m. 1 where the point that stands for
+  /// y is not beside a lamp; nullptr: none stands for y.
+  float left_of_lamp(const PointLookup::Light* point, float distance, float lamp_distance) const {
+    return (!point || point->beside_lamp) && lamp_distance < lamp_reach_ ? 1 - lamp_share(distance, lamp_distance) : 1.0f;
+  }
 
   /// A place that looks at bright points.
   struct Receiver {
@@ -78,8 +90,9 @@ class BrightPoints {
     Rgb irradiance{0.0f};    ///< W/m^2: the high part
     Bsdf bsdf;
     float radius;            ///< m: of the estimate behind its point
-    float area;              ///< m^2
-    std::uint32_t point;
+    float area;              ///< m^2; of a photon 1, as its flux stands for irradiance x area
+    std::uint32_t spot;      ///< its point, or beyond all points that of a cell of photons
+    float lamp_distance = 0; ///< m: of a lamp's photon; 0: light of the point
   };
   struct Sites {
     std::uint32_t first, count;
@@ -87,12 +100,17 @@ class BrightPoints {
   std::optional<Site> site_at(const IrradiancePoint& place, float area) const;
   void sample_uneven(const Lights& lights, const std::vector<std::uint32_t>& uneven, const BrightOptions& options);
   float share_of_far(const Site& site, float distance) const;
+  float share(const Site& site, float distance, bool reads_near) const;
+  static float lamp_share(float distance, float lamp_distance);
+  void place_high(const Lights& lights, const BrightOptions& options);
+  void place_lamp_light(std::span<const LampPhoton> photons);
+  void gather_spots();
   Rgb radiance(const Site& site, Vec3 wo) const;
 
   const Tracer& tracer_;
   const PointLookup& points_;
   std::vector<float> high_;
-  float near_factor_, radius_;
+  float near_factor_, radius_, lamp_reach_;
   std::vector<Site> sites_;          ///< those of one spot side by side
   std::vector<Sites> sites_of_;      ///< by spot
   std::optional<LightTree> tree_;    ///< spots

@@ -9,6 +9,7 @@
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
 #include "lib/density/photon_reach.h"
+#include "lib/gather/gather_directions.h"
 #include "lib/material/seen_side.h"
 
 namespace tempolux {
@@ -218,17 +219,66 @@ FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   return {2 * radius, disc(2 * radius)};
 }
 
+/// A photon whose light falls on the place if it reaches it.
+struct FootprintDensity::Candidate {
+  std::uint32_t photon;
+  Rgbd irradiance;      ///< W/m^2
+  double importance;    ///< >= 0: its channels' sum
+};
+
+/// Light of those of the candidates that reach a place, by options_.asked of them: drawn by importance, evenly spaced along their sum `whole`.
+Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const {
+  const auto reaches = [&](std::uint32_t photon) { return area_.reach()(index_.position(photon), normal_of(photon), position, normal); };
+  Rgbd sum{0.0};
+  if (options_.asked == 0 || candidates.size() <= std::size_t(options_.asked)) {
+    for (const Candidate& c : candidates)
+      if (reaches(c.photon)) sum += c.irradiance;
+    return sum;
+  }
+  const double step = whole / options_.asked;
+  double next = step * double(PathRandom(0x61736b6564ull, gather_key(position, normal, 0)).get1(0, Purpose::points)), passed = 0;
+  for (const Candidate& c : candidates) {
+    int times = 0;
+    for (passed += c.importance; next < passed; next += step) ++times;
+    if (times > 0 && reaches(c.photon)) sum += c.irradiance * (times * step / c.importance);
+  }
+  return sum;
+}
+
+/// Of the footprints that cover a place.
+struct FootprintDensity::Extents {
+  bool widest = false;   ///< all that come within the margin have the largest radius
+  float inside = 0;      ///< m: so far from the border of one of them, at most
+};
+
 Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const {
+  Extents extents;
+  const Rgb irradiance = estimate(position, surface, extents);
+  smooth_over = extents.widest ? options_.max_radius : 0;
+  return irradiance;
+}
+
+Rgb FootprintDensity::estimate_around(Vec3 position, const LitSurface& surface, float& alike_within) const {
+  Extents extents;
+  const Rgb irradiance = estimate(position, surface, extents);
+  alike_within = extents.inside / 9;
+  return irradiance;
+}
+
+Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, Extents& extents) const {
   const Vec3 normal = surface.geometric;
-  smooth_over = 0;
   if (empty()) return Rgb(0.0f);
   thread_local std::vector<Covering> covering;
   covering.clear();
-  bool smooth = find_covering(position, normal, covering) && !covering.empty();
+  extents.widest = find_covering(position, normal, covering) && !covering.empty();
+  thread_local std::vector<Candidate> candidates;
+  candidates.clear();
   Rgbd sum{0.0};
+  double whole = 0;
   for (const auto [photon, distance2] : covering) {
     const auto [radius, inverse_area] = extent_of(photon);
-    smooth = smooth && radius > kAlmost * options_.max_radius;
+    extents.widest = extents.widest && radius > kAlmost * options_.max_radius;
+    extents.inside = std::max(extents.inside, radius - std::sqrt(distance2));
     double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
     if (!(weight > 0)) continue;   // it has become smaller
     if (directed_) weight *= double(received_share(arriving_from_[photon], normal_of(photon), surface));
@@ -236,10 +286,16 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, float& 
     const Vec3 from = index_.position(photon), from_normal = normal_of(photon);
     const bool in_plane =
         inverse_area < 0 && std::abs(dot(position - from, from_normal)) < 4 * area_.offset() + kLift * radius;
-    if (in_plane || area_.reach()(from, from_normal, position, normal))
-      sum += Rgbd(index_.flux(photon)) * (weight * double(std::abs(inverse_area)));
+    const Rgbd irradiance = Rgbd(index_.flux(photon)) * (weight * double(std::abs(inverse_area)));
+    if (in_plane) {
+      sum += irradiance;
+      continue;
+    }
+    const double importance = std::abs(irradiance.r) + std::abs(irradiance.g) + std::abs(irradiance.b);
+    candidates.push_back({photon, irradiance, importance});
+    whole += importance;
   }
-  if (smooth) smooth_over = options_.max_radius;
+  if (!candidates.empty()) sum += of_asked(position, normal, candidates, whole);
   return Rgb(sum);
 }
 

@@ -185,15 +185,12 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
       ++to.counts.points_read;
       const bool even = points_.is_even(*point);
       if (source) source->partial |= !even;
-      result = scale * (even ? point->all : beside_edge(met, *point, random, to.counts));
+      result = scale * (even ? point->all : beside_edge(met, *point, from.low, random, to.counts));
       if (from.low) result *= bright_->left(*point, met.distance);
-      if (const float told = channel_sum(from.weight * result); source && source->near && told > source->told)
-        source->point = point->point, source->told = told;
     } else {
       const Rgb kept = scale * (from.low && point && !near ? bright_->left(*point, met.distance) : 1.0f);
       result = kept * scattered(met, point, from, kept, random, depth, to);
       if (source) source->partial = true;
-      if (source && depth == 0 && point) source->near = true, source->told = channel_sum(result);
     }
   }
   if (!specular || depth >= kDeepest) return result;
@@ -287,7 +284,7 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   Rgb irradiance{0.0f};
   if (point) irradiance = points_.point(*point).caustic;
   if (point && points_.is_even(*point) && met.distance >= points_.spacing() * threshold(random)) irradiance += points_.point(*point).direct;
-  else irradiance += sampled_light(met, side, random, to.counts);
+  else irradiance += sampled_light(met, side, point, from.low, random, to.counts);
   if (bright_) {
     const Bsdf* const coat = met.bsdf->has_specular() ? met.bsdf : nullptr;
     irradiance += Rgb(bright_->arriving({met.hit, side.normal, coat, true}, 1, random, to.counts).irradiance);
@@ -306,25 +303,30 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   return irradiance;
 }
 
-/// Direct irradiance at a hit by one light sample.
-Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PathRandom& random, GatherCounts& counts) const {
+/// Direct irradiance at a hit by one light sample; point: that stands for it, if any. low: light of lamps beside it is sampled explicitly where the ray
+/// comes from (BrightPoints::left_of_lamp).
+Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PointLookup::Light* point, bool low,
+                                    const PathRandom& random, GatherCounts& counts) const {
   LightSample light;
   if (lights_.empty() || !lights_.sample(met.hit.position, side.normal, random.get1(1, Purpose::light_choice),
                                          random.get2(1, Purpose::light_point), light) || !side.sees(light.wi))
     return Rgb(0.0f);
+  const float left = low && !light.distant ? bright_->left_of_lamp(point, met.distance, length(light.position - met.hit.position)) : 1.0f;
+  if (!(left > 0)) return Rgb(0.0f);
   ++counts.shadow_rays;
   const Ray shadow = spawn_shadow_ray(met.hit, light.position, light.position_offset);
   if (tracer_.occluded(shadow)) return Rgb(0.0f);
   if (const Media* const media = tracer_.frame().media.get()) [[unlikely]]
     light.radiance *= media_transmittance(*media, shadow, {random, 1, way_shadow});
   const float cosine = dot(light.wi, side.normal);
-  return light.radiance * (cosine * met.bsdf->arrival_weight(cosine));
+  return light.radiance * (left * cosine * met.bsdf->arrival_weight(cosine));
 }
 
 /// Irradiance at a hit where the point's direct light is not its own.
-Rgb IncomingRadiance::beside_edge(const Met& met, const PointLookup::Light& light, const PathRandom& random, GatherCounts& counts) const {
+Rgb IncomingRadiance::beside_edge(const Met& met, const PointLookup::Light& light, bool low, const PathRandom& random,
+                                  GatherCounts& counts) const {
   const IrradiancePoint& point = points_.point(light);
-  return point.indirect + point.caustic + sampled_light(met, SeenSide(met.hit, met.wo), random, counts);
+  return point.indirect + point.caustic + sampled_light(met, SeenSide(met.hit, met.wo), &light, low, random, counts);
 }
 
 }  // namespace tempolux

@@ -26,13 +26,11 @@ struct GatherCounts {
 
 /// What the radiance along a ray follows from, for whoever keeps it.
 struct RadianceSource {
-  /// The irradiance point that stands for the first hit, if it has a Lambert lobe and one does. Of a hit near by, from which a ray goes
-  /// on: that which told most of the radiance, beside that hit or where the ray came to.
+  /// The irradiance point that stands for the first hit, if it has a Lambert lobe and one does; of a hit near by, from which a ray goes
+  /// on, too: the choice must not depend on the light (docs/methods/temporal.md).
   std::uint32_t point = kNone;
   bool partial = false;          ///< there is more to the radiance than that point's light times a constant
   bool mover = false;            ///< a surface on the way moves in the segment
-  bool near = false;             ///< the first hit is near by
-  float told = 0;                ///< W/m^2/sr, over channels: by that point, if near
 };
 
 struct MediumPoint;    // lib/gather/medium_event.h
@@ -75,8 +73,8 @@ class IncomingRadiance {
                 int depth, const Gathered& to) const;
   static float threshold(const PathRandom& random);
   bool is_near(const Met& met, const PointLookup::Light& point, const PathRandom& random) const;
-  Rgb beside_edge(const Met& met, const PointLookup::Light& light, const PathRandom& random, GatherCounts& counts) const;
-  Rgb sampled_light(const Met& met, const struct SeenSide& side, const PathRandom& random, GatherCounts& counts) const;
+  Rgb beside_edge(const Met& met, const PointLookup::Light& light, bool low, const PathRandom& random, GatherCounts& counts) const;
+  Rgb sampled_light(const Met& met, const struct SeenSide& side, const PointLookup::Light* point, bool low, const PathRandom& random, GatherCounts& counts) const;
 
   const Tracer& tracer_;
   const Lights& lights_;

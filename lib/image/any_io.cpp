@@ -3,23 +3,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <new>
+#include <cstring>
+#include <optional>
 #include <string_view>
 
 #include "formats/error.h"
+#include "lib/core/child_process.h"
 #include "lib/image/byte_file.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/hdr_io.h"
-#include "lib/image/module.h"
+#include "lib/image/image_pipe.h"
 #include "lib/image/png_io.h"
 #include "lib/image/srgb.h"
 
 namespace tempolux {
 namespace {
 
-constexpr const char* kModuleFile = "tempolux-oiio.so";
+constexpr const char* kHelper = "tempolux-oiio";
+constexpr std::uint64_t kLibraries = 2ull << 30;   ///< address space of OpenImageIO and its 261 libraries, with room to spare
 
-/// "exr", "hdr", "png", or OpenImageIO's name of a format the module may open; "" for everything else.
+/// "exr", "hdr", "png", or OpenImageIO's name of a format the helper may open; "" for everything else.
 std::string format_of(const ByteFile& file) {
   std::array<char, 11> start{};
   file.read_at(0, start.data(), std::size_t(std::min<std::uint64_t>(start.size(), file.size())));
@@ -33,32 +36,10 @@ std::string format_of(const ByteFile& file) {
   return "";
 }
 
-ImageModuleEntry* find_module(const std::string& path, const std::string& format,
-                              const std::vector<std::string>& folders) {
-  return reinterpret_cast<ImageModuleEntry*>(
-      module_symbol(kModuleFile, kImageModuleSymbol, folders, path + ": reading " + format,
-                    "build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG"));
-}
-
-/// What the module fills.
+/// What the helper prints.
 struct Interleaved {
   std::vector<float> samples;
   int width = 0, height = 0, channels = 0, bits = 0;
-
-  static float* allocate(void* user, std::int32_t width, std::int32_t height, std::int32_t channels,
-                         std::int32_t bits) {
-    auto& self = *static_cast<Interleaved*>(user);
-    self.width = width;
-    self.height = height;
-    self.channels = channels;
-    self.bits = bits;
-    try {
-      self.samples.resize(std::size_t(width) * std::size_t(height) * std::size_t(channels));
-    } catch (const std::bad_alloc&) {
-      return nullptr;
-    }
-    return self.samples.data();
-  }
 };
 
 Image to_image(const std::string& path, const std::string& format, const Interleaved& from) {
@@ -85,22 +66,44 @@ Image to_image(const std::string& path, const std::string& format, const Interle
   return image;
 }
 
-Image load_by_module(const std::string& path, const std::string& format, const ImageReadOptions& options) {
-  ImageModuleEntry* entry = find_module(path, format, options.module_folders);
-  Interleaved pixels;
-  ImageModuleRequest request{};
-  request.abi = kImageModuleAbi;
-  request.path = path.c_str();
-  request.format = format.c_str();
-  request.max_pixels = options.max_pixels;
-  request.max_channels = 4;
-  request.allocate = Interleaved::allocate;
-  request.user = &pixels;
-  const std::int32_t result = entry(&request);
-  const std::string message = path + ": " + format + ": " + one_line(request.message);
-  if (result == image_module_no_memory) throw ResourceError(message);
-  if (result != image_module_ok) throw InputError(message);
-  return to_image(path, format, pixels);
+std::vector<unsigned char> request_for(const std::string& path, const std::string& format, std::uint64_t max_pixels) {
+  ImagePipeAsk ask;
+  std::ranges::copy(format, ask.format.begin());
+  ask.max_pixels = max_pixels;
+  ask.max_channels = 4;
+  std::vector<unsigned char> request(sizeof ask + path.size());
+  std::memcpy(request.data(), &ask, sizeof ask);
+  std::memcpy(request.data() + sizeof ask, path.data(), path.size());
+  return request;
+}
+
+/// Of what the helper printed; nothing of it is believed.
+std::optional<Interleaved> parse(const std::vector<unsigned char>& printed, std::uint64_t max_pixels) {
+  ImagePipeHead head;
+  if (printed.size() < sizeof head) return {};
+  std::memcpy(&head, printed.data(), sizeof head);
+  if (head.magic != ImagePipeHead{}.magic || head.width < 1 || head.height < 1 || head.channels < 1 || head.channels > 4) return {};
+  const std::uint64_t pixels = std::uint64_t(head.width) * std::uint64_t(head.height);
+  const std::uint64_t bytes = pixels * std::uint64_t(head.channels) * sizeof(float);
+  if (pixels > max_pixels || printed.size() - sizeof head != bytes) return {};
+  Interleaved image{std::vector<float>(bytes / sizeof(float)), head.width, head.height, head.channels, head.bits};
+  std::memcpy(image.samples.data(), printed.data() + sizeof head, bytes);
+  return image;
+}
+
+Image load_by_helper(const std::string& path, const std::string& format, const ImageReadOptions& options) {
+  const std::string program = helper_program(kHelper, path + ": reading " + format,
+                                             "build with -DTEMPOLUX_OIIO=ON, or convert the file to EXR or PNG", options.module_folders);
+  // Pixels as floats of four channels at most, and as much again for what the libraries decode.
+  const std::uint64_t most = options.max_pixels * 4 * sizeof(float);
+  ChildLimits limits;
+  limits.memory_bytes = memory_that_fits(kLibraries + 2 * most);
+  limits.output_bytes = memory_that_fits(most) + sizeof(ImagePipeHead);
+  const ChildResult result = run_child(program, {}, request_for(path, format, options.max_pixels), limits);
+  if (!result.trouble.empty()) throw InputError(path + ": " + format + ": " + one_line(result.trouble));
+  const std::optional<Interleaved> pixels = parse(result.output, options.max_pixels);
+  if (!pixels) throw InputError(path + ": " + format + ": tempolux-oiio gave no whole image; is it of this version?");
+  return to_image(path, format, *pixels);
 }
 
 }  // namespace
@@ -114,7 +117,7 @@ Image load_image(const std::string& path, const ImageReadOptions& options) {
     throw InputError(
         path +
         ": byte 0: not an image we read (OpenEXR, PNG, Radiance HDR, JPEG, TIFF); convert it to EXR or PNG");
-  return load_by_module(path, format, options);
+  return load_by_helper(path, format, options);
 }
 
 }  // namespace tempolux

@@ -20,6 +20,7 @@ constexpr float kRounding = 0x1p-20f;        ///< of coordinates
 constexpr float kBeside = 1.5f;              ///< spacings: how far off the neighbours are that are compared
 constexpr double kPhotons = 50;               ///< of an estimate: PointOptions::neighbours as it is shipped
 constexpr double kSure = 3;                   ///< standard errors
+constexpr std::size_t kProof = 2;            ///< neighbours that a point needs, of the 7 that a wide surface has: fewer show nothing
 constexpr float kOnePlane = 0.95f;           ///< cosine between normals: what faces elsewhere is not in a shadow's edge
 
 /// 3 bits of each octahedral coordinate.
@@ -162,12 +163,13 @@ std::uint8_t PointLookup::compare_neighbours(const Light& light) const {
     direct.add(points_[i].direct);
     indirect.add(points_[i].indirect);
   }
+  const bool proven = beside.size() >= kProof;
   // What hides behind this surface, as the outer leaf of a double wall, tells nothing of it: another object, as a rule.
   std::erase_if(beside, [&](std::uint32_t i) { return points_[i].object != points_[light.point].object; });
   const bool torn = !indirect.even() && std::any_of(beside.begin(), beside.end(), [&](std::uint32_t bright) {
     return std::any_of(beside.begin(), beside.end(), [&](std::uint32_t dark) { return apart(points_[bright], points_[dark]); });
   });
-  const auto uneven = std::uint8_t(kKnown | (direct.even() ? 0 : kDirect) | (torn ? kIndirect : 0));
+  const auto uneven = std::uint8_t(kKnown | (direct.even() && proven ? 0 : kDirect) | (torn ? kIndirect : 0));
   light.uneven.store(uneven, std::memory_order_relaxed);
   return uneven;
 }

@@ -49,6 +49,7 @@ class PointLookup {
     std::uint32_t point = 0;  ///< index of the IrradiancePoint
     mutable std::array<std::atomic<std::uint64_t>, 2> clearance{};   ///< Clearance::shares; kNotLooked: either
     mutable std::atomic<std::uint8_t> uneven{kNotAsked};
+    bool beside_lamp = false;   ///< note_lamp()
   };
 
   /// spacing: mean distance of neighbouring points, m, > 0. Keeps the span; it must outlive this. Without a test a point
@@ -82,15 +83,19 @@ class PointLookup {
   std::span<const IrradiancePoint> points() const { return points_; }
   /// Is a point's light of a kind that of the places near it? Not where some of the points beside it (within 1.5 spacings)
   /// get kContrast times as much of it as others, of indirect light surely kContrastOfIndirect times (apart()): there a shadow or a bright spot ends.
+  /// Nor where fewer than two points are beside it, for its direct light: what shows that one point in a wall's shadow is not all of the wall?
   /// Direct light: a hit is to sample it itself. Read instead, light would reach a spacing into shadows and out of gaps, where much
   /// of what sees it is: the ground in a chair's shadow is seen by the chair.
   /// Indirect light (beside points of the same object alone): a ray is to go on from the hit. A lamp a finger below the ceiling lights the gap behind it a hundred times
   /// as strongly as what is seen of the ceiling; read instead, that light would reach a spacing out of the gap.
   /// A point's own light has no say in it: it is known by a few shadow rays or photons, and were those that came out bright
   /// replaced, what is read would be dark in the mean.
-  bool is_even(const Light& light) const { return !(unevenness(light) & kDirect); }
+  bool is_even(const Light& light) const { return !light.beside_lamp && !(unevenness(light) & kDirect); }
   bool is_even_indirect(const Light& light) const { return !(unevenness(light) & kIndirect); }
   static constexpr float kContrast = 8;
+  /// From now on the direct light of this point is not that of the places it stands for: a lamp so near lights a spot smaller than the spacing, which a point
+  /// misses as a rule and stands for all of it where it does not. Not to be called while others look up.
+  void note_lamp(std::uint32_t point) { lights_[point].beside_lamp = true; }
   /// A ray that goes on costs several that are read, and what leaks from a place of moderate contrast is little. With 8 instead of 32 S8's frame took 17 %
   /// and S4's records 11 % more CPU at the same error; CornellBox's gap has 100.
   static constexpr float kContrastOfIndirect = 32;

@@ -165,6 +165,8 @@ void join(const std::vector<std::pair<int, Look>>& looks, const Wish& wish, Deci
 void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
   if (!d.points()) return;
   const SplitChoice choice = wish.split == "auto" ? pilot.split() : SplitChoice{wish.split == "on", "--split " + wish.split};
+  if (wish.split == "on" && wish.moving == "records")
+    throw InputError("--split on with --moving records: records that follow from those of what stands know no bright points; use --moving time or anew");
   d.split = choice.split && d.moving != MovingMethod::records;
   d.reasons.push_back({"photonmap-split", choice.split && !d.split ? "records follow from those of what stands" : choice.because});
 }
@@ -189,6 +191,7 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
   d.moving = choice.method;
   if (d.moving > MovingMethod::light && !d.records()) d.moving = MovingMethod::light;
   d.moving_cost = choice.cost;
+  if (d.moving == MovingMethod::time) d.moving_cost.records = records_over_time(1, states.size());
   d.reasons.push_back({name, choice.because});
 }
 

@@ -142,18 +142,30 @@ class Builder {
     Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
     add_view(lit, c);
     c.option(photon_words(lit));
+    if (plan_.media && !(wish_.update.empty() && wish_.refine.empty())) c.file("--majorants", majorants_file(lit));
     if (plan_.media && !wish_.update.empty()) add_update(lit, c);
     return add(stage::photons, lit, c);
   }
   /// In smoke: a map is the one before it in its segment, some of its groups traced anew.
   void add_update(int lit, Command& c) {
-    c.file("--majorants", majorants_file(lit));
     const std::vector<int> states = segment(lit).states();
     const auto here = std::ranges::find(states, lit);
     const bool by_pilots = std::ranges::count(std::array{"fde", "dip", "hybrid", "path"}, wish_.strategy) > 0;
     if (here == states.begin()) return c.option(by_pilots ? "--pilots 3%" : "");
     c.file("--update", photons(*std::prev(here)));
     c.option("--share " + wish_.update + " --strategy " + wish_.strategy);
+  }
+
+  /// The map that smoke is made from: with --refine further paths where light in the smoke is noisy. Updates go on from the map itself.
+  std::string refined_photons(int lit) {
+    if (wish_.refine.empty()) return photons(lit);
+    Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
+    c.file("--majorants", majorants_file(lit));
+    c.file("--update", photons(lit));
+    c.option("--refine " + std::to_string(std::uint64_t(std::stod(wish_.refine) / 100 * double(decided(lit).photon_paths))));
+    add_view(lit, c);
+    c.option("--kinds " + decided(lit).kinds);
+    return add(stage::refined, lit, c);
   }
 
   std::string stands_points(int frame) {
@@ -315,7 +327,7 @@ class Builder {
     const int lit = state(frame).lit_frame;
     Command c{"--frame " + std::to_string(frame), {}, state(frame).light + cameras({frame})};
     c.file("--base", clear);
-    c.file("--photons", photons(lit));
+    c.file("--photons", refined_photons(lit));
     if (!wish_.textures && decided(frame).points()) c.file("--points", points(lit));
     c.option(wish_.smoke_words);
     return add(stage::smoke, frame, c);
@@ -384,7 +396,8 @@ class Builder {
     c.file("", key_picture(i.first));
     c.file("", key_picture(i.last));
     std::ostringstream words;
-    words << c.words << " " << frame_digits(i.middle()) << " " << key_picture(i.middle()) << " " << wish_.threshold << " "
+    words << c.words << " " << frame_digits(i.middle()) << " " << key_picture(i.middle()) << " "
+          << (wish_.threshold_of_seen ? 100 * wish_.threshold : wish_.threshold) << (wish_.threshold_of_seen ? "% " : " ")
           << (left.empty() ? "-" : left) << " " << (right.empty() ? "-" : right);
     c.words = words.str();
     c.content = tool_hash_("aqm-compare") + cameras({i.middle()});
@@ -465,6 +478,10 @@ std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish)
 }
 
 Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, const MajorantsText& majorants) {
+  if (plan.media && wish.method == FrameMethod::walkthrough)
+    throw InputError("METHOD=walkthrough: the scene has media, which warping between keys does not know; use METHOD=frames");
+  if (!plan.media && !(wish.update.empty() && wish.refine.empty()))
+    throw InputError("UPDATE and REFINE are for maps of scenes with media; this scene has none");
   if (wish.filter > 0 && wish.method != FrameMethod::frames)
     throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=" + kFrameMethods[std::size_t(wish.method)] + ": one or the other; leave METHOD out");
   return Builder(plan, wish, tool_hash, majorants).build();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -145,6 +146,23 @@ PlannedSegment plan_segment(const Scene& scene, const Segment& segment, int came
   return planned;
 }
 
+/// The frame from which on no track changes anything: the last one at which a value differs from the one that the track ends with,
+/// or the next frame if that lies between two. 0 if nothing changes.
+int last_change(const Scene& scene, const TimeOptions& options) {
+  double last_s = 0;
+  for (const Animation& animation : scene.animations)
+    for (const AnimationTrack& track : animation.tracks) {
+      const std::size_t n = track.times_s.size(), per_key = n == 0 ? 0 : track.values.size() / n;
+      for (std::size_t key = n; key-- > 1;)   // splines: tangents count as well
+        if (!std::equal(track.values.begin() + std::ptrdiff_t(key * per_key), track.values.begin() + std::ptrdiff_t((key + 1) * per_key),
+                        track.values.begin() + std::ptrdiff_t((key - 1) * per_key))) {
+          last_s = std::max(last_s, track.times_s[key]);
+          break;
+        }
+    }
+  return std::min(frame_in_animation(scene, int(std::ceil(std::min(last_s * options.fps, 1e9) - 1e-3)), options), 1'000'000'000);
+}
+
 }  // namespace
 
 const PlannedFrame& PlannedSegment::at(int frame) const { return frames.at(std::size_t(frame - first)); }
@@ -188,7 +206,7 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   if (scene.environment) plan.environment = scene.environment->path;
   plan.time = options;
   plan.media = bool(media);
-  plan.last_frame = scene.duration_s > 0 ? frame_in_animation(scene, std::numeric_limits<int>::max(), options) : 0;
+  plan.last_frame = media ? frame_in_animation(scene, std::numeric_limits<int>::max(), options) : last_change(scene, options);
 
   std::size_t beyond = 0;
   std::set<int> needed;
@@ -196,7 +214,7 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
     const int shown = std::clamp(frame, 0, plan.last_frame);
     if (!plan.shows.try_emplace(frame, shown).second) continue;
     plan.frames.push_back(frame);
-    beyond += plan.last_frame > 0 && shown != frame;
+    beyond += frame_in_animation(scene, frame, options) != frame;
     needed.insert(shown);
   }
   for (const int frame : others) needed.insert(std::clamp(frame, 0, plan.last_frame));

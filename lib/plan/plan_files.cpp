@@ -66,21 +66,25 @@ std::string words_of(const std::vector<std::string>& names) {
 
 std::string key_of(const std::string& text) { return hash_hex(text).substr(0, 10); }
 
-/// A rule for a file with a plain name: `marker` in shown/ says what it shows now. `recipe`: a variable of stages.mk.
+/// Rules for a file with a plain name. `marker` in shown/ says what it shows now; if the marker is missing the file is made anew, if
+/// the file is missing it comes back. `recipe`: a variable of stages.mk.
 std::string shown_rule(const std::string& name, const std::string& marker, const std::string& inputs, const std::string& recipe) {
-  return name + " shown/" + marker + " &: | " + inputs + "; $(" + recipe + "," + marker + ")\n";
+  const std::string call = "$(" + recipe + ",shown/" + marker + ")";
+  return "shown/" + marker + ": | " + inputs + "; $(quiet)" + call + "\n" + name + ": | shown/" + marker + " " + inputs +
+         "; $(quiet)test -f $@ || { " + call + "; }\n";
 }
 
 /// Frames, their previews, the sheet, the log of a walkthrough.
 std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
   const std::string viewer = tool_hash("tempolux-info"), first = graph.pictures.at(plan.frames.front());
   const std::string exposure = "shown/exposure-" + key_of(first + viewer);
-  std::string text = exposure + ": | " + first + "\n", frames, previews, all = exposure + viewer;
+  std::string text = exposure + ": | " + first + "\n", frames, previews, markers, all = exposure + viewer;
   for (const int frame : plan.frames) {
     const std::string digits = frame_digits(frame), picture = graph.pictures.at(frame);
     frames += " frames/" + digits + ".exr";
     previews += " frames/" + digits + ".png";
     all += picture;
+    markers += " shown/" + digits + "-" + key_of(picture);
     text += shown_rule("frames/" + digits + ".exr", digits + "-" + key_of(picture), picture, "call show," + digits);
     text += shown_rule("frames/" + digits + ".png", digits + "-" + key_of(picture + exposure) + ".png", picture + " " + exposure, "call preview," + digits);
   }
@@ -89,7 +93,7 @@ std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& to
     text += shown_rule("walk.log", "walk-" + key_of(words_of(graph.intervals)), words_of(graph.intervals), "call walk_log");
   }
   return "frames :=" + frames + "\npreviews :=" + previews + "\n" + text +
-         shown_rule("sheet.png", "sheet-" + key_of(all), exposure + " $(frames) $(log)", "call sheet");
+         shown_rule("sheet.png", "sheet-" + key_of(all), exposure + " $(log) $(frames)" + markers, "call sheet");
 }
 
 std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
@@ -156,14 +160,13 @@ std::string plan_json(const Plan& plan, const Graph& graph, const std::string& s
 
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
   std::string text = "# Written by scene-plan; formats/plan/plan.md says what stands here.\n";
-  std::set<std::string> folders{"frames", "shown"};
+  std::string kept;   // stats of records over time, for the report
   for (const GraphFile& file : graph.files) {
-    folders.insert(file.name.substr(0, file.name.find('/')));
+    if (file.stage == stage::kept.name) kept += " " + file.name.substr(0, file.name.find('.')) + ".json";
     const std::string made = file.name + words_of(file.beside);
     text += made + ": words := " + file.words + "\n" + made + ": |" + words_of(file.inputs) + "\n";
   }
-  if (!graph.errors.empty()) folders.insert("report");
-  text += "folders :=" + words_of({folders.begin(), folders.end()}) + "\n";
+  if (!kept.empty()) text += "kept :=" + kept + "\n";
   return text + shown_rules(plan, graph, tool_hash) + report_rules(graph, tool_hash);
 }
 

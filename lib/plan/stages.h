@@ -21,6 +21,7 @@ namespace stage {
 inline constexpr StageInfo photons{"photon-trace", "photons", ".photons", "photon-trace", "trace,commit"};
 inline constexpr StageInfo stands_photons{"photon-trace --map static", "stands", ".photons", "photon-trace", "trace,commit"};
 inline constexpr StageInfo moved_photons{"photon-trace --map dynamic", "moved", ".photons", "photon-trace", "trace,commit"};
+inline constexpr StageInfo refined{"photon-trace --refine", "refined", ".photons", "photon-trace", "trace,commit"};
 inline constexpr StageInfo points{"irradcache-build points", "points", ".irradpoints", "irradcache-build", "read photons,points,write"};
 inline constexpr StageInfo stands_points{"irradcache-build points --map static", "stands_points", ".irradpoints", "irradcache-build", "read photons,points,write"};
 inline constexpr StageInfo split{"photonmap-split", "split", ".low.irradpoints", "photonmap-split", "split"};
@@ -42,7 +43,7 @@ inline constexpr StageInfo error{"aqm-compare", "error", ".json", "aqm-compare",
 
 /// In the order in which they run.
 inline constexpr std::array kStages{
-    stage::stands_photons, stage::photons, stage::moved_photons, stage::stands_points, stage::points, stage::split, stage::textures,
+    stage::stands_photons, stage::photons, stage::moved_photons, stage::refined, stage::stands_points, stage::points, stage::split, stage::textures,
     stage::stands_records, stage::records, stage::kept, stage::lights, stage::keys, stage::walk, stage::walked, stage::raw,
     stage::filtered, stage::pictures, stage::smoke, stage::reference, stage::error};
 

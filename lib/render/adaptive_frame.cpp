@@ -1,5 +1,9 @@
 #include "lib/render/adaptive_frame.h"
 
+#include <cmath>
+#include <numeric>
+
+#include "lib/render/frame_noise.h"
 #include "lib/render/pixel_noise.h"
 #include "lib/render/spread_outliers.h"
 
@@ -13,55 +17,176 @@ void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& 
   join(sum.onward, first.onward, count.onward, means.onward);
 }
 
-double spread_outliers_of(const PixelNoise& noise, const PartCounts& first, const std::vector<PartCounts>& missing, std::span<const PathParts> parts,
-                          std::span<const BrightestSamples> brightest, std::span<const std::uint8_t> mask, LayerImage& image) {
-  std::vector<PartCounts> counts(missing);
-  for (PartCounts& count : counts) count = {first.own + count.own, first.lit + count.lit, first.onward + count.onward};
-  return spread_outliers({image.width, image.height, parts, counts, brightest, mask, [&](double level) { return noise.error_at(level); }}, image.pixels);
+/// What a pixel that has `have` lacks to `wanted`. Samples of lit and onward need camera rays that they start from.
+PartCounts missing(const PartCounts& have, const PartCounts& wanted, bool even) {
+  const auto further = [](int has, int wants) { return std::max(0, wants - has); };
+  PartCounts more{further(have.own, wanted.own), further(have.lit, wanted.lit), further(have.onward, wanted.onward)};
+  more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
+  if (even) more.own += more.own % 2;
+  return more;
+}
+
+constexpr std::size_t kJudgedTogether = 64;   ///< pixels
+
+/// A frame whose pixels get samples in several passes.
+class AdaptiveFrame {
+ public:
+  AdaptiveFrame(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame)
+      : scene_(scene), view_(view), options_(options), frame_(frame), noise_(view, options), check_(view, options.seed, options.mask), of_check_(options), around_(options),
+        counts_(frame.mean.pixels.size(), noise_.first()), parts_(frame.mean.pixels.size()),
+        brightest_(options.spread_outliers ? frame.mean.pixels.size() : 0) {
+    around_.mask = noise_.looked_at();
+    of_check_.seed = check_.seed();
+    again_rays_.resize(check_.size());
+  }
+  void render() {
+    take_first();
+    if (options_.seen_error > 0) reach_seen_error();
+    else take_further(1, options_.progress), put_together();
+    finish();
+  }
+
+ private:
+  void take_first();
+  std::uint64_t take_further(double times, const std::function<void(double)>& progress);
+  void take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count);
+  void put_together();
+  void spread();
+  void reach_seen_error();
+  void finish();
+  bool shown(std::size_t pixel) const { return options_.mask.empty() || options_.mask[pixel]; }
+
+  const RenderScene& scene_;
+  const CameraView& view_;
+  const FrameOptions& options_;
+  RenderedFrame& frame_;
+  PixelNoise noise_;
+  NoiseCheck check_;
+  FrameOptions of_check_;
+  std::vector<RayCounts> again_rays_;   ///< by slot
+  FrameOptions around_;                 ///< of all pixels whose first samples are needed
+  std::vector<PartCounts> counts_;      ///< samples that pixels have
+  ParallelArray<PathParts> parts_;      ///< their means
+  ParallelArray<BrightestSamples> brightest_;
+};
+
+void AdaptiveFrame::take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count) {
+  const std::uint32_t slot = check_.slot(x, y);
+  if (slot == kNone || !shown(pixel)) return;
+  join_parts(sample_pixel(scene_, view_, of_check_, pixel, x, y, first, count, nullptr, again_rays_[slot]), first, count, check_.again(slot));
+}
+
+void AdaptiveFrame::take_first() {
+  LayerImage& image = frame_.mean;
+  const PartCounts first = noise_.first();
+  const bool spreads = options_.spread_outliers;
+  for_each_pixel(view_, around_, frame_.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    PixelSum half[2];
+    half[0].for_filter = half[1].for_filter = options_.for_filter;
+    const std::uint64_t before = counts.onward;
+    for_each_sample(scene_, view_, options_, pixel, x, y, {}, first, image.halves_of(pixel), counts,
+                    [&](int s, const PathParts& sample) {
+                      half[noise_.half(s)].add(sample);
+                      if (spreads) brightest_[pixel].note(sample, options_.for_filter);
+                    });
+    noise_.note(pixel, half[0], half[1], counts.onward - before);
+    join_parts(half[0] + half[1], {}, first, parts_[pixel]);
+    take_again(pixel, x, y, {}, first);
+  });
+  noise_.all_noted();
+}
+
+/// Returns how many camera rays that were.
+std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void(double)>& progress) {
+  const std::uint64_t before = frame_.rays.camera;
+  for_each_pixel(view_, options_, frame_.rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    PartCounts& have = counts_[pixel];
+    const PartCounts more = missing(have, noise_.wanted_at(x, y, times), options_.independent_halves);
+    if (more.own == 0) return;
+    PixelSum sum;
+    for_each_sample(scene_, view_, options_, pixel, x, y, have, more, frame_.mean.halves_of(pixel), counts,
+                    [&](int, const PathParts& sample) {
+                      sum.add(sample);
+                      if (options_.spread_outliers) brightest_[pixel].note(sample, options_.for_filter);
+                    });
+    join_parts(sum, have, more, parts_[pixel]);
+    take_again(pixel, x, y, have, more);
+    have = {have.own + more.own, have.lit + more.lit, have.onward + more.onward};
+  });
+  return frame_.rays.camera - before;
+}
+
+/// The picture from its parts, and its noise.
+void AdaptiveFrame::put_together() {
+  std::vector<Layers>& pixels = frame_.mean.pixels;
+  parallel_chunks(pixels.size(), 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) pixels[p] = parts_[p].sum();
+  });
+  if (options_.spread_outliers) spread();
+  frame_.noise = check_.measure(pixels, [&](std::size_t pixel) { return parts_[pixel].sum(); });
+}
+
+/// Light that one sample alone claims, once enough of them have looked.
+void AdaptiveFrame::spread() {
+  std::vector<Layers>& pixels = frame_.mean.pixels;
+  SampledPixels samples{frame_.mean.width, frame_.mean.height, parts_, counts_, brightest_, options_.mask, [&](double level) { return noise_.error_at(level); }};
+  const std::vector<std::size_t> judged = pixels_to_judge(samples, pixels);
+  std::vector<std::uint32_t> further_of(judged.empty() ? 0 : pixels.size(), kNone);
+  std::vector<FurtherSamples> further(judged.size());
+  std::vector<RayCounts> rays((judged.size() + kJudgedTogether - 1) / kJudgedTogether);
+  parallel_chunks(judged.size(), kJudgedTogether, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const std::size_t pixel = judged[i], width = std::size_t(frame_.mean.width);
+      const PartCounts &have = counts_[pixel], more = missing(have, {kJudges, kJudges, kJudges}, options_.independent_halves);
+      further_of[pixel] = std::uint32_t(i);
+      further[i].count = more;
+      join_parts(sample_pixel(scene_, view_, options_, pixel, int(pixel % width), int(pixel / width), have, more, nullptr, rays[first / kJudgedTogether]), {}, more, further[i].mean);
+    }
+  });
+  for (const RayCounts& counts : rays) frame_.rays += counts;
+  samples.further_of = further_of;
+  samples.further = further;
+  frame_.spread = spread_outliers(samples, pixels);
+}
+
+/// Noise is measured after each pass, and the next one is as large as what is left asks for. Errors fall as the number of samples to the power of -1/2 to -5/6: with -.6 passes come near from
+/// above. Most of what a pass brings is known only when it is there, so no pass has more than four times the samples of those before.
+void AdaptiveFrame::reach_seen_error() {
+  constexpr double kSteepness = 0.6, kMostTimes = 4, kLeastTimes = 1.1;
+  constexpr int kMostIdle = 8;   // passes without a sample: all pixels are at their limit, or show no noise
+  put_together();
+  double times = 0.25;
+  const double at_first = frame_.noise.image.codes;
+  for (int idle = 0; frame_.noise.known() && frame_.noise.image.codes > options_.seen_error && idle < kMostIdle;) {
+    if (options_.progress) options_.progress(std::clamp(std::log(at_first / frame_.noise.image.codes) / std::log(at_first / options_.seen_error), 0.0, 1.0));
+    if (take_further(times, {}) > 0) {
+      put_together();
+      idle = 0;
+    } else {
+      ++idle;
+    }
+    times *= std::clamp(std::pow(frame_.noise.image.codes / options_.seen_error, 1 / kSteepness), kLeastTimes, kMostTimes);
+  }
+}
+
+void AdaptiveFrame::finish() {
+  for (const RayCounts& rays : again_rays_) frame_.noise_rays += rays;
+  frame_.mean.samples = noise_.first().own;
+  double samples = 0;
+  std::size_t pixels = 0;
+  for (std::size_t p = 0; p < counts_.size(); ++p) {
+    samples += counts_[p].own;
+    ++pixels;
+    if (shown(p) && counts_[p].own >= options_.adaptive_limit) frame_.at_limit += 1;
+  }
+  frame_.samples_per_pixel = samples / double(std::max<std::size_t>(1, pixels));
+  frame_.at_limit /= double(std::max<std::size_t>(1, pixels));
 }
 
 }  // namespace
 
 void render_adaptive(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
-  LayerImage& image = frame.mean;
-  PixelNoise noise(view, options);
-  const PartCounts first = noise.first();
-  FrameOptions around = options;
-  around.mask = noise.looked_at();
-  ParallelArray<PathParts> parts(image.pixels.size());
-  const bool spreads = options.spread_outliers;
-  ParallelArray<BrightestSamples> brightest(spreads ? image.pixels.size() : 0);
-  for_each_pixel(view, around, frame.rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    PixelSum half[2];
-    half[0].for_filter = half[1].for_filter = options.for_filter;
-    const std::uint64_t before = counts.onward;
-    for_each_sample(scene, view, options.seed, options.known, pixel, x, y, {}, first, image.halves_of(pixel), counts,
-                    [&](int s, const PathParts& sample) {
-                      half[s < noise.first_half() ? 0 : 1].add(sample);
-                      if (spreads) brightest[pixel].note(sample, options.for_filter);
-                    });
-    noise.note(pixel, half[0], half[1], counts.onward - before);
-    join_parts(half[0] + half[1], {}, first, parts[pixel]);
-  });
-  const std::vector<PartCounts> missing = noise.missing_samples();
-  for_each_pixel(view, around, frame.rays, options.progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    const PartCounts& more = missing[pixel];
-    if (more.own > 0 && (options.mask.empty() || options.mask[pixel])) {
-      PixelSum sum;
-      for_each_sample(scene, view, options.seed, options.known, pixel, x, y, first, more, image.halves_of(pixel), counts,
-                      [&](int, const PathParts& sample) {
-                        sum.add(sample);
-                        if (spreads) brightest[pixel].note(sample, options.for_filter);
-                      });
-      join_parts(sum, first, more, parts[pixel]);
-    }
-    image.pixels[pixel] = parts[pixel].sum();
-  });
-  if (spreads) frame.spread = spread_outliers_of(noise, first, missing, parts, brightest, options.mask, image);
-  double further = 0;
-  for (const PartCounts& count : missing) further += count.own;
-  image.samples = first.own;
-  frame.samples_per_pixel = first.own + further / double(std::max<std::size_t>(1, image.pixels.size()));
+  AdaptiveFrame(scene, view, options, frame).render();
 }
 
 }  // namespace tempolux

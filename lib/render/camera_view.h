@@ -33,6 +33,7 @@ class CameraView {
     return float(camera_.camera.kind == Camera::Kind::perspective ? at_one * double(distance) : at_one);
   }
 
+  bool orthographic() const { return camera_.camera.kind == Camera::Kind::orthographic; }
   /// Where the camera is, scene space.
   Vec3 eye() const { return Vec3(camera_.scene_from_camera.translation); }
 

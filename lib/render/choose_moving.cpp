@@ -120,12 +120,13 @@ MovingChoice choose_moving(const MovingPilot& pilot, std::size_t segments, std::
   const std::string frames = std::to_string(states) + " states of light in " + std::to_string(segments) +
                              (segments == 1 ? " segment" : " segments");
   if (!(cost.light < 1)) return {MovingMethod::anew, {}, touched + "; " + frames};
-  const double over_time = kFirstOverTime * once + kRecordsOverTime * (1 - once);
-  const MovingMethod method = std::min(cost.records, over_time) >= 1 ? MovingMethod::light
-                              : cost.records <= over_time            ? MovingMethod::records
-                                                                     : MovingMethod::time;
-  const double of_records = method == MovingMethod::light ? 1 : std::min(cost.records, over_time);
-  return {method, {cost.light, of_records, cost.photon_bytes}, touched + " and " + gathered + "; " + frames};
+  const MovingMethod method = cost.records >= 1 ? MovingMethod::light : MovingMethod::records;
+  return {method, {cost.light, std::min(1.0, cost.records), cost.photon_bytes}, touched + " and " + gathered + "; " + frames};
+}
+
+double records_over_time(std::size_t segments, std::size_t states) {
+  const double once = double(segments) / double(std::max<std::size_t>(states, 1));
+  return kFirstOverTime * once + kRecordsOverTime * (1 - once);
 }
 
 }  // namespace tempolux

@@ -1,6 +1,7 @@
 #include "lib/render/frame_renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
@@ -21,11 +22,30 @@ constexpr std::size_t kChunk = 4096;   ///< pixels
 void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
                  int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
   const int first = image.samples;
-  for_each_pixel(view, options, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    join(sample_pixel(scene, view, seed, options.known, pixel, x, y, {first, first, first}, {count, count, count}, image.halves_of(pixel), counts), first, count,
+  FrameOptions of_pass = options;
+  of_pass.seed = seed;
+  for_each_pixel(view, of_pass, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    join(sample_pixel(scene, view, of_pass, pixel, x, y, {first, first, first}, {count, count, count}, image.halves_of(pixel), counts), first, count,
          image.pixels[pixel]);
   });
   image.samples += count;
+}
+
+/// All samples at once, and of some pixels a second time for the noise.
+void render_fixed(const RenderScene& scene, const CameraView& view, const FrameOptions& options, RenderedFrame& frame) {
+  render_pass(scene, view, options.seed, options, options.samples, frame.mean, frame.rays, options.progress);
+  NoiseCheck check(view, options.seed, options.mask);
+  FrameOptions again = options;
+  again.seed = check.seed();
+  const PartCounts all{options.samples, options.samples, options.samples};
+  for_each_pixel(view, again, frame.noise_rays, {}, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    const std::uint32_t slot = check.slot(x, y);
+    if (slot == kNone) return;
+    Layers mean;
+    join(sample_pixel(scene, view, again, pixel, x, y, {}, all, nullptr, counts), 0, options.samples, mean);
+    check.again(slot).own = mean;
+  });
+  frame.noise = check.measure(frame.mean.pixels, [&](std::size_t pixel) { return frame.mean.pixels[pixel]; });
 }
 
 LayerImage empty_layers(const CameraView& view, const FrameOptions& options) {
@@ -70,6 +90,14 @@ void join_halves(RenderedFrame& frame) {
   frame.own_rmse = std::sqrt(difference2 / 4 / double(std::max<std::size_t>(1, 3 * a.pixels.size())));
 }
 
+/// All far from any user's seeds but that of a frame itself. A reference has two of its own: were one half made of the numbers of the
+/// frames that it judges, frames of equal seed and samples would seem better than they are.
+std::array<std::uint64_t, 2> seeds_of_halves(const FrameOptions& options) {
+  constexpr std::uint64_t one = 0x68616c665f6f6e65ull, two = 0x68616c665f74776full, second = 0x7365636f6e645f32ull;
+  if (options.halves) return {options.seed ^ one, options.seed ^ two};
+  return {options.seed, options.seed ^ second};
+}
+
 }  // namespace
 
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options) {
@@ -80,10 +108,9 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
     render_adaptive(scene, view, options, frame);
   } else if (!halves) {
     frame.mean = empty_layers(view, options);
-    render_pass(scene, view, options.seed, options, options.samples, frame.mean, frame.rays, options.progress);
+    render_fixed(scene, view, options, frame);
   } else {
-    // The second half's seed is far from any user's seeds.
-    const std::uint64_t seeds[2] = {options.seed, options.seed ^ 0x68616c665f74776full};
+    const std::array<std::uint64_t, 2> seeds = seeds_of_halves(options);
     frame.half[0] = empty_layers(view, options);
     frame.half[1] = empty_layers(view, options);
     int count = std::max(1, options.samples / 2);
@@ -96,6 +123,7 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
       count = frame.half[0].samples;
       if (4 * count > options.max_samples) break;
     }
+    frame.noise = noise_of_halves(frame.half[0].pixels, frame.half[1].pixels);
   }
   for (LayerImage* image : {&frame.mean, &frame.half[0], &frame.half[1]}) image->media = scene.frame().media != nullptr;
   frame.mean_radiance = mean_radiance(frame.mean);
@@ -120,7 +148,7 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
 }
 
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {
-  if (!layers.sample_halves.empty()) add_variance_channels(layers.sample_halves, channels, image);
+  if (!layers.sample_halves.empty()) add_variance_channels(layers.sample_halves, layers.media, channels, image);
   constexpr std::size_t kSum = kLayerCount;
   std::vector<std::pair<std::size_t, std::size_t>> colours;  // the first of three channels, its layer
   std::optional<std::size_t> alpha;

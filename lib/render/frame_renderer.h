@@ -7,6 +7,7 @@
 
 #include "lib/image/image.h"
 #include "lib/render/camera_view.h"
+#include "lib/render/frame_noise.h"
 #include "lib/render/path_tracer.h"
 #include "lib/render/pixel_variance.h"
 
@@ -15,17 +16,23 @@ namespace tempolux {
 struct FrameOptions {
   std::uint64_t seed = 0;
   int samples = 16;                     ///< per pixel; with halves even: half of them in each
-  bool halves = false;                  ///< keep two independent halves apart
+  /// Keep two halves apart, independent of each other and of any frame without halves, whatever its seed: a reference.
+  bool halves = false;
   double target_error = 0;              ///< > 0: double the samples until the estimated relative RMSE is below
   int max_samples = 1 << 20;            ///< never more than this for target_error
   /// > 0: after `samples` everywhere, more where pixels are uncertain (lib/render/adaptive_frame.h).
   double pixel_error = 0;
+  /// > 0: samples are added, as pixel_error shares them out, until noise is below this, in codes (FrameNoise). Needs pixel_error.
+  double seen_error = 0;
   int adaptive_limit = 1024;
   /// The frame will be filtered (lib/filter): noise that counts for pixel_error is that of light which passes the filter, layer specular.
   bool for_filter = false;
   /// With pixel_error: light that one sample alone claims is shared out among the pixels around, of a masked frame those of the mask (lib/render/spread_outliers.h).
   bool spread_outliers = false;
   bool sample_halves = false;           ///< keep LayerImage::sample_halves
+  /// Each pixel's samples of odd number are stratified by themselves and independent of those of even number. The two halves have equal numbers of
+  /// samples, so `samples` is even. All samples together are then less well stratified. Not with `halves`.
+  bool independent_halves = false;
   const KnownLight* known = nullptr;    ///< where paths may end
   std::vector<std::uint8_t> mask;       ///< by pixel, 0: leave it out; empty: all pixels
   std::function<void(double)> progress; ///< called with [0, 1]; may be empty
@@ -44,7 +51,10 @@ struct RenderedFrame {
   LayerImage mean;                      ///< over all samples
   LayerImage half[2];                   ///< empty unless halves or target_error
   RayCounts rays;
+  RayCounts noise_rays;                 ///< of the pixels that were rendered twice, the second time
   double samples_per_pixel = 0;         ///< mean over pixels
+  FrameNoise noise;                     ///< what it still has
+  double at_limit = 0;                  ///< share of the pixels that have adaptive_limit samples
   double spread = 0;                    ///< share of the light that FrameOptions::spread_outliers moved
   /// RMSE of the mean over pixels and channels [radiance], estimated from the halves' difference; < 0: unknown.
   double own_rmse = -1;
@@ -60,7 +70,7 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
 void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, Image& image);
 
 /// Adds to `image` the colour channels asked for: "RGBA", "layers" or a layer's name. The sum of the layers
-/// in the order of kLayerNames, in float32, is R G B exactly. Of add_variance_channels() what was kept.
+/// in the order of kLayerNames, in float32, is R G B exactly. Also what add_variance_channels() adds.
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image);
 
 /// Data channels of one ray through each pixel's centre: "Z", "N", "P", "id", "albedo", "motion" (forward

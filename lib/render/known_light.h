@@ -27,6 +27,9 @@ class KnownLight {
   /// Of `points` those that are sampled explicitly where no record tells: what paths meet first beyond then brings the rest.
   const BrightPoints* bright = nullptr;
   int bright_samples = 0;                 ///< at the first such place of an eye path; one at each later one
+  /// Can a ray meet a light: is there an environment, or a surface that emits? Where not, and indirect and caustic light are known at a place, no ray goes on
+  /// from its Lambert lobe: the ray would find nothing.
+  bool lights_are_met = true;
   /// Do eye paths fork at the first Lambert lobe under a gloss, to follow both? A gloss reflects 4 % as a rule: one ray in 25 that
   /// meets something bright makes a dot. Where nothing is known both would be whole paths: a fork costs as much as it gains then.
   bool forks() const { return records || mesh || localised || points || (photons && photons->has_indirect()); }

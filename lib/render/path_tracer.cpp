@@ -340,6 +340,7 @@ void EyeTracer::add_light(const ShadingPoint& x, SampledLobes lobes, bool first_
 
 /// From a first matte surface by event D, as often as asked for: the part `onward`.
 void EyeTracer::go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, const Walk& walk) const {
+  if (here.indirect && here.caustic && !known_->lights_are_met) return;
   for (std::uint32_t i = 0; i < effort_.onward; ++i) {
     Walk next = walk;
     next.random = walk.random.of_sample(effort_.onward_first + i);

@@ -1,9 +1,57 @@
 #include "lib/render/photon_light.h"
 
+#include <array>
+#include <cmath>
+
 #include "lib/density/photon_reach.h"
 #include "lib/gather/point_density.h"
 
 namespace tempolux {
+namespace {
+
+constexpr int kAsked = 8;   ///< FootprintOptions::asked
+constexpr std::size_t kRemembered = 4;   ///< places: a pixel may see several surfaces
+constexpr float kAlike = 0.999f;         ///< cosine between normals: of smooth surfaces within a pixel
+constexpr float kAlikeCoat = 0.01f;      ///< difference of what coats let in: that of two materials
+
+/// Caustic light that was looked up at a place.
+struct Remembered {
+  const PhotonLight* of = nullptr;
+  Vec3 position, geometric, shading;
+  float let_in = 1;      ///< of light along the normal, by the coat
+  float within = 0;      ///< m
+  Rgb irradiance{0.0f};
+
+  static float let_in_by(const LitSurface& surface) { return surface.bsdf ? surface.bsdf->arrival_weight(1) : 1; }
+  bool holds_at(const PhotonLight* light, Vec3 place, const LitSurface& surface) const {
+    return of == light && length2(place - position) < within * within && dot(surface.geometric, geometric) > kAlike &&
+           dot(surface.shading, shading) > kAlike && std::abs(let_in_by(surface) - let_in) < kAlikeCoat;
+  }
+};
+
+/// What a thread remembers, by half of a pixel's samples.
+struct Memory {
+  bool used = false;
+  std::size_t half = 0;
+  std::array<std::array<Remembered, kRemembered>, 2> places;
+  std::array<std::size_t, 2> next{};
+
+  void clear() {
+    places = {};
+    next = {};
+    half = 0;
+  }
+};
+thread_local Memory memory;
+
+}  // namespace
+
+CausticMemory::CausticMemory() {
+  memory.clear();
+  memory.used = true;
+}
+CausticMemory::~CausticMemory() { memory.used = false; }
+void CausticMemory::use_half(int half) { memory.half = std::size_t(half); }
 
 PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d photon_shift,
                          const PhotonLightOptions& options) {
@@ -13,14 +61,22 @@ PhotonLight::PhotonLight(const Tracer& tracer, const PhotonView& photons, Vec3d 
   if (has_indirect_) indirect_ = PhotonIndex(photons.photons, kind_bit(formats::PathKind::indirect), photon_shift);
   if (!(options_.max_radius > 0) && indirect_.size() > 0)
     options_.max_radius = PointDensity::kSparser * photon_reach(indirect_, options.neighbours, options_.min_cos, options_.flattening);
-  const FootprintOptions density{options.caustic_neighbours, options.caustic_radius, 0};
+  const FootprintOptions density{.neighbours = options.caustic_neighbours, .max_radius = options.caustic_radius, .asked = kAsked};
   caustic_ = std::make_unique<FootprintDensity>(tracer, photons, density, kind_bit(formats::PathKind::caustic), photon_shift);
   if (caustic_->empty()) caustic_.reset();
 }
 
 Rgb PhotonLight::caustic(Vec3 position, const LitSurface& surface) const {
-  float smooth_over;
-  return caustic_ ? caustic_->estimate(position, surface, smooth_over) : Rgb(0.0f);
+  if (!caustic_) return Rgb(0.0f);
+  float within = 0;
+  if (!memory.used) return caustic_->estimate_around(position, surface, within);
+  auto& places = memory.places[memory.half];
+  for (const Remembered& place : places)
+    if (place.holds_at(this, position, surface)) return place.irradiance;
+  const Rgb irradiance = caustic_->estimate_around(position, surface, within);
+  if (within > 0)
+    places[memory.next[memory.half]++ % kRemembered] = {this, position, surface.geometric, surface.shading, Remembered::let_in_by(surface), within, irradiance};
+  return irradiance;
 }
 
 Rgb PhotonLight::indirect(Vec3 position, Vec3 normal) const {

@@ -17,6 +17,19 @@ struct PhotonLightOptions {
   bool caustic_only = false;      ///< indirect light comes from elsewhere: index the caustic photons alone
 };
 
+/// While one of these lives, its thread remembers the caustic light that it looks up: for the samples of one pixel, which see one place as a rule. A
+/// place near a remembered one of the same surface, nearer than light changes there (FootprintDensity::estimate_around), has its light. What a pixel shows is
+/// then the light of a few of its places in place of all: the same in the mean. One at a time in a thread; made anew for each pixel, so that results do not
+/// depend on which pixels a thread has seen before.
+class CausticMemory {
+ public:
+  CausticMemory();
+  ~CausticMemory();
+  CausticMemory(const CausticMemory&) = delete;
+  /// From now on what was looked up for this half of the samples, 0 or 1, and nothing of the other: halves stay independent.
+  void use_half(int half);
+};
+
 /// Caustic and indirect irradiance from the photons of a map, by footprints and by the k nearest. Biased: light is
 /// blurred over the radius of the estimate, and indirect light is lost at edges and corners within it; the bias falls
 /// with the photons' number. Caustic light is divided by the area that can be reached (FootprintDensity):

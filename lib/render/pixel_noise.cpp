@@ -9,8 +9,6 @@ constexpr double kBetween = 0.1, kSharp = 0.125;   // of its variance: of two st
 constexpr double kStratified = 0.875, kTypical = 12;
 /// Costs in shadow rays: of a whole typical sample; of a camera ray with its surface; of a light sample; the least that is said of a ray onward.
 constexpr double kWhole = 4, kOwn = 1.2, kLit = 1, kLeastOnward = 1;
-/// To a camera ray at most. Samples of one place miss what differs between the places of a pixel: edges of shadows, folds.
-constexpr int kMostLit = 2, kMostOnward = 2;
 
 }  // namespace
 
@@ -25,7 +23,7 @@ double wanted_samples(double sigma, double cost, double error) {
 }
 
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
-    : view_(view), options_(options), first_{options.samples, options.samples, options.for_filter ? options.samples : (options.samples + 1) / 2}, first_half_((options.samples + 1) / 2),
+    : view_(view), options_(options), first_{options.samples, options.samples, options.for_filter || options.independent_halves ? options.samples : (options.samples + 1) / 2}, first_half_((options.samples + 1) / 2),
       lattice_(std::max(1, int(std::sqrt(double(view.width()) * view.height() / kOnLattice)))),
       pixels_(std::size_t(view.width()) * std::size_t(view.height())) {
   lattice_ = std::min({lattice_, view.width(), view.height()});
@@ -95,7 +93,7 @@ double PixelNoise::own_variance(int x, int y) const {
 
 /// The parts are judged apart. Light sampling by what stratification leaves of it: the difference of pixels' halves, of single samples the variance
 /// between pixels. Rays onward by the variance of samples: few of them meet what is bright.
-PartCounts PixelNoise::missing_at(int x, int y) const {
+PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   const double a = first_half_, b = options_.samples - first_half_;
   double n = 0, level = 0, lit = 0, lit_square = 0, onward = 0, onward_square = 0, within = 0, rays = 0;
   for_each_neighbour(x, y, kNear, [&](const Pixel& pixel) {
@@ -108,21 +106,23 @@ PartCounts PixelNoise::missing_at(int x, int y) const {
     within += pixel.onward_variance;
     rays += double(pixel.onward_rays);
   });
-  if (n == 0) return {};
+  if (n == 0) return first_;
   const double lit_variance = b > 0 ? lit_square / n * a * b / (a + b) : sample_variance(n, lit, lit_square);
   const double onward_variance = first_.onward > 1 ? within / n : sample_variance(n, onward, onward_square);
   const double error = error_at(level / n);
   const auto further = [&](double variance, double cost, int first) {
-    const double wanted = wanted_samples(std::sqrt(variance), cost, error);
-    return std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
+    const double wanted = times * wanted_samples(std::sqrt(variance), cost, error);
+    const int missing = std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
+    return options_.independent_halves ? missing + missing % 2 : missing;
   };
   PartCounts more{further(own_variance(x, y), kOwn, first_.own), further(lit_variance, kLit, first_.lit),
                   further(onward_variance, std::max(kLeastOnward, rays / n), first_.onward)};
   more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
-  return more;
+  if (options_.independent_halves) more.own += more.own % 2;
+  return {first_.own + more.own, first_.lit + more.lit, first_.onward + more.onward};
 }
 
-std::vector<PartCounts> PixelNoise::missing_samples() {
+void PixelNoise::all_noted() {
   double all = 0, n = 0;
   for (int y = lattice_ / 2; y < view_.height(); y += lattice_)
     for (int x = lattice_ / 2; x < view_.width(); x += lattice_) {
@@ -130,10 +130,6 @@ std::vector<PartCounts> PixelNoise::missing_samples() {
       ++n;
     }
   picture_ = all / std::max(1.0, n);
-  std::vector<PartCounts> missing(pixels_.size());
-  RayCounts none;
-  for_each_pixel(view_, options_, none, {}, [&](std::size_t pixel, int x, int y, RayCounts&) { missing[pixel] = missing_at(x, y); });
-  return missing;
 }
 
 }  // namespace tempolux

@@ -17,6 +17,9 @@ double allowed_error(double level, double picture, double pixel_error);
 /// Samples of a part of a pixel's light that are to leave the pixel the error e, if sigma is the noise of one and `cost` what it costs in rays (docs/pixels.md); 0 of e = 0.
 double wanted_samples(double sigma, double cost, double error);
 
+/// Samples of the parts lit and onward to a camera ray, at most. Samples of one place miss what differs between the places of a pixel: edges of shadows, folds.
+inline constexpr int kMostLit = 2, kMostOnward = 2;
+
 /// Noise of a picture whose pixels have their first samples, and what more they need: docs/pixels.md derives it.
 class PixelNoise {
  public:
@@ -28,12 +31,15 @@ class PixelNoise {
   /// The first samples. Rays onward are the dearest part and often the least needed: half as many do to tell
   /// their noise, but where a filter is to do with the first samples alone.
   const PartCounts& first() const { return first_; }
-  int first_half() const { return first_half_; }   ///< of the first samples: the others are the second half
+  /// Which half first sample s belongs to.
+  int half(int s) const { return options_.independent_halves ? s & 1 : s >= first_half_; }
   /// The two halves of a pixel's first samples, and the rays that their part `onward` took. Thread-safe for different pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
-  /// By pixel, once all are noted.
-  std::vector<PartCounts> missing_samples();
-  /// By what a pixel may err, around which there is radiance `level` [W/m^2/sr]. After missing_samples().
+  /// The first samples of all pixels are noted: what follows may be asked.
+  void all_noted();
+  /// Samples that a pixel is to have in all, by part; `times` as many as pixel_error asks for, within the limit.
+  PartCounts wanted_at(int x, int y, double times) const;
+  /// By what a pixel may err, around which there is radiance `level` [W/m^2/sr].
   double error_at(double level) const { return allowed_error(level, picture_, options_.pixel_error); }
 
  private:
@@ -51,7 +57,6 @@ class PixelNoise {
 
   template <class Body>
   void for_each_neighbour(int x, int y, int near, const Body& body) const;
-  PartCounts missing_at(int x, int y) const;
   double own_variance(int x, int y) const;
   bool on_lattice(int x, int y) const { return x % lattice_ == lattice_ / 2 && y % lattice_ == lattice_ / 2; }
   void look_around_mask();
@@ -59,7 +64,7 @@ class PixelNoise {
   const CameraView& view_;
   const FrameOptions& options_;
   PartCounts first_;
-  int first_half_;
+  int first_half_;       ///< samples in the first half of the first ones
   double picture_ = 0;   ///< mean of the first samples of the pixels of a lattice
   int lattice_;          ///< pixels from one of them to the next
   std::vector<std::uint8_t> looked_at_;

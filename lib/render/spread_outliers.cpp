@@ -10,6 +10,7 @@ namespace tempolux {
 namespace {
 
 constexpr int kNear = 2;               ///< pixels: light around is that of 24
+constexpr double kConfirmed = 0.5;     ///< of the sample that claims
 
 /// What is taken from a pixel and how far it goes.
 struct Excess {
@@ -17,6 +18,7 @@ struct Excess {
   Layer layer;
   int level;        ///< boxes reach 2^level pixels
   Rgbd radiance;
+  int samples;      ///< of the part that it is of
 };
 
 double radiance_of(const Layers& pixel) {
@@ -134,18 +136,40 @@ void excess_of(const SampledPixels& samples, const std::vector<Layers>& pixels, 
   if (!samples.takes_part(pixel)) return;
   const BrightestSamples& brightest = samples.brightest[pixel];
   const PartCounts& counts = samples.counts[pixel];
-  const auto look = [&](const BrightestSample& sample, const Layers& mean, int count) {
+  const FurtherSamples* const further = samples.further_of.empty() || samples.further_of[pixel] == kNone ? nullptr : &samples.further[samples.further_of[pixel]];
+  const auto look = [&](const BrightestSample& sample, Layers PathParts::*part, int PartCounts::*number) {
+    const int count = counts.*number;
     const double claimed = channel_mean(Rgbd(sample.radiance)) / count;
     if (!(claimed > error) || !(error > 0)) return;
-    const double others = count > 1 ? (channel_mean(Rgbd(mean[sample.layer])) - claimed) * count / (count - 1) : 0;
-    const double allowed = error + std::max(others, around(samples.width, samples.height, x, y, [&](std::size_t p) { return channel_mean(Rgbd(pixels[p][sample.layer])); }));
+    double others = (channel_mean(Rgbd((samples.parts[pixel].*part)[sample.layer])) - claimed) * count;
+    int other_count = count - 1;
+    if (further) {
+      others += channel_mean(Rgbd((further->mean.*part)[sample.layer])) * further->count.*number;
+      other_count += further->count.*number;
+    }
+    others = other_count > 0 ? others / other_count : 0;
+    const double beside = around(samples.width, samples.height, x, y, [&](std::size_t p) { return channel_mean(Rgbd(pixels[p][sample.layer])); });
+    const double allowed = error + std::max(others, beside);
     if (!(claimed > allowed) || !std::isfinite(claimed)) return;
-    found.push_back({pixel, sample.layer, level_of(claimed - allowed, error, last), Rgbd(sample.radiance) * ((1 - allowed / claimed) / count)});
+    // Did further samples find as much again, about one such sample? Then it was not alone.
+    if (further && (others - beside) * other_count >= kConfirmed * claimed * count) return;
+    found.push_back({pixel, sample.layer, level_of(claimed - allowed, error, last), Rgbd(sample.radiance) * ((1 - allowed / claimed) / count), count});
   };
-  const PathParts& means = samples.parts[pixel];
-  look(brightest.own, means.own, counts.own);
-  look(brightest.lit, means.lit, counts.lit);
-  look(brightest.onward, means.onward, counts.onward);
+  look(brightest.own, &PathParts::own, &PartCounts::own);
+  look(brightest.lit, &PathParts::lit, &PartCounts::lit);
+  look(brightest.onward, &PathParts::onward, &PartCounts::onward);
+}
+
+std::vector<Excess> all_excess(const SampledPixels& samples, const std::vector<Layers>& pixels, const std::vector<double>& radiances) {
+  const int width = samples.width, last = last_level(width, samples.height);
+  std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
+  const std::vector<double> errors = errors_of(samples, radiances);
+  parallel_chunks(by_row.size(), 1, [&](std::size_t y, std::size_t) {
+    for (int x = 0; x < width; ++x) excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), last, by_row[y]);
+  });
+  std::vector<Excess> all;
+  for (const std::vector<Excess>& row : by_row) all.insert(all.end(), row.begin(), row.end());
+  return all;
 }
 
 }  // namespace
@@ -161,15 +185,17 @@ void BrightestSample::note(const Layers& sample, bool specular_alone) {
   }
 }
 
+std::vector<std::size_t> pixels_to_judge(const SampledPixels& samples, const std::vector<Layers>& pixels) {
+  std::vector<std::size_t> found;
+  for (const Excess& excess : all_excess(samples, pixels, radiances_of(pixels)))
+    if (excess.samples < kJudges && (found.empty() || found.back() != excess.pixel)) found.push_back(excess.pixel);
+  return found;
+}
+
 double spread_outliers(const SampledPixels& samples, std::vector<Layers>& pixels) {
-  const int width = samples.width, height = samples.height, last = last_level(width, height);
-  std::vector<std::vector<Excess>> by_row(samples.counts.size() / std::size_t(std::max(1, width)));
-  const std::vector<double> radiances = radiances_of(pixels), errors = errors_of(samples, radiances);
-  parallel_chunks(by_row.size(), 1, [&](std::size_t y, std::size_t) {
-    for (int x = 0; x < width; ++x) excess_of(samples, pixels, errors[y * std::size_t(width) + std::size_t(x)], x, int(y), last, by_row[y]);
-  });
-  std::vector<Excess> all;
-  for (const std::vector<Excess>& row : by_row) all.insert(all.end(), row.begin(), row.end());
+  const int width = samples.width, height = samples.height;
+  const std::vector<double> radiances = radiances_of(pixels);
+  std::vector<Excess> all = all_excess(samples, pixels, radiances);
   if (all.empty()) return 0;
   const double light = std::accumulate(radiances.begin(), radiances.end(), 0.0);
   double moved = 0;

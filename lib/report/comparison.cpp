@@ -21,10 +21,18 @@ void ComparisonBuilder::add(const Compared& pair, int frame, const std::string& 
   comparison_.channels = pair.channels;
 
   ErrorSums sums = sum_errors(pair, frame);
-  comparison_.frames.push_back({frame, figures_of(sums, min_object_pixels_)});
+  comparison_.frames.push_back({frame, figures_of(sums, min_object_pixels_), {}});
   if (first) total_ = std::move(sums);
   else add_errors(*total_, sums);
   flicker_.add(pair);
+}
+
+void ComparisonBuilder::add(const AnimationQuality& quality, const VisionOptions& options) {
+  TEMPOLUX_CHECK(!comparison_.frames.empty());
+  comparison_.viewing = options;
+  comparison_.frames.back().quality = quality;
+  if (!comparison_.quality) comparison_.quality.emplace();
+  comparison_.quality->add(quality);
 }
 
 Comparison ComparisonBuilder::finish() {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lib/aqm/animation_quality.h"
 #include "lib/aqm/frame_error.h"
 
 namespace tempolux {
@@ -30,10 +31,14 @@ struct Comparison {
   struct Frame {
     int frame = 0;
     FrameError error;
+    std::optional<AnimationQuality> quality;          ///< AQM, where it was asked for
   };
   std::vector<Frame> frames;
   FrameError total;                                   ///< over all frames
   std::optional<SquaredFigure> flicker;               ///< absent for one frame
+  std::optional<AnimationQuality> quality;            ///< AQM over all frames
+  std::optional<VisionOptions> viewing;               ///< who looked, where there is AQM
+  std::string flow;                                   ///< file or pattern; "": everything stood still
 };
 
 /// Collects the frames of a comparison, one in memory at a time.
@@ -44,6 +49,8 @@ class ComparisonBuilder {
   ComparisonBuilder(Comparison comparison, std::uint64_t min_object_pixels);
   /// Adds a frame. Throws InputError if its size or channels differ from those of the frames before.
   void add(const Compared& pair, int frame, const std::string& name);
+  /// AQM of the frame added last, and under which options, the same for all frames.
+  void add(const AnimationQuality& quality, const VisionOptions& options);
   /// Totals over the frames added, of which there must be one.
   Comparison finish();
 
@@ -54,7 +61,7 @@ class ComparisonBuilder {
   FlickerMeter flicker_;
 };
 
-/// The document of comparison.md, version 1.0. Equal comparisons give equal text.
+/// The document of comparison.md. Equal comparisons give equal text.
 std::string comparison_json(const Comparison& comparison);
 
 /// A table with one line per frame, then the total, flicker, the worst objects, and what to keep in mind.

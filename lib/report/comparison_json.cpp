@@ -58,6 +58,37 @@ Json error_json(const FrameError& error, ComparisonMode mode) {
   return json;
 }
 
+/// Share of pixels seen to differ, in percent.
+Json share_json(const SeenShare& share) {
+  return {{"percent", 100 * share.share()}, {"seen", share.seen}, {"pixels", share.pixels}};
+}
+
+Json quality_json(const AnimationQuality& quality) {
+  Json json = share_json(quality.all);
+  if (quality.adaptation_luminance > 0) json["adaptation_luminance"] = quality.adaptation_luminance;
+  json["objects"] = Json::array();
+  for (const auto& [id, share] : quality.objects) {
+    Json object = {{"id", id}};
+    object.update(share_json(share));
+    json["objects"].push_back(std::move(object));
+  }
+  return json;
+}
+
+Json viewing_json(const VisionOptions& viewing, const std::string& flow) {
+  const vision::Display& display = viewing.display;
+  return {{"display", display.name},
+          {"white", display.white},
+          {"peak", display.peak},
+          {"black", display.black},
+          {"pixels_per_degree", display.pixels_per_degree},
+          {"eye", viewing.gaze == vision::Gaze::track ? "track" : "fixed"},
+          {"frames_per_second", viewing.frames_per_second},
+          {"exposure_stops", viewing.exposure_stops},
+          {"flow", flow.empty() ? Json(nullptr) : Json(flow)},
+          {"seen_above", vision::kSeenProbability}};
+}
+
 const char* mode_name(ComparisonMode mode) {
   switch (mode) {
     case ComparisonMode::reference_halves: return "reference_halves";
@@ -70,7 +101,7 @@ const char* mode_name(ComparisonMode mode) {
 
 std::string comparison_json(const Comparison& comparison) {
   Json json = {{"schema", "tempolux.comparison"},
-               {"version", "1.0"},
+               {"version", comparison.quality ? "1.1" : "1.0"},
                {"command", comparison.command},
                {"test", comparison.test},
                {"references", comparison.references},
@@ -80,12 +111,15 @@ std::string comparison_json(const Comparison& comparison) {
                {"width", comparison.width},
                {"height", comparison.height}};
   if (!comparison.relative_to.empty()) json["relative_to"] = comparison.relative_to;
+  if (comparison.viewing) json["viewing"] = viewing_json(*comparison.viewing, comparison.flow);
   json["total"] = error_json(comparison.total, comparison.mode);
   if (comparison.flicker) put_squared(json["total"], "flicker", "flicker_squared", *comparison.flicker);
+  if (comparison.quality) json["total"]["aqm"] = quality_json(*comparison.quality);
   json["frames"] = Json::array();
   for (const Comparison::Frame& frame : comparison.frames) {
     Json entry = {{"frame", frame.frame}};
     entry.update(error_json(frame.error, comparison.mode));
+    if (frame.quality) entry["aqm"] = quality_json(*frame.quality);
     json["frames"].push_back(std::move(entry));
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -71,6 +71,32 @@ std::string worst_objects(const std::vector<ObjectError>& objects) {
   return text;
 }
 
+/// AQM by frame and object, and who looked.
+std::string quality_text(const Comparison& comparison) {
+  const AnimationQuality& total = *comparison.quality;
+  const VisionOptions& viewing = *comparison.viewing;
+  std::string text;
+  if (comparison.frames.size() > 1)
+    for (const Comparison::Frame& frame : comparison.frames)
+      text += format("frame %d: AQM %.2f %%\n", frame.frame, 100 * frame.quality->all.share());
+  text += format("AQM %.2f %%: %llu of %llu pixels are seen to differ (P > %.2f)\n", 100 * total.all.share(),
+                 static_cast<unsigned long long>(total.all.seen),
+                 static_cast<unsigned long long>(total.all.pixels), vision::kSeenProbability);
+  std::vector<std::pair<std::uint32_t, SeenShare>> objects(total.objects.begin(), total.objects.end());
+  std::ranges::stable_sort(objects, std::ranges::greater{},
+                           [](const auto& object) { return object.second.seen; });
+  for (std::size_t i = 0; i < std::min<std::size_t>(objects.size(), 3) && objects[i].second.seen; ++i)
+    text += format("  object %u: %.2f %% of its pixels, %.1f %% of those seen\n", objects[i].first,
+                   100 * objects[i].second.share(),
+                   100 * double(objects[i].second.seen) / double(total.all.seen));
+  return text +
+         format("display %s, %g cd/m2, %.1f pixels/degree, exposure %+.2f stops, eyes %s at %g frames/s; ",
+                viewing.display.name.c_str(), viewing.display.peak, viewing.display.pixels_per_degree,
+                viewing.exposure_stops, viewing.gaze == vision::Gaze::track ? "track" : "fixed",
+                viewing.frames_per_second) +
+         (comparison.flow.empty() ? "no flow: everything stands still" : "flow " + comparison.flow) + "\n";
+}
+
 }  // namespace
 
 std::string comparison_text(const Comparison& comparison) {
@@ -100,6 +126,7 @@ std::string comparison_text(const Comparison& comparison) {
         total.largest.value, total.largest.channel.empty() ? "Y" : total.largest.channel.c_str(),
         total.largest.x, total.largest.y, total.largest.frame, total.mean_difference.value);
   text += worst_objects(total.objects);
+  if (comparison.quality) text += quality_text(comparison);
   if (comparison.mode == ComparisonMode::own_halves)
     return text + format("noise of the mean of the two halves: RMS %.4g\n", noise_of_mean(total).root());
   text += caveat("RMSE", total.squared_error);

@@ -1,5 +1,6 @@
 // lib/scene/gltf_animation.cpp -- animations as tracks: translation, rotation, scale and morph weights of nodes.
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -16,11 +17,18 @@ namespace {
 using Path = AnimationTrack::Path;
 using Interpolation = AnimationTrack::Interpolation;
 
-Interpolation interpolation_of(const Import& import, const std::string& name, const std::string& place) {
-  if (name == "LINEAR") return Interpolation::linear;
-  if (name == "STEP") return Interpolation::step;
-  if (name == "CUBICSPLINE") return Interpolation::cubic_spline;
-  import.fail(place + ".interpolation", "\"" + name + "\" is not LINEAR, STEP or CUBICSPLINE");
+constexpr std::array kInterpolations{std::pair{"LINEAR", Interpolation::linear}, std::pair{"STEP", Interpolation::step},
+                                     std::pair{"CUBICSPLINE", Interpolation::cubic_spline}};
+
+bool is_known(const std::string& interpolation) {
+  return std::ranges::any_of(kInterpolations, [&](const auto& known) { return interpolation == known.first; });
+}
+
+/// LINEAR, glTF's own default, for a name that glTF does not have: keys are where they are.
+Interpolation interpolation_of(const std::string& name) {
+  for (const auto& [known, interpolation] : kInterpolations)
+    if (name == known) return interpolation;
+  return Interpolation::linear;
 }
 
 /// True and the path if the channel is of a node of the scene.
@@ -88,7 +96,7 @@ AnimationTrack read_track(Import& import, const tinygltf::Animation& source, int
   track.target = target;
   track.path = path;
   track.components = components_of(import, path, target, place);
-  track.interpolation = interpolation_of(import, sampler.interpolation, place);
+  track.interpolation = interpolation_of(sampler.interpolation);
   track.times_s = read_numbers(import, sampler.input, 1, place + ".input");
   for (std::size_t i = 1; i < track.times_s.size(); ++i)
     if (!(track.times_s[i] > track.times_s[i - 1]))
@@ -99,6 +107,9 @@ AnimationTrack read_track(Import& import, const tinygltf::Animation& source, int
     import.fail(place,
                 "animates a node that is given by a matrix; export it as translation, rotation, scale");
   read_values(import, sampler, place, track);
+  if (!is_known(sampler.interpolation))
+    import.mend(place, "channels whose interpolation \"" + one_line(sampler.interpolation, 40) +
+                           "\" glTF does not have are played as LINEAR", 1);
   return track;
 }
 
@@ -126,23 +137,33 @@ std::size_t target_count(const tinygltf::Mesh& mesh) {
 
 namespace {
 
-/// All tracks of one animation. Throws InputError if something is wrong with one of them.
-std::vector<AnimationTrack> read_tracks(Import& import, std::size_t index) {
+/// The tracks of one animation. A channel with which something is wrong is left out with a warning, or with `strict` refused by InputError.
+std::vector<AnimationTrack> read_tracks(Import& import, std::size_t index, bool strict) {
   const tinygltf::Animation& source = import.model.animations[index];
   std::vector<AnimationTrack> tracks;
-  for (std::size_t c = 0; c < source.channels.size(); ++c) {
-    const std::string place = place_of("animations", index, source.name) + ".channels[" + std::to_string(c) + "]";
-    Path path{};
-    if (!wanted(import, source.channels[c], place, path)) continue;
-    const int target = import.node_from_source[std::size_t(source.channels[c].target_node)];
-    tracks.push_back(read_track(import, source, source.channels[c].sampler, path, target, place));
-  }
-  for (const PointerChannel& channel : import.gated->pointers) {
-    PointedAt at;
-    if (channel.animation != index || !resolve_pointer(import, channel.pointer, at)) continue;
-    const std::string place = place_of("animations", index, source.name) + ": pointer " + one_line(channel.pointer, 100);
-    tracks.push_back(read_track(import, source, channel.sampler, at.path, at.target, place));
-  }
+  const auto attempt = [&](const auto& read) {
+    try {
+      read();
+    } catch (const InputError& error) {
+      if (strict) throw;
+      import.scene.warnings.push_back(error.what() + std::string("; this channel is not played"));
+    }
+  };
+  for (std::size_t c = 0; c < source.channels.size(); ++c)
+    attempt([&] {
+      const std::string place = place_of("animations", index, source.name) + ".channels[" + std::to_string(c) + "]";
+      Path path{};
+      if (!wanted(import, source.channels[c], place, path)) return;
+      const int target = import.node_from_source[std::size_t(source.channels[c].target_node)];
+      tracks.push_back(read_track(import, source, source.channels[c].sampler, path, target, place));
+    });
+  for (const PointerChannel& channel : import.gated->pointers)
+    attempt([&] {
+      PointedAt at;
+      if (channel.animation != index || !resolve_pointer(import, channel.pointer, at)) return;
+      const std::string place = place_of("animations", index, source.name) + ": pointer " + one_line(channel.pointer, 100);
+      tracks.push_back(read_track(import, source, channel.sampler, at.path, at.target, place));
+    });
   return tracks;
 }
 
@@ -154,14 +175,7 @@ void import_animations(Import& import, const std::string& only) {
   for (std::size_t a = 0; a < import.model.animations.size(); ++a) {
     const tinygltf::Animation& source = import.model.animations[a];
     if (!only.empty() && name_of(source, a) != only) continue;
-    std::vector<AnimationTrack> tracks;
-    try {
-      tracks = read_tracks(import, a);
-    } catch (const InputError& error) {
-      if (!only.empty()) throw;
-      import.scene.warnings.push_back(error.what() + std::string("; this animation is not played"));
-      continue;
-    }
+    std::vector<AnimationTrack> tracks = read_tracks(import, a, !only.empty());
     Animation animation;
     animation.name = source.name;
     for (AnimationTrack& track : tracks) {

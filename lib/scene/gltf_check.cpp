@@ -218,12 +218,13 @@ void convert(const Elements& elements, double scale, Put put) {
   }
 }
 
-/// Any component type but 32-bit integers (which glTF keeps for indices) as numbers.
+/// Any component type but 32-bit integers (which glTF keeps for indices) as numbers, put(element, component, value). Elements
+/// with NaN or infinity are listed once each; what was put of them is to be overwritten.
 template <class Put>
-void read_all(Import& import, const Elements& elements, const std::string& place, int index, Put put_value) {
-  bool finite = true;
+std::vector<std::uint32_t> read_all(Import& import, const Elements& elements, const std::string& place, int index, Put put_value) {
+  std::vector<std::uint32_t> unusable;
   const auto put = [&](std::uint64_t i, int c, double value) {
-    finite = finite && std::isfinite(value);
+    if (!std::isfinite(value) && (unusable.empty() || unusable.back() != i)) unusable.push_back(std::uint32_t(i));
     put_value(i, c, value);
   };
   switch (elements.component_type) {
@@ -251,12 +252,21 @@ void read_all(Import& import, const Elements& elements, const std::string& place
       import.fail(place,
                   "accessor " + std::to_string(index) + " has 32-bit integers where numbers are needed");
   }
-  if (!finite)
-    import.fail(place, "accessor " + std::to_string(index) +
-                           " holds NaN or infinity; export the mesh again without it");
+  return unusable;
+}
+
+void refuse(const Import& import, int index, const std::string& place, const std::vector<std::uint32_t>& unusable) {
+  if (!unusable.empty())
+    import.fail(place, "accessor " + std::to_string(index) + " holds NaN or infinity; export the mesh again without it");
 }
 
 }  // namespace
+
+void Import::mend(const std::string& place, const std::string& what, std::size_t count) {
+  Mended& sort = mended[what];
+  if (sort.places++ == 0) sort.first_place = place;
+  sort.count += count;
+}
 
 void Import::take_memory(std::uint64_t bytes, const std::string& place) {
   if (bytes > geometry_budget)
@@ -270,21 +280,30 @@ void check_accessors(const Import& import) {
   for (std::size_t i = 0; i < import.model.accessors.size(); ++i) check_accessor(import, i);
 }
 
-std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place) {
+std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place, std::vector<std::uint32_t>& unusable) {
   const Elements elements = open_accessor(import, accessor, 3, place);
   import.take_memory(elements.count * sizeof(Vec3), place);
   std::vector<Vec3> values(elements.count);
-  read_all(import, elements, place, accessor,
-           [&](std::uint64_t i, int c, double v) { values[i][c] = float(v); });
+  unusable = read_all(import, elements, place, accessor,
+                      [&](std::uint64_t i, int c, double v) { values[i][c] = float(v); });
+  for (const std::uint32_t i : unusable) values[i] = {};
   return values;
 }
 
-std::vector<Vec2> read_vec2(Import& import, int accessor, const std::string& place) {
+std::vector<Vec2> read_vec2(Import& import, int accessor, const std::string& place, std::vector<std::uint32_t>& unusable) {
   const Elements elements = open_accessor(import, accessor, 2, place);
   import.take_memory(elements.count * sizeof(Vec2), place);
   std::vector<Vec2> values(elements.count);
-  read_all(import, elements, place, accessor,
-           [&](std::uint64_t i, int c, double v) { (c == 0 ? values[i].x : values[i].y) = float(v); });
+  unusable = read_all(import, elements, place, accessor,
+                      [&](std::uint64_t i, int c, double v) { (c == 0 ? values[i].x : values[i].y) = float(v); });
+  for (const std::uint32_t i : unusable) values[i] = {};
+  return values;
+}
+
+std::vector<Vec3> read_vec3(Import& import, int accessor, const std::string& place) {
+  std::vector<std::uint32_t> unusable;
+  std::vector<Vec3> values = read_vec3(import, accessor, place, unusable);
+  refuse(import, accessor, place, unusable);
   return values;
 }
 
@@ -301,13 +320,21 @@ std::vector<std::uint32_t> read_indices(Import& import, int accessor, const std:
   return values;
 }
 
-std::vector<double> read_numbers(Import& import, int accessor, int components, const std::string& place) {
+std::vector<double> read_numbers(Import& import, int accessor, int components, const std::string& place,
+                                 std::vector<std::uint32_t>& unusable) {
   const Elements elements = open_accessor(import, accessor, components, place);
   import.take_memory(elements.count * std::uint64_t(components) * sizeof(double), place);
   std::vector<double> values(elements.count * std::uint64_t(components));
-  read_all(import, elements, place, accessor, [&](std::uint64_t i, int c, double v) {
-    values[i * std::uint64_t(components) + std::uint64_t(c)] = v;
-  });
+  const auto element = [&](std::uint64_t i) { return values.begin() + std::ptrdiff_t(i) * components; };
+  unusable = read_all(import, elements, place, accessor, [&](std::uint64_t i, int c, double v) { element(i)[c] = v; });
+  for (const std::uint32_t i : unusable) std::fill_n(element(i), components, 0.0);
+  return values;
+}
+
+std::vector<double> read_numbers(Import& import, int accessor, int components, const std::string& place) {
+  std::vector<std::uint32_t> unusable;
+  std::vector<double> values = read_numbers(import, accessor, components, place, unusable);
+  refuse(import, accessor, place, unusable);
   return values;
 }
 

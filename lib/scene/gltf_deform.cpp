@@ -15,8 +15,11 @@ std::vector<Vec3> read_displacements(Import& import, const std::map<std::string,
                                      std::size_t vertices, const std::string& place) {
   const auto found = target.find(attribute);
   if (found == target.end()) return {};
-  std::vector<Vec3> values = read_vec3(import, found->second, place + "." + attribute);
+  std::vector<std::uint32_t> unusable;
+  std::vector<Vec3> values = read_vec3(import, found->second, place + "." + attribute, unusable);
   if (values.size() != vertices) import.fail(place, "does not have as many displacements as the mesh has vertices");
+  if (!unusable.empty())
+    import.mend(place + "." + attribute, "displacements with NaN or infinity are left out", unusable.size());
   return values;
 }
 
@@ -110,17 +113,20 @@ std::vector<double> weights_of(const Import& import, const Node& node) {
   return given.empty() ? std::vector<double>(count, 0) : given;
 }
 
-/// Numbers of one attribute of EXT_mesh_gpu_instancing; empty if it is not there.
+/// Numbers of one attribute of EXT_mesh_gpu_instancing; empty if it is not there. `usable`: a mark for each instance, cleared where
+/// one of its numbers is not finite.
 std::vector<double> instance_numbers(Import& import, const tinygltf::Value& attributes, const char* name,
-                                     std::size_t components, std::size_t& count, const std::string& place) {
+                                     std::size_t components, std::vector<bool>& usable, const std::string& place) {
   if (!attributes.Has(name)) return {};
   const tinygltf::Value& accessor = attributes.Get(name);
   if (!accessor.IsInt()) import.fail(place + "." + name, "is not the index of an accessor");
+  std::vector<std::uint32_t> unusable;
   std::vector<double> numbers =
-      read_numbers(import, accessor.GetNumberAsInt(), int(components), place + "." + name);
-  if (count != 0 && numbers.size() / components != count)
+      read_numbers(import, accessor.GetNumberAsInt(), int(components), place + "." + name, unusable);
+  if (!usable.empty() && numbers.size() / components != usable.size())
     import.fail(place, "its attributes have different counts");
-  count = numbers.size() / components;
+  usable.resize(numbers.size() / components, true);
+  for (const std::uint32_t i : unusable) usable[i] = false;
   return numbers;
 }
 
@@ -137,17 +143,19 @@ std::vector<Affine> instances_of(Import& import, const Node& node) {
     return {};
   }
   const tinygltf::Value& attributes = found->second.Get("attributes");
-  std::size_t count = 0;
-  const auto t = instance_numbers(import, attributes, "TRANSLATION", 3, count, place);
-  const auto r = instance_numbers(import, attributes, "ROTATION", 4, count, place);
-  const auto s = instance_numbers(import, attributes, "SCALE", 3, count, place);
-  import.take_memory(count * 320, place);  // with its surface
+  std::vector<bool> usable;
+  const auto t = instance_numbers(import, attributes, "TRANSLATION", 3, usable, place);
+  const auto r = instance_numbers(import, attributes, "ROTATION", 4, usable, place);
+  const auto s = instance_numbers(import, attributes, "SCALE", 3, usable, place);
+  import.take_memory(usable.size() * 320, place);  // with its surface
   std::vector<Affine> instances;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < usable.size(); ++i) {
     std::array<double, 4> rotation{0, 0, 0, 1};
     if (!r.empty()) std::copy_n(&r[4 * i], 4, rotation.begin());
-    if (!normalize_rotation(rotation))
-      import.fail(place + ".ROTATION", "quaternion " + std::to_string(i) + " has zero length");
+    if (!usable[i] || !normalize_rotation(rotation)) {
+      import.mend(place, "instances with NaN, infinity or a rotation of zero length are left out", 1);
+      continue;
+    }
     const auto vector = [i](const std::vector<double>& v, double rest) {
       return v.empty() ? Vec3d{rest, rest, rest} : Vec3d{v[3 * i], v[3 * i + 1], v[3 * i + 2]};
     };
@@ -179,7 +187,12 @@ void read_influences(Import& import, const tinygltf::Primitive& source, const st
     const auto w = source.attributes.find("WEIGHTS_" + std::to_string(set));
     if (j == source.attributes.end() || w == source.attributes.end()) break;
     joints.push_back(read_numbers(import, j->second, 4, place + "." + j->first));
-    weights.push_back(read_numbers(import, w->second, 4, place + "." + w->first));
+    std::vector<std::uint32_t> unusable;   // become 0
+    weights.push_back(read_numbers(import, w->second, 4, place + "." + w->first, unusable));
+    std::size_t left_out = unusable.size();
+    for (double& weight : weights.back())
+      if (weight < 0) weight = 0, ++left_out;
+    if (left_out > 0) import.mend(place + "." + w->first, "joint weights below 0, NaN or infinite are left out", left_out);
     if (joints.back().size() != 4 * primitive.positions.size() || weights.back().size() != joints.back().size())
       import.fail(place, "does not have as many joints and weights as positions");
   }
@@ -192,7 +205,6 @@ void read_influences(Import& import, const tinygltf::Primitive& source, const st
     const double joint = joints[set][at], weight = weights[set][at];
     if (!(joint >= 0 && joint <= 65535 && joint == std::floor(joint)))
       import.fail(place + ".JOINTS_" + std::to_string(set), "a joint is not a whole number from 0 to 65535");
-    if (weight < 0) import.fail(place + ".WEIGHTS_" + std::to_string(set), "a weight is negative");
     primitive.influences[i] = {weight > 0 ? std::uint16_t(joint) : std::uint16_t(0), float(weight)};
   }
   normalize_weights(import, primitive);

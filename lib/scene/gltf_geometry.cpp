@@ -5,6 +5,7 @@
 
 #include "lib/scene/gltf_check.h"
 #include "lib/scene/gltf_deform.h"
+#include "lib/scene/gltf_mend.h"
 #include "lib/scene/tangents.h"
 
 namespace tempolux::gltf {
@@ -73,18 +74,17 @@ std::vector<std::uint32_t> vertex_order(Import& import, const tinygltf::Primitiv
 }
 
 void read_normals(Import& import, int accessor, const std::string& place, Primitive& primitive) {
-  primitive.normals = read_vec3(import, accessor, place);
+  std::vector<std::uint32_t> unusable;
+  primitive.normals = read_vec3(import, accessor, place, unusable);   // those become 0, too
   if (primitive.normals.size() != primitive.positions.size())
     import.fail(place, "there are not as many normals as positions");
-  for (Vec3& normal : primitive.normals) {
-    const Vec3d unit = normalize(Vec3d(normal));
-    if (length2(unit) == 0) {
-      import.ignore("normals of zero length (their primitives are flat shaded)");
-      primitive.normals.clear();
-      return;
-    }
-    normal = Vec3(unit);
+  unusable.clear();
+  for (std::size_t v = 0; v < primitive.normals.size(); ++v) {
+    const Vec3d unit = normalize(Vec3d(primitive.normals[v]));
+    if (length2(unit) == 0) unusable.push_back(std::uint32_t(v));
+    primitive.normals[v] = Vec3(unit);
   }
+  mend_normals(import, place, unusable, primitive);
 }
 
 /// Tangents follow the coordinates as the file has them. A texture transform that turns or mirrors the map leaves them
@@ -101,14 +101,15 @@ void read_tangents(Import& import, const tinygltf::Primitive& source, const std:
   const Material& material = import.scene.materials[primitive.material];
   if (found == source.attributes.end() || primitive.normals.empty()) return;
   if (!material.textures || !material.textures->normal || !keeps_axes(material.textures->normal)) return;
-  const std::vector<double> numbers = read_numbers(import, found->second, 4, place);
+  std::vector<std::uint32_t> unusable;   // become 0
+  const std::vector<double> numbers = read_numbers(import, found->second, 4, place, unusable);
   const std::size_t count = primitive.positions.size();
   if (numbers.size() != 4 * count) import.fail(place, "there are not as many tangents as positions");
   import.take_memory(count * (sizeof(Vec3) + sizeof(float)), place);
   for (std::size_t v = 0; v < count; ++v) {
     const Vec3d unit = normalize(Vec3d{numbers[4 * v], numbers[4 * v + 1], numbers[4 * v + 2]});
     if (length2(unit) == 0) {
-      import.ignore("tangents of zero length (theirs are made from the texture coordinates)");
+      import.ignore("tangents of zero length, NaN or infinity (theirs are made from the texture coordinates)");
       primitive.tangents.clear(), primitive.tangent_sides.clear();
       return;
     }
@@ -117,13 +118,18 @@ void read_tangents(Import& import, const tinygltf::Primitive& source, const std:
   }
 }
 
-std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, const char* name,
-                           std::size_t vertices, const std::string& place) {
+std::vector<Vec2> read_uvs(Import& import, const tinygltf::Primitive& source, const char* name, const Primitive& primitive,
+                           const std::string& place) {
   const auto found = source.attributes.find(name);
   if (found == source.attributes.end()) return {};
-  std::vector<Vec2> uvs = read_vec2(import, found->second, place + "." + name);
-  if (uvs.size() != vertices)
+  std::vector<std::uint32_t> unusable;
+  std::vector<Vec2> uvs = read_vec2(import, found->second, place + "." + name, unusable);
+  if (uvs.size() != primitive.positions.size())
     import.fail(place + "." + name, "there are not as many texture coordinates as positions");
+  static_assert(sizeof(Vec2) == 2 * sizeof(float));
+  if (unusable.empty()) return uvs;
+  mend_from_neighbours(primitive, unusable, {&uvs.front().x, 2 * uvs.size()}, 2);
+  import.mend(place + "." + name, "texture coordinates with NaN or infinity take the mean of their neighbours'", unusable.size());
   return uvs;
 }
 
@@ -134,20 +140,25 @@ void read_colors(Import& import, const tinygltf::Primitive& source, const std::s
   const auto accessor = std::size_t(found->second);
   const bool rgb = accessor < import.model.accessors.size() && import.model.accessors[accessor].type == TINYGLTF_TYPE_VEC3;
   const std::size_t components = rgb ? 3 : 4;
-  const std::vector<double> numbers = read_numbers(import, found->second, int(components), place);
+  std::vector<std::uint32_t> unusable;
+  const std::vector<double> numbers = read_numbers(import, found->second, int(components), place, unusable);
   const std::size_t count = primitive.positions.size();
   if (numbers.size() != components * count) import.fail(place, "there are not as many colours as positions");
   import.take_memory(count * sizeof(primitive.colors[0]), place);
   primitive.colors.assign(count, {1, 1, 1, 1});
-  bool white = true, outside = false;
+  bool outside = false;
   for (std::size_t v = 0; v < count; ++v)
     for (std::size_t c = 0; c < components; ++c) {
       const double number = numbers[components * v + c];
       outside |= number < 0 || number > 1;
-      white &= (primitive.colors[v][c] = float(std::clamp(number, 0.0, 1.0))) == 1;
+      primitive.colors[v][c] = float(std::clamp(number, 0.0, 1.0));
     }
   if (outside) import.ignore("what vertex colours have below 0 and above 1");
-  if (white) {
+  if (!unusable.empty()) {
+    mend_from_neighbours(primitive, unusable, {primitive.colors.front().data(), 4 * count}, 4);
+    import.mend(place, "colours with NaN or infinity take the mean of their neighbours'", unusable.size());
+  }
+  if (std::ranges::all_of(primitive.colors, [](const auto& color) { return color == std::array<float, 4>{1, 1, 1, 1}; })) {
     primitive.colors.clear();
     return;
   }
@@ -191,8 +202,8 @@ Primitive read_primitive(Import& import, const tinygltf::Primitive& source, cons
     import.ignore("triangles of zero area", before - primitive.triangles.size());
   if (const auto normal = source.attributes.find("NORMAL"); normal != source.attributes.end())
     read_normals(import, normal->second, place + ".NORMAL", primitive);
-  primitive.uvs = read_uvs(import, source, "TEXCOORD_0", primitive.positions.size(), place);
-  primitive.uvs1 = read_uvs(import, source, "TEXCOORD_1", primitive.positions.size(), place);
+  primitive.uvs = read_uvs(import, source, "TEXCOORD_0", primitive, place);
+  primitive.uvs1 = read_uvs(import, source, "TEXCOORD_1", primitive, place);
   if (source.material < -1 || source.material >= int(import.model.materials.size()))
     import.fail(place + ".material", "material " + std::to_string(source.material) + " does not exist");
   primitive.material = source.material == -1 ? std::uint32_t(import.scene.materials.size() - 1)

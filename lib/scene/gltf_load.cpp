@@ -102,6 +102,10 @@ Scene import_scene(const std::string& path, const GltfOptions& options) {
   for (const auto& [what, count] : import.ignored)
     scene.warnings.push_back(path + ": ignored: " + what +
                              (count > 1 ? ", " + std::to_string(count) + " times" : ""));
+  for (const auto& [what, mended] : import.mended)
+    scene.warnings.push_back(path + ": " + mended.first_place +
+                             (mended.places > 1 ? " and " + std::to_string(mended.places - 1) + " more" : "") + ": " + what +
+                             (mended.count > 1 ? " (" + std::to_string(mended.count) + ")" : ""));
   return scene;
 }
 

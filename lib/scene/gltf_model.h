@@ -37,6 +37,11 @@ struct Import {
   std::vector<EncodedImage> images{};              ///< of the scene, as they are met
   std::vector<std::uint32_t> image_from_source{};  ///< image of the file -> of the scene, kNone: not read
   std::map<std::string, std::size_t> ignored{};  ///< what was ignored -> how often; warnings at the end
+  struct Mended {
+    std::string first_place;
+    std::size_t count = 0, places = 0;
+  };
+  std::map<std::string, Mended> mended{};  ///< what was wrong and what became of it; warnings at the end
 
   [[noreturn]] void fail(const std::string& place, const std::string& what) const {
     gltf::fail(scene.path, place, what);
@@ -45,6 +50,8 @@ struct Import {
   /// than its own size can mean.
   void take_memory(std::uint64_t bytes, const std::string& place);
   void ignore(const std::string& what, std::size_t count = 1) { ignored[what] += count; }
+  /// `what`: things in the plural and what was done, as "weights below 0 are left out"; `count` of them at `place`.
+  void mend(const std::string& place, const std::string& what, std::size_t count);
 };
 
 /// Makes a quaternion x y z w unit; false if it is zero or not finite.
@@ -70,8 +77,8 @@ void import_lights(Import& import);      ///< gltf_material.cpp: KHR_lights_punc
 void import_cameras(Import& import);     ///< gltf_material.cpp
 void import_meshes(Import& import);      ///< gltf_geometry.cpp: those that nodes use
 void import_deformation(Import& import); ///< gltf_deform.cpp: skins, morph weights, instances of nodes
-/// gltf_animation.cpp. `only`: the animation of this name (an unnamed one is "animation INDEX"); empty: all, but for those
-/// with which something is wrong: a warning names what, and the scene is still without them.
+/// gltf_animation.cpp. `only`: the animation of this name (an unnamed one is "animation INDEX"); empty: all, but for
+/// channels with which something is wrong: a warning names what, and the scene is still without them.
 void import_animations(Import& import, const std::string& only);
 
 }  // namespace tempolux::gltf

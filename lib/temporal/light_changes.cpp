@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/core/check.h"
 #include "lib/core/random.h"
 
 namespace tempolux {
@@ -23,6 +24,7 @@ bool holds(const Box3& box, Vec3 p) {
 bool is_bright(const TemporalScene& scene, std::uint32_t point) { return point < scene.high_shares.size() && scene.high_shares[point] > 0; }
 
 LightChanges light_changes(const TemporalScene& scene, const KeptHemispheres& kept) {
+  TEMPOLUX_CHECK(kept.point_light.size() <= scene.points.size());
   LightChanges changes;
   const SceneFrame& now = scene.tracer.frame();
   changes.boxes = swept_boxes(*scene.before, now);

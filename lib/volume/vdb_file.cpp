@@ -97,8 +97,8 @@ ChildResult ask(std::span<const VdbName> names, std::uint64_t bytes, std::uint64
   }
   const std::string program = helper_program("tempolux-vdb", names[0].path + ": reading OpenVDB");
   ChildLimits limits;
-  limits.memory_bytes = max_memory ? max_memory : kMemory + kExpansion * largest;
-  limits.output_bytes = max_memory ? max_memory : kMemory + kExpansion * bytes;
+  limits.memory_bytes = max_memory ? max_memory : memory_that_fits(kMemory + kExpansion * largest);
+  limits.output_bytes = max_memory ? max_memory : memory_that_fits(kMemory + kExpansion * bytes);
   limits.processor_s = int(std::min<std::uint64_t>(1 + bytes / kSlowest, 100'000));
   return run_child(program, {}, {reinterpret_cast<const unsigned char*>(request.data()), request.size()}, limits);
 }

@@ -29,7 +29,7 @@ std::vector<unsigned char> vdb_file_of(const ColourGrid& grid) {
     to += sizeof rgb;
   }
   ChildLimits limits;
-  limits.memory_bytes = (std::uint64_t(1) << 30) + 8 * std::uint64_t(input.size());
+  limits.memory_bytes = memory_that_fits((std::uint64_t(1) << 30) + 8 * std::uint64_t(input.size()));
   limits.output_bytes = (std::uint64_t(64) << 20) + 2 * std::uint64_t(input.size());
   ChildResult result = run_child(helper_program("tempolux-vdb", "writing OpenVDB"), {"write"}, input, limits);
   if (!result.trouble.empty()) throw ResourceError("writing OpenVDB: tempolux-vdb " + result.trouble);

@@ -54,7 +54,7 @@ IDEAS = (
     Idea("photons by importance", "photons of suns and skies start where cameras look", "photons",
          (("lib/render/seen_spheres.cpp", "if (!(gain >= kLeastGain)) return {};", "if (!(gain >= 1e9 * kLeastGain)) return {};"),)),
     Idea("more photons", "up to 16 times as many photon paths where few of them arrive", "photons",
-         (("pipelines/quality.mk", "LIGHT   = 700k\nPHOTONS = $(or $(plan_paths),$(LIGHT))", "LIGHT   = 700k\nPHOTONS = $(LIGHT)"),)),
+         (("lib/plan/decide.cpp", "if (look.method != IndirectMethod::paths && lights_.has_distant())", "if (look.paths == 0)"),)),
     Idea("points by importance", "points lie where cameras look", "points",
          (("lib/gather/irradiance_points.cpp", "if (seen.empty()) return {};\n  std::vector<double> standing", "if (seen.size() < 1000000) return {};\n  std::vector<double> standing"),)),
     Idea("near hits go on", "rays that end nearer than two radii of an estimate go on for a bounce", "points",
@@ -96,5 +96,5 @@ IDEAS = (
          (("lib/gather/final_gather.cpp", "  record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);",
            "  if (!(length2(lit) > 0)) record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);"),)),
     Idea("rays of records by a pilot", "scene-plan finds how many rays records need", "cache",
-         (("pipelines/quality.mk", "$(LIGHT))\nCACHE   = --rays $(or $(plan_rays),$(RAYS))\n", "$(LIGHT))\nCACHE   = --rays $(RAYS)\n"),)),
+         (("lib/plan/decide.cpp", "look.rays = record_rays(pilot, wish_.rays);", "look.rays = wish_.rays;"),)),
 )

@@ -2,7 +2,6 @@
 
 Functions as in required.py.
 """
-import json
 import math
 import shutil
 import sys
@@ -10,6 +9,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
+import pipeline
 from chain import Settings
 from estimate import spent
 from measure import Missing, figure, median, percent, quantity, running_processes
@@ -106,11 +106,10 @@ def animation(bench, _):
         return figure(title, asked, header, [], None, [f"left out: {reason}"])
     out, load = bench.out / "tmp" / "walk", running_processes()
     shutil.rmtree(out, ignore_errors=True)
-    all_cpu, _ = spent(bench, [f"SCENE={scene.resolve()}", f"FRAMES={frames}", f"SIZE={size}"], out)
-    stages = [sum(json.loads(file.read_text())["cpu_s"] for file in (out / stage).glob("*.json"))
-              for stage in ("photons", "points", "cache", "frames")]
-    pictures = len(list((out / "frames").glob("*.exr")))
-    samples = mean(json.loads(file.read_text())["results"]["samples_per_pixel"] for file in (out / "frames").glob("*.json"))
+    all_cpu, _ = spent(bench, out, SCENE=scene.resolve(), FRAMES=frames, SIZE=size)
+    stages = list(pipeline.cpu_of(out).values())
+    pictures = len(pipeline.plan_of(out)["pictures"])
+    samples = mean(stats["results"]["samples_per_pixel"] for stats in pipeline.stats_of(out, ("frames",)))
     shutil.rmtree(out)
     rows = [[*map(quantity, stages), quantity(all_cpu - sum(stages)), quantity(all_cpu), quantity(all_cpu / pictures), quantity(bench.normalised(all_cpu))]]
     return figure(title, asked, header, rows, None if bench.tiny else bench.normalised(all_cpu) < 150,

@@ -4,8 +4,9 @@ Every process is counted: each writes its statistics, which load, read, write an
 """
 import dataclasses
 import json
-import re
 from pathlib import Path
+
+from pipeline import preset
 
 
 @dataclasses.dataclass(frozen=True)
@@ -25,15 +26,9 @@ class Settings:
 
 
 def final(project):
-    """Those of pipelines/quality.mk with QUALITY=final, records with the rays that they get at most."""
-    text = (project / "pipelines" / "quality.mk").read_text()
-    block = re.search(r"^else\n((?:[A-Z]+ *=.*\n)+)endif", text, re.M).group(1)
-    values = dict(re.findall(r"^([A-Z]+) *= *([^#\n]*?) *(?:#.*)?$", block, re.M))
-    for name, value in values.items():
-        values[name] = value.replace("$(or $(plan_rays),$(RAYS))", values["RAYS"]).replace("$(ERROR)", values["ERROR"])
-    count = values["LIGHT"]
-    photons = int(count.rstrip("kM")) * {"k": 10**3, "M": 10**6}.get(count[-1], 1)
-    return Settings(photons, *(tuple(values.get(name, "").split()) for name in ("POINTS", "CACHE", "PIXELS")), steps=True)
+    """Those of QUALITY=final, records with the rays that they get at most."""
+    words = preset(project)
+    return Settings(words["photons"], *(tuple(words[kind]) for kind in ("points", "records", "pixels")), steps=True)
 
 
 def light(bench, name, stem, seed, settings, size, keep):

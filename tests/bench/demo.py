@@ -10,12 +10,12 @@ FRAMES = 48
 
 def demo(bench, _):
     """What a frame of the demo costs."""
-    frames, count, size = ("0-1", 2, ["SIZE=48x28"]) if bench.tiny else ("0-47x8", 6, [])
+    frames, count, size = ("0-1", 2, "48x28") if bench.tiny else ("0-47x8", 6, None)
     rows, seconds = [], {}
     for quality in ("final", "draft"):
         out = tempfile.mkdtemp()
         try:
-            cpu, disk = spent(bench, [f"FRAMES={frames}", f"QUALITY={quality}", *size], out)
+            cpu, disk = spent(bench, out, FRAMES=frames, QUALITY=quality, SIZE=size)
         finally:
             shutil.rmtree(out)
         cpu = bench.normalised(cpu)

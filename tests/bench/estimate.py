@@ -6,40 +6,29 @@
 """
 import argparse
 import json
-import os
 import shutil
 import tempfile
 from pathlib import Path
 
-import chain
+import pipeline
 from measure import Bench, Missing, figure
 
 CASES = [("S2", "0-47x8", "320x180"), ("S2", "0-47x8", "640x360"), ("S3", "1", "640x360"), ("S4", "0-47x12", "320x180"),
          ("S4", "10", "640x360"), ("PC", "0", "256x256")]
 
 
-def spent(bench, options, out):
+def spent(bench, out, **variables):
     """(CPU seconds, bytes) of `make demo`, plan, preview and all."""
-    before = os.times()
-    bench.run(["env", "-u", "MAKEFLAGS", "-u", "MAKELEVEL", "make", "-s", "-f", "Makefile.example", "-C", bench.project, "demo",
-               f"BIN={bench.bin}", f"OUT={out}", *options])
-    after = os.times()
-    files = [file for kind in ("photons/*.photons", "points/*.irradpoints", "cache/*.irradcache", "frames/*")
-             for file in Path(out).glob(kind) if file.suffix != ".json"]
-    return (after.children_user - before.children_user + after.children_system - before.children_system,
-            sum(file.stat().st_size for file in files))
+    cpu = pipeline.run_make(bench.project, bench.bin, out, **variables)
+    return cpu, pipeline.bytes_of(out)
 
 
 def compared(bench, scene, frames, size):
     """A row, and the two ratios predicted / measured."""
-    settings = chain.final(bench.project)
-    words = {"photon": ("--photons", settings.photons), "point": settings.points, "cache": ("--size", size, *settings.records),
-             "frame": ("--size", size, "--channels", "RGBA,Z,N,id", *settings.pixels)}
-    said = json.loads(bench.run([bench.bin / "scene-plan", scene, "--frames", frames, "--estimate", "--json", "--quiet", *(
-        part for kind, options in words.items() for part in (f"--{kind}-options", " ".join(map(str, options))))]).stdout)
+    said = json.loads(bench.run([bench.bin / "scene-plan", scene, "--frames", frames, "--size", size, "--estimate", "--json", "--quiet"]).stdout)
     out = tempfile.mkdtemp()
     try:
-        cpu, size_of = spent(bench, [f"SCENE={scene}", f"FRAMES={frames}", f"SIZE={size}"], out)
+        cpu, size_of = spent(bench, out, SCENE=scene, FRAMES=frames, SIZE=size)
     finally:
         shutil.rmtree(out)
     ratios = said["cpu_s"] / cpu, said["bytes"] / size_of

@@ -2,10 +2,10 @@
 
 Entries of error-report's manifest, as sweep.py makes them.
 """
-import json
 import os
 
 import chain
+import pipeline
 from measure import big
 
 WINDOW = 5
@@ -73,22 +73,21 @@ def walk_halves(bench, scene, size, judged):
 
 def warping_runs(bench):
     """The camera walks through S4: all of Makefile.example's stages; error of every fourth frame, and of the one after it, so that there is flicker.
-    Swept: the threshold; beside it so many samples in every pixel of every frame, and the preset."""
+    Swept: the threshold; beside it so many samples in every pixel of every frame, the filter with other --pixel-error, and the preset."""
     (scene, _), size = bench.scene("S4"), "48x28" if bench.tiny else "320x180"
     last, judged = (4, [2, 3]) if bench.tiny else (16, [2, 3, 6, 7, 10, 11, 14, 15])
     title = f"S4, hall through which the camera walks, {last + 1} frames, {size}"
     halves = walk_halves(bench, scene, size, judged)
-    sides = [("warping", x, f"{x:g}", ["METHOD=walkthrough", f"THRESHOLD={x}"]) for x in ((1e-4, 1e-1) if bench.tiny else (5e-4, 1e-3, 2e-3, 4e-3, 1e-2))]
-    sides += [("every frame traced", n, big(n), [f"PIXELS=--spp {n} --pixel-error 0"]) for n in ((1, 4) if bench.tiny else (1, 2, 4, 8, 16))]
-    sides += [("FILTER=5", n, big(n), ["FILTER=5", f"FILTER_SPP={n}"]) for n in ((1,) if bench.tiny else (1, 2, 4))]
-    sides += [] if bench.tiny else [("preset", 1, "every frame", []), ("preset", 2, "new noise", ["PIXELS=--spp 4 --pixel-error $(ERROR) --learn-lights --seed-mode frame"])]
+    sides = [("warping", x, f"{x:g}", {"METHOD": "walkthrough", "THRESHOLD": x}) for x in ((1e-4, 1e-1) if bench.tiny else (5e-4, 1e-3, 2e-3, 4e-3, 1e-2))]
+    sides += [("every frame traced", n, big(n), {"PIXELS": f"--spp {n} --pixel-error 0"}) for n in ((1, 4) if bench.tiny else (1, 2, 4, 8, 16))]
+    sides += [("FILTER=5", x, f"{x:g}", {"FILTER": 5, "ERROR": x}) for x in ((0.05,) if bench.tiny else (0.008, 0.016, 0.032))]
+    new_noise = " ".join([*pipeline.preset(bench.project)["pixels"], "--seed-mode frame"])
+    sides += [] if bench.tiny else [("preset", 1, "every frame", {}), ("preset", 2, "new noise", {"PIXELS": new_noise})]
     for curve, x, label, variables in sides:
         out = bench.out / "frames" / f"walk-{curve.split()[0].replace('=', '')}-{label.replace(' ', '-')}"
-        small = ["PHOTONS=20k", "POINTS=--point-count 1k", "CACHE=--rays 40 --error-bound 0.6"] if bench.tiny else []
-        bench.run(["make", "-f", bench.project / "Makefile.example", "--no-print-directory", "demo", f"BIN={bench.bin}", f"SCENE={scene}",
-                   f"FRAMES=0-{last}", f"SIZE={size}", f"OUT={out}", "CHANNELS=RGBA,Z,N,id", *small, *variables])
+        small = {"PHOTONS": "20k", "POINTS": "--point-count 1k", "CACHE": "--rays 40 --error-bound 0.6"} if bench.tiny else {}
+        pipeline.run_make(bench.project, bench.bin, out, SCENE=scene, FRAMES=f"0-{last}", SIZE=size, **small, **variables)
         comparison = out / "error.json"
-        bench.run([bench.bin / "aqm-compare", out / "frames" / "####.exr", "--reference-halves", *halves, "--frames", ",".join(map(str, judged)), "--json",
+        bench.run([bench.bin / "aqm-compare", pipeline.frame_of(out, "####"), "--reference-halves", *halves, "--frames", ",".join(map(str, judged)), "--json",
                    comparison, "-q", "--allow-stale"])
-        stats = [f for f in sorted(out.glob("*/*.json")) if json.loads(f.read_text()).get("schema") == "tempolux.stats"]
-        yield run_of(title, curve, x, label, stats, comparison)
+        yield run_of(title, curve, x, label, pipeline.stats_files(out), comparison)

@@ -10,9 +10,10 @@ last column is its time for the error of the chain. WORK/sheet.png: every fourth
 """
 import argparse
 import json
-import os
 import subprocess
 from pathlib import Path
+
+from pipeline import frame_of, run_make
 
 PROJECT = Path(__file__).resolve().parents[2]
 parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -41,12 +42,8 @@ def read(name):
 
 def chain():
     """CPU seconds of the film, all of it."""
-    clean = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MAKELEVEL")}
-    subprocess.run(["make", "-s", "-f", "Makefile.example", "-C", PROJECT, "demo", f"BIN={options.bin}", f"OUT={options.work / 'chain'}", f"SCENE={options.scene}",
-                    f"FRAMES={options.frames}", f"SIZE={options.size}", f"MOVING={options.moving}", "CHANNELS=RGBA,layers"], check=True, env=clean,
-                   stdout=subprocess.DEVNULL)
-    times = os.times()
-    return times.children_user + times.children_system
+    return run_make(PROJECT, options.bin, options.work / "chain", SCENE=options.scene, FRAMES=options.frames, SIZE=options.size, MOVING=options.moving,
+                    CHANNELS="RGBA,layers")
 
 
 def path(f, name, *words):
@@ -60,11 +57,10 @@ def judged(test, f):
     return found["total"]["rmse"], 100 * found["total"]["bias"], found["total"]["flicker"]
 
 
-before = os.times()
-spent = chain() - before.children_user - before.children_system
+spent = chain()
 frames = last - first + 1
 print(f"{options.scene.name}, {options.size}, {frames} frames, MOVING={options.moving}: {spent:.1f} CPU s, {spent / frames:.3f} a frame", flush=True)
-run("tempolux-info", *(f"chain/frames/{f:04}.exr" for f in range(first, last + 1, 4)), "--sheet", "sheet.png", "--columns", 4)
+run("tempolux-info", *(frame_of("chain", f) for f in range(first, last + 1, 4)), "--sheet", "sheet.png", "--columns", 4)
 print(f"\n| frames | | RMSE | bias | flicker | CPU s a frame | CPU s at the chain's RMSE, over the chain's | flicker there, over the chain's |\n|{'---|' * 8}", flush=True)
 for f in options.judge:
     seconds = {"a seed a frame": 0, "one seed": 0}
@@ -72,7 +68,7 @@ for f in options.judge:
         path(g, f"r.{g:04}.exr", "--halves", "--spp", options.reference, "--seed", 1000003 + g)
         seconds["a seed a frame"] += path(g, f"own.{g:04}.exr", "--spp", options.samples, "--seed", g) / 2
         seconds["one seed"] += path(g, f"one.{g:04}.exr", "--spp", options.samples) / 2
-    rmse, bias, flicker = judged("chain/frames/####.exr", f)
+    rmse, bias, flicker = judged(frame_of("chain", "####"), f)
     if not rmse * flicker:
         raise SystemExit(f"frame {f}: the reference's noise hides the error; give it more samples than {options.reference}")
     print(f"| {f - 1}, {f} | chain | {rmse:.5f} | {bias:+.2f} % | {flicker:.5f} | {spent / frames:.2f} | 1 | 1 |")

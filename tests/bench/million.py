@@ -5,11 +5,11 @@ Functions as in required.py.
 """
 import json
 import os
-import re
 import shutil
 import tempfile
 from pathlib import Path
 
+import pipeline
 import wavy
 from measure import Missing, figure, median, percent, quantity
 
@@ -88,17 +88,11 @@ def million(bench, _):
                    "the triangles moves: the ball."])
 
 
-def frames_of(plan, name):
-    return re.search(rf"^plan_{name} :=(.*)$", plan, re.M).group(1).split()
-
-
-def pipeline(bench, file, frames, size, out):
-    """Statistics by stage of `make demo` on some frames."""
-    bench.run(["env", "-u", "MAKEFLAGS", "-u", "MAKELEVEL", "make", "-s", "-f", "Makefile.example", "-C", bench.project, "demo",
-               f"BIN={bench.bin}", f"OUT={out}", f"SCENE={file}", f"FRAMES={frames}", f"SIZE={size}",
-               *(["QUALITY=draft", "PHOTONS=5k"] if bench.tiny else [])])
-    return {stage: [json.loads(stats.read_text()) for stats in sorted(Path(out).glob(f"{stage}/*.json"))]
-            for stage in ("photons", "points", "cache", "frames")}
+def by_stage(bench, file, frames, size, out):
+    """Statistics by part of the work of `make demo` on some frames."""
+    small = {"QUALITY": "draft", "PHOTONS": "5k"} if bench.tiny else {}
+    pipeline.run_make(bench.project, bench.bin, out, SCENE=file, FRAMES=frames, SIZE=size, **small)
+    return {stage: pipeline.stats_of(out, (stage,)) for stage in pipeline.STAGES}
 
 
 def loading(bench, _):
@@ -112,12 +106,11 @@ def loading(bench, _):
     for name, file, size in cases:
         out = tempfile.mkdtemp(dir=bench.memory)
         try:
-            all_frames = bench.tool("scene-plan", file, "--frames", f"0-{last}", "-o", f"{out}/whole")
-            plan = (Path(out) / "whole" / "plan.mk").read_text()
-            runs = pipeline(bench, file, f"0-{last}x{step}", size, out)
+            all_frames = bench.tool("scene-plan", file, "--frames", f"0-{last}", "--size", size, "-o", f"{out}/whole")
+            many = pipeline.count_of(f"{out}/whole")
+            runs = by_stage(bench, file, f"0-{last}x{step}", size, out)
         finally:
             shutil.rmtree(out)
-        many = {stage: len(frames_of(plan, "pictures" if stage == "frames" else "photons")) for stage in runs}
         opened, spent = cpu(all_frames, LOADING), all_frames["cpu_s"]
         for stage, stats in runs.items():
             if not stats:       # a scene without light that scatters

@@ -28,6 +28,7 @@ import sys
 from pathlib import Path
 
 import chimney
+import pipeline
 import smoky_rooms
 from plot import chart
 
@@ -82,8 +83,8 @@ def measure_updates(options, runner):
         frames = f"{first}-{last}"
         for part in ("fresh", "base", "update"):
             (runner.folder / part).mkdir(exist_ok=True)
-        runner.run("scene-plan", scene, *smoke, "--frames", frames, "-o", runner.folder / "plan")
-        smoke = [*smoke, "--majorants", runner.folder / f"plan/state/majorants.{first:04d}"]
+        runner.run("scene-plan", scene, *smoke, "--frames", frames, "--update", "10%", "-o", runner.folder / "plan")
+        smoke = [*smoke, "--majorants", pipeline.majorants_of(runner.folder / "plan", first)]
         paths = ["--photons", PATHS, "--kinds", "indirect,volume"]
         fresh = runner.folder / "fresh"
         anew = runner.run("photon-trace", scene, *smoke, "--frames", f"{first + 1}-{last}", *paths, "-o", fresh / "p.####.photons") / (last - first)
@@ -121,8 +122,8 @@ def measure_updates(options, runner):
 
 def measure_cost(options, runner):
     _, scene, smoke, _, _ = next(scenes(options))
-    runner.run("scene-plan", scene, *smoke, "--frames", "0-23", "-o", runner.folder / "plan")
-    smoke = [*smoke, "--majorants", runner.folder / "plan/state/majorants.0000"]
+    runner.run("scene-plan", scene, *smoke, "--frames", "0-23", "--update", "10%", "-o", runner.folder / "plan")
+    smoke = [*smoke, "--majorants", pipeline.majorants_of(runner.folder / "plan", 0)]
     photons, frames, common = runner.folder / "cost.####.photons", range(5, 12), [scene, *smoke, "--kinds", "caustic,indirect,volume"]
     first = runner.folder / "cost.0004.photons"
     others = None
@@ -159,8 +160,8 @@ def whole_frame(runner, common, photons):
 
 def measure_refine(options, runner):
     _, scene, smoke, _, _ = next(scenes(options))
-    runner.run("scene-plan", scene, *smoke, "--frames", "0-23", "-o", runner.folder / "plan")
-    smoke = [*smoke, "--majorants", runner.folder / "plan/state/majorants.0000"]
+    runner.run("scene-plan", scene, *smoke, "--frames", "0-23", "--update", "10%", "-o", runner.folder / "plan")
+    smoke = [*smoke, "--majorants", pipeline.majorants_of(runner.folder / "plan", 0)]
     kinds = ["--kinds", "indirect,volume", "--frame", 12]
     (runner.folder / "base").mkdir(exist_ok=True)
     maps = {name: runner.folder / f"{name}.photons" for name in ("reference", "plain", "refined", "even")}
@@ -215,8 +216,8 @@ def measure_deviation(options, runner):
     subprocess.run([options.make_vdb, folder / "ball.vdb", *map(str, (n, n, n, 0.04, 0.3, 0.7, -0.3))],
                    input=struct.pack(f"<{len(ball)}f", *ball), check=True)
     smoke = ["--volume", folder / "ball.vdb", "--sigma-t", 0.01, "--albedo", 0]
-    runner.run("scene-plan", folder / "lamp.glb", *smoke, "--frames", 0, "-o", folder / "plan")
-    common = [folder / "lamp.glb", *smoke, "--majorants", folder / "plan/state/majorants.0000", "--photons", PATHS, "--kinds", "direct,volume"]
+    runner.run("scene-plan", folder / "lamp.glb", *smoke, "--frames", 0, "--update", "10%", "-o", folder / "plan")
+    common = [folder / "lamp.glb", *smoke, "--majorants", pipeline.majorants_of(folder / "plan", 0), "--photons", PATHS, "--kinds", "direct,volume"]
     path = folder / "p.photons"
     runner.run("photon-trace", *common, "-o", path)
     print("\n| pass | by flux | by number |\n|---:|---:|---:|")

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import cases
 import exr
+import pipeline
 
-STAGES = ("photons", "points", "cache", "frames")
+STAGES = tuple(pipeline.STAGES)
 CHANNELS = ("RGBA", "layers")
 
 
@@ -42,9 +43,8 @@ class Side:
         """CPU seconds of a command and all it starts; each of its processes may take `patience` of them."""
         def limit():
             resource.setrlimit(resource.RLIMIT_CPU, (self.patience, self.patience))
-        environment = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
         before = os.times()
-        done = subprocess.run([str(part) for part in command], capture_output=True, text=True, env=environment, preexec_fn=limit)
+        done = subprocess.run([str(part) for part in command], capture_output=True, text=True, env=pipeline.environment(), preexec_fn=limit)
         after = os.times()
         if done.returncode:
             lines = [line for line in done.stderr.splitlines() if line and not line.startswith("make")]
@@ -54,16 +54,14 @@ class Side:
     def chain(self, seed, quality="final", channels=CHANNELS, keep=None):
         """(picture, CPU seconds, those of each stage); `keep`: a file that the frame is moved to, None: then the picture is read and
         the frame removed."""
-        case, name = self.case, f"{self.case.frame:04d}"
+        case = self.case
         shutil.rmtree(self.folder, ignore_errors=True)
-        shared = " ".join(map(str, case.shared))
-        cpu = self.spend(["make", "-s", "-f", "Makefile.example", "-C", self.bench.project, f"{self.folder}/frames/{name}.exr",
-                          f"BIN={self.bench.bin}", f"OUT={self.folder}", f"SCENE={case.file.resolve()}", f"FRAMES={case.frame}",
-                          f"SIZE={self.size}", f"CAMERA={case.camera}", f"CHANNELS={','.join(channels)}", f"TIME={shared}", f"QUALITY={quality}",
-                          f"RUN=sh {Path(__file__).with_name('with_seed.sh')} {seed}",
-                          *([f"ENVIRONMENT={case.environment.resolve()}"] if case.environment else [])])
-        stages = {stage: sum(json.loads(f.read_text())["cpu_s"] for f in (self.folder / stage).glob("*.json")) for stage in STAGES}
-        frame = self.folder / "frames" / f"{name}.exr"
+        frame = pipeline.frame_of(self.folder, case.frame)
+        cpu = self.spend(pipeline.command(
+            self.bench.project, self.bench.bin, self.folder, f"frames/{frame.name}", SCENE=case.file.resolve(), FRAMES=case.frame, SIZE=self.size,
+            CAMERA=case.camera, CHANNELS=",".join(channels), TIME=" ".join(map(str, case.shared)), QUALITY=quality,
+            RUN=f"sh {Path(__file__).with_name('with_seed.sh')} {seed}", ENVIRONMENT=case.environment and case.environment.resolve()))
+        stages = pipeline.cpu_of(self.folder)
         image = shutil.move(frame, keep) if keep else exr.read(frame)
         shutil.rmtree(self.folder)
         return image, cpu, stages

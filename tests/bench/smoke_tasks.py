@@ -18,6 +18,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
+import pipeline  # noqa: E402
 from measure import NORMAL_WALK, Bench, walk_speed  # noqa: E402
 
 FIRST, LAST, SIZE = 5, 12, "640x360"
@@ -53,8 +54,8 @@ def measured(folder, programs, scene, paths):
         for phase in data["phases"]:
             phases[name][phase["name"]] = phases[name].get(phase["name"], 0) + phase["cpu_s"] / (LAST - FIRST + 1)
     phases = {}
-    run("plan", "scene-plan", scene, *smoke, "--frames", "0-23", "-o", folder / "plan")
-    frozen = [*smoke, "--majorants", folder / "plan/state/majorants.0000"]
+    run("plan", "scene-plan", scene, *smoke, "--frames", "0-23", "--update", "10%", "-o", folder / "plan")
+    frozen = [*smoke, "--majorants", pipeline.majorants_of(folder / "plan", 0)]
     light = ["--photons", paths, "--kinds", "direct,indirect,volume"]
     photons = folder / "p.####.photons"
     run("first", "photon-trace", scene, *frozen, "--frame", FIRST - 1, *light, "--pilots", "3%", "-o", photons)

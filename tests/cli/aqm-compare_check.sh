@@ -44,12 +44,45 @@ for f in 01 03; do cp a.exr s.$f.exr; cp r.exr t.$f.exr; done
 try s.##.exr t.%02d.exr --frames 0-3 --difference d.##.png
 ls d.*
 try s.##.exr r.exr --frames 0-1 --quiet --difference e.##.exr; aqm-compare e.01.exr a.exr --quiet --fail-above 0.5; echo "exit $?"
+# what a viewer sees. A plane and the same brighter: frequency 0, not seen. A plane and one whose right half is brighter by 10 %: the
+# edge is seen, and so is what lies within a few pixels of it.
+exr plane.exr 64x32 R=0.5 G=0.5 B=0.5 id.object:id=7
+exr brighter.exr 64x32 R=0.55 G=0.55 B=0.55 id.object:id=7
+exr step.exr 64x32 'R=0.5|0.55' 'G=0.5|0.55' 'B=0.5|0.55' 'id.object:id=7|8'
+exr still.exr 64x32 forward.u=0 forward.v=0 backward.u=0 backward.v=0 speed=0 valid:id=3
+exr fast.exr 64x32 forward.u=40 forward.v=0 backward.u=-40 backward.v=0 speed=30 valid:id=3
+exr unknown.exr 64x32 forward.u=0 forward.v=0 backward.u=0 backward.v=0 speed=0 valid:id=0
+aqm() { echo "> $*"; aqm-compare "$@" --exposure 0 | sed -n '/AQM/,/display/p'; }
+aqm plane.exr plane.exr --metric aqm
+aqm plane.exr brighter.exr --metric aqm
+aqm step.exr plane.exr --flow still.exr
+aqm step.exr plane.exr --flow unknown.exr
+aqm step.exr plane.exr --flow fast.exr
+aqm step.exr plane.exr --flow fast.exr --eye fixed --fps 48
+aqm step.exr plane.exr --metric aqm --display hdr --peak 400 --ppd 20
+try step.exr plane.exr --quiet --flow still.exr --fail-above 5% --exposure 0
+try step.exr plane.exr --quiet --flow fast.exr --fail-above 5% --eye fixed --exposure 0
+try step.exr plane.exr --quiet --metric aqm --fail-by aqm --fail-above 0.9 --exposure 0
+aqm-compare step.exr plane.exr -q --flow still.exr --json a.json -o p.exr; aqm-compare plane.exr step.exr -q --flow still.exr -o q.exr --threads 2
+tempolux-info --diff p.exr q.exr | grep -w equal
+grep -A3 '"aqm"' a.json | head -4; grep '"version"' a.json
+for f in 00 01; do cp step.exr m.$f.exr; cp still.exr f.$f.exr; done
+aqm m.##.exr plane.exr --frames 0-1 --flow f.##.exr -o m.##.png; ls m.*.png
+# error figures load nothing of FFTW
+mapped() { LD_DEBUG=files aqm-compare "$@" -q 2>&1 | grep -c 'calling init.*fftw'; }
+echo "FFTW loaded without and with: $(mapped plane.exr step.exr) $(mapped plane.exr step.exr --metric aqm)"
+# refusals of it
+try step.exr plane.exr --flow small.exr
+try step.exr plane.exr --metric aqm --layer id.object
+try m.##.exr plane.exr --frames 0-1 -o m.png
+try step.exr plane.exr -o m.jpg
+try step.exr plane.exr --metric aqm --exposure bright
+try step.exr plane.exr --metric aqm --eye closed
+try x.exr r.exr --flow still.exr
 # refusals
 try x.exr
 try x.exr r.exr --reference-halves a.exr r.exr
 try x.exr --reference-halves a.exr a.exr
-try x.exr r.exr --metric aqm
-try x.exr r.exr --perceptual
 try x.exr r.exr --metric ssim
 try x.exr small.exr
 try x.exr ones.exr --layer indirect

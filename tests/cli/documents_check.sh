@@ -36,7 +36,8 @@ for file in p.photons p.irradpoints c.irradcache; do
 done
 # A map says by which emission table its paths were started: the one that scene-plan calls frozen. Readers do not mind another.
 emission=$(tempolux-info --json p.photons | sed -n 's/.*"emission": *"\([^"]*\)".*/\1/p')
-[ -n "$emission" ] && [ "$emission" = "$(cat plan/state/frozen.0000)" ] || bad "emission '$emission', frozen $(cat plan/state/frozen.0000)"
+frozen=$(sed -n 's/.*"frozen": "\(.*\)".*/\1/p' plan/plan.json | head -1)
+[ -n "$emission" ] && [ "$emission" = "$frozen" ] || bad "emission '$emission', frozen $frozen"
 "${PYTHON:-python3}" -B - "$HERE/../formats" <<'END' || bad 'another emission table'
 import sys
 sys.path.insert(0, sys.argv[1])

@@ -10,7 +10,7 @@ grep -q frame-render said || bad "says: $(cat said)"
 # Points with so many shadow rays take far longer than this test waits.
 for pair in INT:2 TERM:15; do
   signal=${pair%:*}
-  env --default-signal=INT scene-plan "$scene" --estimate --point-options '--light-samples 4096 --point-count 1M' & process=$!
+  env --default-signal=INT scene-plan "$scene" --estimate --point-words '--light-samples 4096 --point-count 1M' & process=$!
   for round in $(seq 100); do
     [ -n "$(find temporary -name '.p.irradpoints.tmp.*')" ] && break
     sleep 0.1

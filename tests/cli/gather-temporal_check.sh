@@ -176,6 +176,14 @@ refuses 'moving_geometry' temporal --frame 0 $points -o refused --cache refused.
 refuses 'not a .radsamples file' temporal --frame 1 $points --previous range/c.0000.irradcache -o refused --cache refused.c
 irradcache-build points "$moving" --frame 1 --photons p.photons --allow-stale --point-count 900 -o fewer.irradpoints -q 2>/dev/null
 refuses 'its points lay elsewhere' temporal --frame 1 --points fewer.irradpoints --allow-stale --previous range/s.0000.radsamples -o refused --cache refused.c
+# In a range, too: other points, fewer or more, in the middle of a segment. What was made before stays.
+irradcache-build points "$moving" --frame 1 --photons p.photons --allow-stale --point-count 2k -o more.irradpoints -q
+for other in fewer more; do
+  mkdir $other.range; cp p.0000.irradpoints $other.range/p.0000.irradpoints; cp $other.irradpoints $other.range/p.0001.irradpoints
+  refuses 'lie elsewhere than those of frame 0 before it' temporal --frames 0-1 --allow-stale --points $other.range/p.####.irradpoints \
+    -o $other.range/s.####.radsamples --cache $other.range/c.####.irradcache
+  [ -e $other.range/s.0000.radsamples ] && [ ! -e $other.range/s.0001.radsamples ] || bad "$other points: $(ls $other.range)"
+done
 refuses 'in another segment' temporal --frame 1 $points --segment 12 --previous range/s.0000.radsamples -o refused --cache refused.c
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$HERE/../formats "${PYTHON:-python3}" - <<'END' || bad 'files of no scene'
 from read_radsamples import encode_radsamples, read_radsamples

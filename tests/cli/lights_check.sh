@@ -36,8 +36,8 @@ expect 0 '' frame-render "$scenes/S2_cornell_moving.glb" --size 32x18 $few --lig
 scene-plan "$scenes/S2_cornell_moving.glb" --frames 0 -q -o lamp || bad 'plan under a lamp'
 scene-plan hut.glb $sky --camera inside --frames 0 -q -o inside || bad 'plan inside'
 scene-plan hut.glb $sky --camera outside --frames 0 -q -o outside || bad 'plan outside'
-grep -qx 'plan_lights := 1' inside/plan.mk || bad 'the plan does not say that light comes through openings'
-grep -q plan_lights lamp/plan.mk outside/plan.mk && bad 'the plan has lights learned where there is nothing to learn'
+grep -q '^lights/' inside/plan.mk || bad 'the plan does not say that light comes through openings'
+grep -q '^lights/' lamp/plan.mk outside/plan.mk && bad 'the plan has lights learned where there is nothing to learn'
 
 expect 2 '--learn-lights alone' frame-render hut.glb $sky $view -o x.lightgrid
 expect 2 'read or learn' frame-render hut.glb $sky $view --learn-lights --lights 1.lightgrid -o x.exr

@@ -58,15 +58,16 @@ done
 # The plan names it, depends on it, and its lights change with it alone.
 "$bin/scene-plan" "$yard" $sky -q -o "$work/plan" || bad "scene-plan: exit $?"
 grep -q '"environment": "sky.hdr"' "$work/plan/plan.json" || bad 'plan.json does not name the environment'
-grep -q '^[^ ]*/plan.mk: .*sky.hdr$' "$work/plan/plan.mk" || bad 'plan.mk does not depend on the environment'
-before=$(cat "$work/plan/state/lights.0000") static=$(cat "$work/plan/state/static.0000")
+grep -q 'sky.hdr$' "$work/plan/state/inputs" || bad 'the plan does not depend on the environment'
+hashes() { python3 -c 'import json, sys; s = json.load(open(sys.argv[1]))["segments"][0]; print(s["frames"][0]["hashes"]["lights"] if sys.argv[2] == "lights" else s["hashes"][sys.argv[2]])' "$work/plan/plan.json" $1; }
+before=$(hashes lights) static=$(hashes static_geometry)
 "$bin/scene-plan" "$yard" $sky --environment-strength 2 -q -o "$work/plan" || bad "scene-plan: exit $?"
-[ "$(cat "$work/plan/state/lights.0000")" != "$before" ] || bad 'twice the strength, the same lights'
-[ "$(cat "$work/plan/state/static.0000")" = "$static" ] || bad 'twice the strength, another geometry'
-for goal in "-s $work/out/plan/plan.mk" '-n demo'; do
+[ "$(hashes lights)" != "$before" ] || bad 'twice the strength, the same lights'
+[ "$(hashes static_geometry)" = "$static" ] || bad 'twice the strength, another geometry'
+for goal in '-s plan' '-n demo'; do
   make $goal -f Makefile.example BIN="$bin" SCENE="$yard" ENVIRONMENT="$work/sky.hdr" FRAMES=0 OUT="$work/out" > "$work/make.txt" 2>&1
 done
-grep -q "frame-render .*--environment $work/sky.hdr" "$work/make.txt" || bad "make does not pass ENVIRONMENT on: $(tail -3 "$work/make.txt")"
+grep -q 'frame-render .*--environment "$ENVIRONMENT"' "$work/make.txt" || bad "make does not pass ENVIRONMENT on: $(tail -3 "$work/make.txt")"
 
 # The same bytes for any number of threads.
 for threads in 1 3; do

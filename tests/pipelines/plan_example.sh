@@ -1,24 +1,22 @@
 #!/bin/sh
 # The example of formats/plan/plan.md is what scene-plan writes: sh tests/pipelines/plan_example.sh BIN
-# Run at the top of the tree; BIN is the folder with the tools. A second run must leave every file as it was.
+# Run at the top of the tree; BIN is the folder with the tools. Keys hash the programs, so they are compared as places only.
+# A second run must write nothing.
 bin=$1 top=$PWD page=formats/plan/plan.md
 work=$(mktemp -d) || exit 3
 trap 'rm -rf "$work"' EXIT
+keyless() { sed 's/-[0-9a-f]\{10\}/-KEY/g'; }
 command=$(sed -n 's/^`\(scene-plan [^`]*\)` writes this plan.mk.*/\1/p' $page)
-sed -n '/^```make$/,/^```$/p' $page | sed '1d;$d' > "$work/expected"
+sed -n '/^```make$/,/^```$/p' $page | sed '1d;$d' | keyless > "$work/expected"
 [ -n "$command" ] && [ -s "$work/expected" ] || { echo "FAILED: no example in $page"; exit 1; }
+folder=${command##* -o }; folder=${folder%% *}
 
 ln -s "$top/pipelines" "$work/pipelines" && cd "$work" && eval "$bin/$command --quiet" || exit 1
-diff -u expected plan/plan.mk || { echo 'FAILED: plan.mk is not as on the page'; exit 1; }
-python3 -m json.tool plan/plan.json > /dev/null || { echo 'FAILED: plan.json is no JSON'; exit 1; }
-for variable in light camera; do
-  for file in $(printf 'include plan/plan.mk\nall: ; @echo $(%s_0090)\n' $variable | make -s -f -); do
-    grep -qE '^[0-9a-f]{32}$' "$file" || { echo "FAILED: $file is not one hash"; exit 1; }
-  done
-done
+keyless < "$folder/plan.mk" | diff -u expected - || { echo 'FAILED: plan.mk is not as on the page'; exit 1; }
+python3 -m json.tool "$folder/plan.json" > /dev/null || { echo 'FAILED: plan.json is no JSON'; exit 1; }
 
-ls -l --time-style=full-iso plan/state plan/plan.json > before
+ls -lR --time-style=full-iso "$folder" > before
 eval "$bin/$command --quiet" || exit 1
-ls -l --time-style=full-iso plan/state plan/plan.json > after
-diff before after || { echo 'FAILED: files of equal content were written again'; exit 1; }
+ls -lR --time-style=full-iso "$folder" > after
+diff before after || { echo 'FAILED: a second run wrote something'; exit 1; }
 echo ok

@@ -7,7 +7,8 @@ for word; do
   case $previous in -o | --json | --png | --sheet) output=${word##*/}; folder=${word%/*}; folder=${folder##*/};; esac
   previous=$word
 done
-[ $tool = cp ] && output=${3##*/} folder=frames
-case $output in plan | report | stdout) ;; *) output=$folder/$output ;; esac
+[ $tool = scene-plan ] && exec "$@"   # looks at every run
+output=$(echo "$output" | sed 's/-[0-9a-f]\{10\}//')   # without its key
+case $output in report | stdout | sheet.png) ;; *) output=$folder/$output ;; esac
 echo "$tool $output" >> "$log"
 exec "$@"

@@ -19,12 +19,12 @@ sys.stdout.buffer.write(b"".join(struct.pack("<f", ball(x, y, z)) for x in range
     "$make_vdb" "$work/smoke_000$1.vdb" 16 16 16 .06 -.45 .5 -.45 || exit 3
 }
 run() {
-  make -f Makefile.example --no-print-directory demo BIN="$bin" SCENE=pipelines/scenes/S1_cornell.glb FRAMES=0-7 TIME='--segment 4' SIZE=32x18 PHOTONS=20k \
+  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE=pipelines/scenes/S1_cornell.glb FRAMES=0-7 TIME='--segment 4' SIZE=32x18 PHOTONS=20k \
     VOLUME="$work/smoke_####.vdb" VOLUME_OPTIONS='--sigma-t 6 --albedo .8' UPDATE=20% POINTS='--point-count 1k' CACHE='--rays 20 --error-bound 1' \
     PIXELS='--spp 1 --pixel-error 0' "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 }
 digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr "$1"/photons/*.photons | sed "s|$1/||"; }
-made() { grep -o "$1"' .*--frame 000[0-7]' "$work/log" | grep -o '.$' | sort -u | tr -d '\n'; }
+made() { grep -o "$1"' .*--frame [0-7] ' "$work/log" | grep -o '[0-7] $' | tr -d ' ' | sort -u | tr -d '\n'; }
 expect_made() { [ "$(made photon-trace)" = "$2" ] && [ "$(made volume-compose)" = "$2" ] || bad "$1: maps $(made photon-trace), frames $(made volume-compose), expected $2"; }
 
 for f in 0 1 2 3 4 5 6 7; do smoke $f 1; done
@@ -48,7 +48,9 @@ run OUT="$work/out"
 expect_made 'frame 2 with more smoke than its majorants allow' 0123
 smoke 2 1
 run OUT="$work/out"
-expect_made 'and back' 0123
-digests "$work/out" | diff "$work/expected" - || bad 'and back: other frames'
+expect_made 'and back: the files are there still' ''
+digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
+grep frames/ "$work/expected" > "$work/frames"
+digests "$work/out" | diff "$work/frames" - || bad 'and back: other frames'
 [ $failed = 0 ] && echo ok
 exit $failed

@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 bad() { echo "FAILED: $*"; failed=1; }
 python3 -B pipelines/scenes/make_walkthrough.py pan pipelines/scenes/S3_indirect_room.glb "$work/pan.glb" || exit 1
 run() {
-  make -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
+  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
     CACHE='--rays 20 --error-bound 1' PIXELS='--spp 2 --pixel-error 0' KEY_DISTANCE=4 "$@" > "$work/log" 2>&1
 }
 digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
@@ -16,38 +16,38 @@ digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
 run METHOD=walkthrough OUT="$work/a" || { cat "$work/log"; exit 1; }
 digests "$work/a" > "$work/expected"
 [ "$(wc -l < "$work/expected")" = 7 ] || bad "7 frames, not $(wc -l < "$work/expected")"
-[ "$(tail -n +1 "$work/a/walk.log" | grep -cE '^[0-9]{4} [0-9]{4}  (middle [0-9]{4}  difference [^ ]+  traced .*  (warp|split)|neighbours)$')" = "$(wc -l < "$work/a/walk.log")" ] ||
+[ "$(tail -n +1 "$work/a/walk.log" | grep -cE '^[0-9]{4} [0-9]{4}  middle [0-9]{4}  difference [^ ]+  traced .*  (warp|split)$')" = "$(wc -l < "$work/a/walk.log")" ] ||
   bad "log: $(cat "$work/a/walk.log")"
-marked=$(OUT="$work/a" sh pipelines/walkthrough.sh keys)
-for key in 0000 0006; do case ",$marked," in *",$work/a/frames/$key.exr,"*) ;; *) bad "key $key is not marked in the sheet: $marked";; esac; done
-[ "$(grep -o -- '--mark [^ ]*' "$work/log" | wc -l)" = 1 ] || bad 'the sheet marks no keys'
+marked=$(cd "$work/a" && sh "$OLDPWD/pipelines/walkthrough.sh" marks)
+for key in 0000 0004; do case ",${marked#--mark }," in *",frames/$key.exr,"*) ;; *) bad "key $key is not marked in the sheet: $marked";; esac; done
+grep -q 'sheet .*walkthrough.sh" marks' "$work/log" || bad 'the sheet marks no keys'
 run METHOD=walkthrough OUT="$work/a"; grep -q 'Nothing to be done' "$work/log" || bad "a second run: $(head -3 "$work/log")"
 
 # Every frame rendered: a key is that to the bit, but for the layer that keys have more.
 run METHOD=frames OUT="$work/f" CHANNELS=RGBA,Z,N,id,specular || { cat "$work/log"; exit 1; }
-for key in 0000 0004 0006; do
+for key in 0000 0004; do
   [ "$("$bin/tempolux-info" --digest "$work/a/frames/$key.exr" | cut -d' ' -f1)" = "$("$bin/tempolux-info" --digest "$work/f/frames/$key.exr" | cut -d' ' -f1)" ] ||
     bad "key $key is not the frame rendered"
 done
 
-# Left out: with one frame nothing is warped, where the camera stands METHOD=auto takes no keys, and where nothing mirrors no pixel is masked for it.
+# One frame alone is that of the range. Left out: where the camera stands METHOD=auto takes no keys, and where nothing mirrors no pixel is masked for it.
 run METHOD=walkthrough OUT="$work/one" FRAMES=3 || { cat "$work/log"; exit 1; }
-grep -q ibr-warp "$work/log" && bad 'one frame: something is warped'
-method() { "$bin/scene-plan" "$1" --frames 0-47 -o "$work/plan" -q && sed -n 's/^plan_method := //p' "$work/plan/plan.mk"; }
-[ "$(method pipelines/scenes/S2_cornell_moving.glb)" = frames ] || bad 'METHOD=auto warps where the camera stands'
-[ "$(method "$work/pan.glb")" = walkthrough ] || bad 'METHOD=auto does not warp where the camera pans'
-grep -h '"traced_specular"' "$work"/a/walk/*.warp.json | grep -qv ': 0,*$' && bad 'nothing mirrors: pixels are masked for it'
+digests "$work/one" | diff - "$work/expected" | grep '^<' && bad 'frame 3 alone is another one'
+warps() { "$bin/scene-plan" "$1" --method auto --frames 0-47 -o "$work/plan" -q && grep -c '^walked/.*words' "$work/plan/plan.mk"; }
+[ "$(warps pipelines/scenes/S2_cornell_moving.glb)" = 0 ] || bad 'METHOD=auto warps where the camera stands'
+[ "$(warps "$work/pan.glb")" -gt 0 ] || bad 'METHOD=auto does not warp where the camera pans'
+grep -h '"traced_specular"' "$work"/a/walked/*.warp.json | grep -qv ': 0,*$' && bad 'nothing mirrors: pixels are masked for it'
 
-warped=$(basename "$(ls "$work"/a/walk/*.keys | head -n 1)" .keys)
+warped=$(ls "$work"/a/walked/*.warp.json | head -n 1 | sed 's|.*/\([0-9]*\)-.*|\1|')
 [ -n "$warped" ] || bad 'no frame was warped'
-rm "$work/a/frames/$warped.exr"; run METHOD=walkthrough OUT="$work/a"
+rm "$work/a/frames/$warped.exr" "$work/a/walked/$warped-"*; run METHOD=walkthrough OUT="$work/a"
 digests "$work/a" | diff "$work/expected" - || bad "$warped, deleted, came back as another"
 
 RUN= run METHOD=walkthrough OUT="$work/b" -j1 RUN='taskset -c 0' || { cat "$work/log"; exit 1; }
 digests "$work/b" | diff "$work/expected" - || bad 'one processor, one job: other frames'
 
 for threads in 1 2 3 7; do
-  "$bin/ibr-warp" "$work/a/keys/0000.exr" "$work/a/keys/0004.exr" --scene "$work/pan.glb" --frames 1,2 --threads $threads -q \
+  "$bin/ibr-warp" "$work/a/keys/0000-"*.exr "$work/a/keys/0004-"*.exr --scene "$work/pan.glb" --frames 1,2 --threads $threads -q \
     -o "$work/w.##.exr" --mask "$work/m.##.exr" --flow "$work/v.##.exr" || bad "ibr-warp: $threads threads"
   cat "$work"/[wmv].0[12].exr > "$work/all.$threads"
   cmp "$work/all.1" "$work/all.$threads" || bad "ibr-warp: other bytes by $threads threads"
@@ -55,7 +55,7 @@ done
 
 # Killed after a while, ever longer, with all it has started.
 for moment in $(seq 1 "$moments"); do
-  setsid make -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
+  setsid make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
     CACHE='--rays 20 --error-bound 1' PIXELS='--spp 2 --pixel-error 0' KEY_DISTANCE=4 METHOD=walkthrough OUT="$work/k" > "$work/log" 2>&1 &
   group=$!
   sleep "$(awk "BEGIN { print 0.3 + 3 * ($moment - 1) / $moments }")"

@@ -101,14 +101,16 @@ def unzipped(block):
 
 
 def write(path, width, height, channels, matrices=None, numbers=None, place=None):
-    """channels: name -> values, lines from the top; all float. matrices: name -> the bytes of a 4x4 float attribute, as read() gives them. numbers:
-    name -> value of a double attribute. place: (x, y, display width, display height) of a data window that is not the display window."""
+    """channels: name -> values, lines from the top; float, or uint where they are array.array("I"). matrices: name -> the bytes
+    of a 4x4 float attribute, as read() gives them. numbers: name -> value of a double attribute. place: (x, y, display width, display height) of a data window that is not the display window."""
     def attribute(name, kind, value):
         return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    def code(name):
+        return getattr(channels[name], "typecode", "f")
     names = sorted(channels)
     left, top, shown_width, shown_height = place or (0, 0, width, height)
     window = struct.pack("<4i", left, top, left + width - 1, top + height - 1)
-    listed = b"".join(n.encode() + b"\0" + struct.pack("<iiii", FLOAT, 0, 1, 1) for n in names) + b"\0"
+    listed = b"".join(n.encode() + b"\0" + struct.pack("<iiii", UINT if code(n) == "I" else FLOAT, 0, 1, 1) for n in names) + b"\0"
     header = struct.pack("<II", 20000630, 2) + b"".join([
         attribute("channels", "chlist", listed), attribute("compression", "compression", b"\0"),
         attribute("dataWindow", "box2i", window), attribute("displayWindow", "box2i", struct.pack("<4i", 0, 0, shown_width - 1, shown_height - 1)),
@@ -125,4 +127,4 @@ def write(path, width, height, channels, matrices=None, numbers=None, place=None
         for y in range(height):
             file.write(struct.pack("<ii", top + y, line - 8))
             for name in names:
-                file.write(array.array("f", channels[name][y * width:(y + 1) * width]).tobytes())
+                file.write(array.array("I" if code(name) == "I" else "f", channels[name][y * width:(y + 1) * width]).tobytes())

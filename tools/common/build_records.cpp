@@ -129,10 +129,11 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
     Output keep(options.keep_points, tool.common().no_clobber);
     write_points(tool, points, first, keep);
   }
-  const PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
+  PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
+  const std::vector<LampPhoton> beside_lamps = note_lamps_beside(tracer, lights, lookup);
   std::optional<BrightPoints> bright;
-  if (std::ranges::any_of(high_shares, [](float share) { return share > 0; })) {
-    bright.emplace(tracer, lights, lookup, std::move(high_shares), BrightOptions{.seed = options.gather.seed});
+  if (!beside_lamps.empty() || std::ranges::any_of(high_shares, [](float share) { return share > 0; })) {
+    bright.emplace(tracer, lights, lookup, std::move(high_shares), BrightOptions{.seed = options.gather.seed, .beside_lamps = beside_lamps});
     tool.stats().count("bright_points", double(bright->spot_count()));
     tool.stats().count("bright_sites", double(bright->site_count()));
     options.gather.bright = &*bright;
@@ -190,8 +191,15 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   LocalisedRecords cache;
   cache.history = add_records(tool, name, file, standing, fixed) + points.history;
   cache.standing.assign(fixed.records().begin(), fixed.records().end());
-  const PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
-  const FinalGather gather(tracer, lights, lookup, options.gather);
+  PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
+  const std::vector<LampPhoton> beside_lamps = note_lamps_beside(tracer, lights, lookup);
+  std::optional<BrightPoints> bright;
+  GatherOptions gathering = options.gather;
+  if (!beside_lamps.empty()) {
+    bright.emplace(tracer, lights, lookup, std::vector<float>{}, BrightOptions{.seed = gathering.seed, .beside_lamps = beside_lamps});
+    gathering.bright = &*bright;
+  }
+  const FinalGather gather(tracer, lights, lookup, gathering);
 
   tool.stats().phase("records", true);
   cache.changes = record_changes(cache.standing, maps, lookup, options.gather.seed);

@@ -21,6 +21,10 @@ LoadedFrame::LoadedFrame(Tool& tool, const ComparedFiles& files, std::optional<i
   if (!files.smooth.empty()) inputs_.smooth = load(files.smooth, smooth_);
   if (!files.mask.empty()) inputs_.mask = load(files.mask, mask_);
   if (!files.except.empty()) inputs_.except = load(files.except, except_);
+  if (!files.flow.empty()) {
+    const NamedImage file = load(files.flow, flow_image_);
+    flow_ = flow_in(flow_image_, file.name);
+  }
 }
 
 int LoadedFrame::frame_number() const {

@@ -6,15 +6,16 @@
 #include <vector>
 
 #include "lib/aqm/compared.h"
+#include "lib/image/pixel_flow.h"
 #include "tools/common/tool_main.h"
 
 namespace tempolux::tools {
 
-/// Names or patterns; one reference or its two halves; mask, smooth and except may be empty.
+/// Names or patterns; one reference or its two halves; mask, smooth, except and flow may be empty.
 struct ComparedFiles {
   std::string test;
   std::vector<std::string> references;
-  std::string mask, layer, smooth, except;
+  std::string mask, layer, smooth, except, flow = {};
 };
 
 /// The images of one frame. Adds their files to the tool's dependencies.
@@ -27,11 +28,15 @@ class LoadedFrame {
 
   /// Points into this object.
   const ComparedInputs& inputs() const { return inputs_; }
+  /// The flow's file, and the flow in it; nullptr without one.
+  const Image* flow_image() const { return flow_ ? &flow_image_ : nullptr; }
+  const PixelFlow* flow() const { return flow_ ? &*flow_ : nullptr; }
   /// What the test frame says it is, "tempolux:frame"; 0 if it does not.
   int frame_number() const;
 
  private:
-  Image test_, reference_, second_, mask_, smooth_, except_;
+  Image test_, reference_, second_, mask_, smooth_, except_, flow_image_;
+  std::optional<PixelFlow> flow_;
   ComparedInputs inputs_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct FrameDescription {
   int frame = 0;
   double fps = 24;
   std::array<double, 16> world_to_camera{}, world_to_ndc{};
+  std::map<std::string, double> account;   ///< account_of()
 };
 
 class FrameOutputs {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lib/gather/lamp_light.h"
 #include "lib/gather/whole_photons.h"
 #include "lib/scene/standing.h"
 #include "tools/common/localised_cache.h"
@@ -11,6 +12,7 @@ namespace tempolux::tools {
 IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed,
                              int number) {
   const SceneFrame& frame = tracer.frame();
+  known_.lights_are_met = lights.has_environment() || std::ranges::any_of(frame.materials, [](const Material& material) { return material.emissive(); });
   if (!options.photons.empty()) read_maps(tool, options, tracer, number);
   if (!options.points.empty()) read_points(tool, options, tracer, lights, seed, number);
   if (!options.meshirrad.empty()) {
@@ -37,6 +39,7 @@ void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options,
   }
   history_ = points_.history;
   lookup_ = std::make_unique<PointLookup>(points_.points, points_.spacing, point_clearance(tracer));
+  note_lamps_beside(tracer, lights, *lookup_);
   known_.points = lookup_.get();
   if (std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
   tool.stats().phase("bright points", true);

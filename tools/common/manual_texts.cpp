@@ -15,7 +15,7 @@ constexpr ManualText kTexts[] = {
      "from that of what stands (--moving).",
      "plan/plan.mk: make variables (formats/plan/plan.md)\n"
      "plan/plan.json: the same for people and scripts\n"
-     "plan/state/*: one hash for each concern and frame",
+     "state/*: view files, majorants, what was decided for each segment, and what files of others looked like",
      "scene-plan room.glb --frames 0-47 -o plan\n"
      "less plan/plan.json",
      "photon-trace irradcache-build frame-render"},
@@ -33,15 +33,15 @@ constexpr ManualText kTexts[] = {
      "# A map for each frame of a range; the scene is read once.\n"
      "photon-trace room.glb --frames 0-47 -o map.####.photons\n"
      "# A house in a wide land: sun and sky where the cameras of the plan look.\n"
-     "photon-trace house.glb --frame 0 --importance plan/state/view.0000 -o 0.photons\n"
+     "photon-trace house.glb --frame 0 --importance out/state/0000-*.view -o 0.photons\n"
      "# The light of a segment without what moves, and what that changes at each frame.\n"
      "photon-trace room.glb --frame 0 --map static -o s.photons --paths s.paths\n"
      "photon-trace room.glb --frames 0-23 --map dynamic --static s.paths -o d.####.photons\n"
      "# Smoke: frame 0 anew, of each frame after it a tenth of the paths; 30k more for frame 12\n"
-     "photon-trace room.glb --frame 0 --kinds indirect,volume --majorants plan/state/majorants.0000 -o p.0000.photons\n"
-     "photon-trace room.glb --frames 1-23 --kinds indirect,volume --majorants plan/state/majorants.0000 --update p.####.photons --share 10% "
+     "photon-trace room.glb --frame 0 --kinds indirect,volume --majorants out/state/0000-*.majorants -o p.0000.photons\n"
+     "photon-trace room.glb --frames 1-23 --kinds indirect,volume --majorants out/state/0000-*.majorants --update p.####.photons --share 10% "
      "--strategy census -o p.####.photons\n"
-     "photon-trace room.glb --frame 12 --kinds indirect,volume --majorants plan/state/majorants.0000 --update p.0012.photons --refine 30k -o more.photons",
+     "photon-trace room.glb --frame 12 --kinds indirect,volume --majorants out/state/0000-*.majorants --update p.0012.photons --refine 30k -o more.photons",
      "scene-plan irradcache-build tempolux-info"},
     {"photonmap-split",
      "Divides the light of photons or irradiance points in two files that add up to the whole to the last bit. By "

@@ -247,6 +247,8 @@ void Tool::common_options(unsigned flags) {
       ->type_name("FILE");
   left_out(app.add_option("--depfile", common.dep_file, "write a make rule: outputs depend on inputs"))
       ->type_name("FILE");
+  left_out(app.add_option("--said", common.said_file, "file of warnings that another tool has given, a line each: they are not repeated"))
+      ->type_name("FILE");
   left_out(app.add_flag("--no-clobber", common.no_clobber, "refuse to replace an output that exists"));
   left_out(app.add_flag("-q,--quiet", common.quiet, "no words but errors"));
   left_out(app.add_flag("-v,--verbose", common.verbose, "say what is done and how long it took"));

@@ -113,6 +113,9 @@ void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const 
   }
   for (int age = 1; age <= kPlansKept; ++age) add_lines(content_of(list + "." + std::to_string(age)), named);
   remove_expired(path_, named);
+  std::string warnings;
+  for (const std::string& warning : planned.warnings) warnings += warning.substr(0, warning.find('\n')) + "\n";
+  write_if_changed(path_ + "/state/warnings", warnings);
   write_if_changed(path_ + "/plan.json", plan_json(planned.plan, planned.graph, planned.scene_name, history, estimate));
   write_if_changed(path_ + "/plan.mk", plan_makefile(planned.plan, planned.graph, tool_hash));
   write_whole(path_ + "/state/inputs", inputs_.text(wish));   // last: from here on the plan is up to date
@@ -141,7 +144,7 @@ Planned make_planned(Tool& tool, const std::string& scene_file, Wish& wish, cons
   const MediaHash media = [&](int frame) { return input.media_hash(frame); };
   const std::vector<int> helpers = helper_frames(tool.common().frames, wish);
   Planned planned{make_plan(input.scene(), tool.common().frames, camera, input.time(), input.has_media() ? media : MediaHash{}, helpers),
-                  {}, fs::path(scene_file).filename().string()};
+                  {}, fs::path(scene_file).filename().string(), {}};
   Plan& plan = planned.plan;
   const SceneSource source{[&](int frame, bool with_media) { return input.at(frame, with_media); },
                            [&](int frame) { return input.emission(frame); }, camera};
@@ -154,6 +157,7 @@ Planned make_planned(Tool& tool, const std::string& scene_file, Wish& wish, cons
   tool.stats().phase("graph");
   planned.graph = make_graph(plan, wish, tool_hash, [&](int first, int last) { return majorants_text(input.frozen_majorants(first, last)); });
   for (const std::string& warning : plan.warnings) tool.warn(scene_file + ": " + warning);
+  planned.warnings = tool.warnings();
   if (folder) {
     for (const std::string& file : input.scene().files) folder->inputs().hash_of(file);
     for (const std::string& file : input.media_files()) {

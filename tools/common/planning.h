@@ -15,6 +15,7 @@ struct Planned {
   Plan plan;
   Graph graph;
   std::string scene_name;
+  std::vector<std::string> warnings;   ///< that were given for the scene
 };
 
 /// The folder that a plan lies in, which is the folder of all files that it names.

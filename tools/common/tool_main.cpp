@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <iostream>
 #include <new>
 #include <system_error>
@@ -120,13 +121,25 @@ void Tool::State::clear_bar() {
   bar_shown = false;
 }
 
+bool Tool::State::was_said(const std::string& message) {
+  if (common.said_file.empty()) return false;
+  if (!said) {
+    said.emplace();
+    std::ifstream stream(common.said_file);
+    for (std::string line; std::getline(stream, line);) said->insert(line);
+  }
+  return said->contains(message.substr(0, message.find('\n')));
+}
+
 void Tool::warn(const std::string& message) {
   {
     const std::lock_guard lock(state_->message_mutex);
-    if (state_->common.quiet || !state_->warnings.insert(message).second) return;
+    if (!state_->warnings.insert(message).second || state_->common.quiet || state_->was_said(message)) return;
   }
   state_->print_line(message);
 }
+
+std::vector<std::string> Tool::warnings() const { return {state_->warnings.begin(), state_->warnings.end()}; }
 
 void Tool::say(const std::string& message) {
   if (state_->common.verbose > 0 && !state_->common.quiet) state_->print_line(message);

@@ -79,6 +79,7 @@ struct Common {
   double environment_strength = 1, environment_rotation_deg = 0;
   VolumeOptions volume;
   std::string stats_file, dep_file;      ///< "": none
+  std::string said_file;                 ///< warnings that an earlier stage has given, a line each; "": none
   std::vector<std::string> state_files;  ///< listed in the depfile instead of the scene's files
   std::uint64_t max_memory_bytes = 0;    ///< 0: no limit
   int max_texture = 16384;               ///< pixels on a side: larger images are refused
@@ -118,7 +119,7 @@ class Tool {
   int run(const std::function<int()>& body);
 
   Stats& stats();
-  /// "tool: message" on standard error unless --quiet; each message once.
+  /// "tool: message" on standard error unless --quiet; each message once, and not if it stands in the file of --said.
   void warn(const std::string& message);
   /// Only with --verbose.
   void say(const std::string& message);
@@ -134,6 +135,8 @@ class Tool {
   /// not replaceable: what is read is not destroyed.
   void depends_on(const std::string& file, InputRole role = InputRole::file);
   const std::string& name() const;
+  /// Warnings so far, given or not.
+  std::vector<std::string> warnings() const;
 
  private:
   void environment_options();

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -35,6 +36,10 @@ struct Tool::State {
 
   State(std::string tool, std::string what, int count, char** values)
       : name(std::move(tool)), argc(count), argv(values), app(std::move(what), name) {}
+
+  /// Whether the file of --said has this warning.
+  bool was_said(const std::string& message);
+  std::optional<std::set<std::string>> said;
 
   bool print_manual() const;
   void parse();

@@ -1,4 +1,9 @@
-// child-probe MODE -- a helper program that behaves as badly as child_process_test.cpp asks for.
+// child-probe MODE -- a helper program that behaves as badly as child_process_test.cpp asks for. Without MODE, as the helper of a
+// tool (cli/guard_check.sh): the mode is in the environment, CHILD_PROBE.
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -7,7 +12,10 @@
 #include <cstring>
 #include <new>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include "modules/guard.h"
 
 namespace {
 
@@ -34,13 +42,45 @@ std::string descriptors() {
   return list;
 }
 
+/// What a library does that hostile data has taken over. Says "done" if nobody stops it.
+void do_harm(const std::string& kind) {
+  const char* const canary = std::getenv("CHILD_PROBE_CANARY");
+  if (kind == "open") ::open("/etc/hostname", O_RDONLY);
+  if (kind == "create" && canary) ::open(canary, O_CREAT | O_WRONLY, 0600);
+  if (kind == "look") ::access("/etc/hostname", R_OK);
+  if (kind == "socket") ::socket(AF_INET, SOCK_STREAM, 0);
+  if (kind == "fork" && ::fork() == 0) std::_Exit(0);
+  if (kind == "exec") ::execl("/bin/true", "true", nullptr);
+  if (kind == "thread") std::thread([] {}).join();
+  if (kind == "code") ::mmap(nullptr, 4096, PROT_READ | PROT_EXEC, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (kind == "kill") ::kill(::getppid(), 0);
+  print("done");
+}
+
+/// As a helper should be: works, with memory, exceptions and words.
+int behave() {
+  std::vector<std::string> texts;
+  for (int i = 0; i < 1000; ++i) texts.emplace_back(std::size_t(i) * 1000, 'x');
+  try {
+    throw std::bad_alloc();
+  } catch (const std::bad_alloc&) {
+    std::printf("%zu texts", texts.size());
+  }
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string mode = argc > 1 ? argv[1] : "";
+  const char* const asked = std::getenv("CHILD_PROBE");
+  const std::string mode = argc > 1 ? argv[1] : asked ? asked : "";
   if (mode == "never-reads") print("done");
   if (mode == "never-reads") return 0;
   const std::string input = all_input();
+  if (mode.starts_with("guarded-") && !tempolux::guard_process().empty()) return 8;
+  if (mode == "guarded-behave") return behave();
+  if (mode.starts_with("guarded-")) do_harm(mode.substr(8));
+  if (mode.starts_with("free-")) do_harm(mode.substr(5));
   if (mode == "echo") print(input);
   if (mode == "crash") {
     print("so far");

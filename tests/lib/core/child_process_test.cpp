@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -14,6 +15,7 @@
 #include <thread>
 
 #include "formats/error.h"
+#include "lib/core/machine_memory.h"
 
 namespace tempolux {
 namespace {
@@ -122,6 +124,30 @@ TEST_F(ChildProcess, WritesNoFile) {
   EXPECT_EQ(text_of(run("write-file", path)), "refused");
   EXPECT_EQ(fs::file_size(path), 0u);
   fs::remove(path);
+}
+
+TEST_F(ChildProcess, DiesWhereItAsksForMoreThanItsGuardAllows) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "no guard with sanitizers: their reports read /proc and start threads";
+#endif
+  EXPECT_EQ(text_of(run("guarded-behave")), "1000 texts");
+  for (const std::string kind : {"open", "look", "socket", "fork", "exec", "thread", "code", "kill"}) {
+    if (kind != "exec") {   // nothing else stops it
+      EXPECT_EQ(text_of(run("free-" + kind)), "done") << kind;
+    }
+    const ChildResult result = run("guarded-" + kind);
+    EXPECT_EQ(text_of(result), "") << kind;
+    EXPECT_TRUE(result.trouble.starts_with("was ended by its guard")) << kind << ": " << result.trouble;
+  }
+}
+
+TEST_F(ChildProcess, MemoryThatFitsIsHalfTheMachine) {
+  const std::uint64_t machine = machine_memory();
+  EXPECT_EQ(memory_that_fits(1000), 1000u);
+  EXPECT_EQ(memory_that_fits(~0ull), std::max<std::uint64_t>(machine / 2, 512u << 20));
+  const std::uint64_t installed = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
+  EXPECT_LE(machine, installed);
+  EXPECT_GT(machine, 0u);
 }
 
 TEST_F(ChildProcess, HasNoOpenFilesAndNoSignalsOfItsParent) {

@@ -156,14 +156,15 @@ TEST(FinalGather, UniformRoomIsUniform) {
   scene.add_room({-1, -1, -1}, {1, 1, 1}, matte(Rgb(0.5f)));
   const SceneFrame& frame = scene.frame();
   std::vector<IrradiancePoint> points;
-  for (Vec3 n : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
-    IrradiancePoint point;
-    point.position = -n;
-    point.normal = n;
-    point.direct = Rgb(1.0f);
-    point.indirect = Rgb(1.0f);
-    points.push_back(point);
-  }
+  for (Vec3 n : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{0, 0, -1}})
+    for (const float aside : {-0.5f, 0.0f, 0.5f}) {   // three on a wall: one alone would not be believed
+      IrradiancePoint point;
+      point.position = Vec3{n.y, n.z, n.x} * aside - n;
+      point.normal = n;
+      point.direct = Rgb(1.0f);
+      point.indirect = Rgb(1.0f);
+      points.push_back(point);
+    }
   const Tracer tracer(frame);
   const Lights lights(frame, EmissionTable{});
   const PointLookup lookup(points, 2);

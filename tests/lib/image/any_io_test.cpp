@@ -1,4 +1,4 @@
-// Images of other formats: found by their first bytes, read through the module, refused with a reason.
+// Images of other formats: found by their first bytes, read by a helper, refused with a reason.
 #include "lib/image/any_io.h"
 
 #include <cmath>
@@ -38,9 +38,9 @@ std::string png(std::uint32_t width, char bits, char colour, const std::string& 
          png_chunk("IDAT", data) + png_chunk("IEND", "");
 }
 
-bool module_is_there() {
+bool helper_is_there() {
   for (const std::string& folder : default_module_folders())
-    if (std::filesystem::exists(folder + "/tempolux-oiio.so")) return true;
+    if (std::filesystem::exists(folder + "/tempolux-oiio")) return true;
   return false;
 }
 
@@ -114,22 +114,22 @@ TEST(AnyImage, UnknownFormatsAreRefusedByName) {
   }
 }
 
-TEST(AnyImage, WithoutTheModuleTheMessageSaysWhatToDo) {
+TEST(AnyImage, WithoutTheHelperTheMessageSaysWhatToDo) {
   const Folder folder;
   put_bytes(folder / "a.hdr", "\xff\xd8\xff\xe0 nothing");
   const std::string message = message_of<InputError>([&] {
     load_image(folder / "a.hdr", {100, {folder / "nowhere"}});
   });
-  EXPECT_NE(message.find("a.hdr: reading jpeg needs tempolux-oiio.so, which was not built or not installed"),
+  EXPECT_NE(message.find("a.hdr: reading jpeg needs tempolux-oiio, which was not built or not installed"),
             std::string::npos)
       << message;
   EXPECT_NE(message.find("nowhere"), std::string::npos);
-  put_bytes(folder / "tempolux-oiio.so", "not a library");
-  EXPECT_THROW(load_image(folder / "a.hdr", {100, {folder / "."}}), InputError);
+  put_bytes(folder / "tempolux-oiio", "not a program");
+  EXPECT_THROW(load_image(folder / "a.hdr", {100, {folder / "."}}), ResourceError);
 }
 
-TEST(AnyImage, TheModuleKeepsTheLimitsAndReportsDamage) {
-  if (!module_is_there()) GTEST_SKIP() << "built without tempolux-oiio.so";
+TEST(AnyImage, TheHelperKeepsTheLimitsAndReportsDamage) {
+  if (!helper_is_there()) GTEST_SKIP() << "built without tempolux-oiio";
   const Folder folder;
   const auto message = [&](const std::string& bytes, std::uint64_t max_pixels) {
     ImageReadOptions options;
@@ -145,8 +145,8 @@ TEST(AnyImage, TheModuleKeepsTheLimitsAndReportsDamage) {
   EXPECT_NE(message(std::string("II*\0\x08\0\0\0\xff\xff", 10), 100), "");
 }
 
-TEST(AnyImage, TheModuleReadsGreyTiffAsSrgb) {
-  if (!module_is_there()) GTEST_SKIP() << "built without tempolux-oiio.so";
+TEST(AnyImage, TheHelperReadsGreyTiffAsSrgb) {
+  if (!helper_is_there()) GTEST_SKIP() << "built without tempolux-oiio";
   const Folder folder;
   // A TIFF of 2 x 1 grey bytes: width, height, bits, no compression, black is zero, offset, rows, bytes.
   std::string directory = raw(std::uint16_t(8));

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "formats/error.h"
+#include "lib/plan/decide.h"
 #include "lib/plan/plan_files.h"
 
 namespace tempolux {
@@ -69,115 +72,94 @@ void slide(Scene& scene, int node, const std::vector<double>& places) {
   scene.duration_s = std::max(scene.duration_s, track.times_s.back());
 }
 
-Plan plan_of(const Scene& scene, const std::vector<int>& frames, int segment_length = 24) {
+Plan plan_of(const Scene& scene, const std::vector<int>& frames, int segment_length = 24, const std::vector<int>& others = {}) {
   TimeOptions time;
   time.segment_length = segment_length;
-  return make_plan(scene, frames, kCamera, time);
+  return make_plan(scene, frames, kCamera, time, {}, others);
 }
 
-/// Frame asked for -> frame whose photons it uses.
-std::map<int, int> lit_frames(const Plan& plan) {
-  std::map<int, int> lit;
-  for (const PlannedSegment& segment : plan.segments)
-    for (const PlannedFrame& frame : segment.frames)
-      if (frame.asked) lit[frame.frame] = frame.lit_frame;
+using Numbers = std::map<int, int>;
+
+/// Frame asked for -> first frame of its segment with the same light.
+Numbers lit_frames(const Plan& plan) {
+  Numbers lit;
+  for (const auto& [frame, shown] : plan.shows) lit[frame] = plan.segment_of(shown).at(shown).lit_frame;
   return lit;
 }
 
-/// Frame asked for -> frame that shows the same.
-std::map<int, int> pictures(const Plan& plan) {
-  std::map<int, int> same;
-  for (const PlannedSegment& segment : plan.segments)
-    for (const PlannedFrame& frame : segment.frames)
-      if (frame.asked) same[frame.frame] = frame.picture;
+/// Frame asked for -> first frame of its segment that shows the same.
+Numbers pictures(const Plan& plan) {
+  Numbers same;
+  for (const auto& [frame, shown] : plan.shows) same[frame] = plan.segment_of(shown).at(shown).picture;
   return same;
 }
 
-std::map<std::string, std::string> states(const Plan& plan) {
-  std::map<std::string, std::string> files;
-  for (const PlanFile& file : state_files(plan)) files[file.name] = file.content;
-  return files;
+/// The graph of a plan whose segments all have these decisions.
+Graph graph_of(Plan plan, const Decisions& decisions, Wish wish = {}, const std::string& tool_version = "1") {
+  for (PlannedSegment& segment : plan.segments) segment.decisions = decisions;
+  return make_graph(plan, with_preset(wish), [&](const std::string& tool) { return tool + tool_version; }, {});
 }
 
-/// Names of state files that are new or differ in `after`.
-std::vector<std::string> changed(const Plan& before, const Plan& after) {
-  const std::map<std::string, std::string> old = states(before);
-  std::vector<std::string> names;
-  for (const auto& [name, content] : states(after))
-    if (!old.contains(name) || old.at(name) != content) names.push_back(name);
-  return names;
+Decisions records() {
+  Decisions d;
+  d.kinds = "indirect";
+  return d;
 }
 
-using Lit = std::map<int, int>;
-using Names = std::vector<std::string>;
-
-TEST(Plan, AStillSceneIsLitOnceOverAllSegments) {
-  const Plan plan = plan_of(still_room(), {0, 1, 2, 3, 4, 5}, 2);
-  EXPECT_EQ(plan.segments.size(), 3u);
-  EXPECT_EQ(lit_frames(plan), (Lit{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}}));
+std::set<std::string> names(const Graph& graph, const std::string& folder = "") {
+  std::set<std::string> set;
+  for (const GraphFile& file : graph.files)
+    if (file.name.starts_with(folder)) set.insert(file.name);
+  return set;
 }
 
-TEST(Plan, OnlyTheCameraMovesAndTheLightIsShared) {
+const GraphFile& file_of(const Graph& graph, const std::string& start) {
+  return *std::ranges::find_if(graph.files, [&](const GraphFile& file) { return file.name.starts_with(start); });
+}
+
+TEST(Plan, AStillSceneIsOneFrame) {
+  const Plan plan = plan_of(still_room(), {0, 1, 5}, 2);
+  EXPECT_EQ(plan.segments.size(), 1u);
+  EXPECT_EQ(lit_frames(plan), (Numbers{{0, 0}, {1, 0}, {5, 0}}));
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 0, 0, 0});   // equal keys move nothing
+  EXPECT_EQ(lit_frames(plan_of(scene, {0, 1, 2, 3}, 2)), (Numbers{{0, 0}, {1, 0}, {2, 0}, {3, 0}}));
+  EXPECT_TRUE(plan_of(scene, {0}).warnings.empty());
+}
+
+TEST(Plan, OnlyTheCameraMovesAndTheLightIsSharedWithinASegment) {
   Scene scene = still_room();
   slide(scene, kCamera, {0, 1, 2, 2});
   const Plan plan = plan_of(scene, {0, 1, 2, 3});
-  ASSERT_EQ(plan.segments.size(), 1u);
-  EXPECT_EQ(lit_frames(plan), (Lit{{0, 0}, {1, 0}, {2, 0}, {3, 0}}));
-  EXPECT_TRUE(plan.segments[0].camera_moves);
-  EXPECT_NE(plan.segments[0].frames[1].camera, plan.segments[0].frames[2].camera);
-  EXPECT_EQ(plan.segments[0].frames[2].camera, plan.segments[0].frames[3].camera);
-  ASSERT_EQ(plan.segments[0].moves.size(), 1u);
+  EXPECT_EQ(lit_frames(plan), (Numbers{{0, 0}, {1, 0}, {2, 0}, {3, 0}}));
+  EXPECT_EQ(pictures(plan), (Numbers{{0, 0}, {1, 1}, {2, 2}, {3, 2}}));
   EXPECT_EQ(plan.segments[0].moves[0].carries, "camera");
+  EXPECT_EQ(lit_frames(plan_of(scene, {0, 1, 2}, 2)), (Numbers{{0, 0}, {1, 0}, {2, 2}}));
 }
 
 TEST(Plan, ABoxThatComesBackIsLitByTheSamePhotons) {
   Scene scene = still_room();
   slide(scene, kBox, {0, 1, 1, 0});
   const Plan plan = plan_of(scene, {0, 1, 2, 3});
-  EXPECT_EQ(lit_frames(plan), (Lit{{0, 0}, {1, 1}, {2, 1}, {3, 0}}));
+  EXPECT_EQ(lit_frames(plan), (Numbers{{0, 0}, {1, 1}, {2, 1}, {3, 0}}));
+  EXPECT_EQ(plan.segments[0].states(), (std::vector<int>{0, 1}));
   EXPECT_EQ(plan.segments[0].moves[0].why, "translation of Box");
 }
 
-TEST(Plan, FramesOfEqualLightAndCameraShowTheSamePicture) {
+TEST(Plan, NothingDependsOnTheRangeThatIsAskedFor) {
   Scene scene = still_room();
-  EXPECT_EQ(pictures(plan_of(scene, {1, 2, 3}, 2)), (Lit{{1, 1}, {2, 1}, {3, 1}}));  // not 0: nobody asked for it
-  slide(scene, kBox, {0, 1, 1, 0, 0});
-  EXPECT_EQ(pictures(plan_of(scene, {0, 1, 2, 3, 4})), (Lit{{0, 0}, {1, 1}, {2, 1}, {3, 0}, {4, 0}}));
-  slide(scene, kCamera, {0, 0, 1, 0, 2});
-  EXPECT_EQ(pictures(plan_of(scene, {0, 1, 2, 3, 4})), (Lit{{0, 0}, {1, 1}, {2, 2}, {3, 0}, {4, 4}}));
+  slide(scene, kBox, {0, 1, 1, 0, 2, 3});
+  EXPECT_EQ(lit_frames(plan_of(scene, {2, 3})), (Numbers{{2, 1}, {3, 0}}));
+  const Wish wish;
+  const std::string key = decision_key(plan_of(scene, {2}).segments[0], wish, false);
+  EXPECT_EQ(key, decision_key(plan_of(scene, {0, 1, 2, 3, 4, 5}).segments[0], wish, false));
 }
 
-TEST(Plan, SegmentsWithOtherBoundsShareNoPhotons) {
-  Scene scene = still_room();  // frames 0 and 2 look alike, but photons are distributed for the whole segment
-  slide(scene, kBox, {0, 1, 0, 50});
-  EXPECT_EQ(lit_frames(plan_of(scene, {0, 1, 2, 3}, 2)), (Lit{{0, 0}, {1, 1}, {2, 2}, {3, 3}}));
-  scene.animations.clear();
-  slide(scene, kBox, {0, 1, 0, 1});
-  EXPECT_EQ(lit_frames(plan_of(scene, {0, 1, 2, 3}, 2)), (Lit{{0, 0}, {1, 1}, {2, 0}, {3, 1}}));
-}
-
-TEST(Plan, AnAnimationOfEqualKeysMovesNothing) {
-  Scene scene = still_room();
-  slide(scene, kBox, {0, 0, 0, 0});
-  const Plan plan = plan_of(scene, {0, 1, 2, 3});
-  EXPECT_TRUE(plan.segments[0].moves.empty());
-  EXPECT_EQ(lit_frames(plan), (Lit{{0, 0}, {1, 0}, {2, 0}, {3, 0}}));
-}
-
-TEST(Plan, WithinASegmentTheRangeAskedForDoesNotChangeWherePhotonsAreTraced) {
-  Scene scene = still_room();
-  slide(scene, kBox, {0, 1, 1, 0});
-  EXPECT_EQ(lit_frames(plan_of(scene, {2, 3})), (Lit{{2, 1}, {3, 0}}));
-  const Names none;
-  EXPECT_EQ(changed(plan_of(scene, {0, 1, 2, 3}), plan_of(scene, {2, 3})), none);
-}
-
-TEST(Plan, FramesBeyondTheAnimationShowItsNearestEnd) {
+TEST(Plan, FramesOutsideTheAnimationShowItsNearestEnd) {
   Scene scene = still_room();
   slide(scene, kBox, {0, 1, 2, 3});
   const Plan plan = plan_of(scene, {-2, 0, 3, 9}, 2);
-  EXPECT_EQ(lit_frames(plan), (Lit{{-2, 0}, {0, 0}, {3, 3}, {9, 3}}));
-  EXPECT_EQ(plan.segments.size(), 2u);
+  EXPECT_EQ(lit_frames(plan), (Numbers{{-2, 0}, {0, 0}, {3, 3}, {9, 3}}));
   ASSERT_EQ(plan.warnings.size(), 1u);
   EXPECT_EQ(plan.warnings[0], "2 frames outside the animation: the nearest end is shown");
 }
@@ -186,114 +168,15 @@ TEST(Plan, TheOrderOfTheRangeIsKeptAndDuplicatesAreNot) {
   EXPECT_EQ(plan_of(still_room(), {3, 1, 3, 0}).frames, (std::vector<int>{3, 1, 0}));
 }
 
-TEST(Plan, MovingTheLampInOneFrameChangesTheStateOfThatFrameOnly) {
-  Scene before = still_room(), after = still_room();
-  slide(before, kLamp, {0, 0.1, 0.2, 0.3, 0.4});
-  slide(after, kLamp, {0, 0.1, 0.25, 0.3, 0.4});
-  const std::vector<int> frames{0, 1, 2, 3, 4};
-  EXPECT_EQ(changed(plan_of(before, frames), plan_of(after, frames)), Names{"state/lights.0002"});
-}
-
-TEST(Plan, MovingTheCameraChangesStatesOfTheCameraOnly) {
-  Scene moved = still_room();
-  moved.nodes[kCamera].translation.y = 1;
-  EXPECT_EQ(changed(plan_of(still_room(), {0, 1}), plan_of(moved, {0, 1})),
-            (Names{"state/camera.0000", "state/camera.0001"}));
-}
-
-TEST(Plan, ChangingAMaterialChangesMaterialsAndWhatStands) {
-  Scene darker = still_room();
-  darker.materials[0].base_color = Rgb(0.25f);
-  EXPECT_EQ(changed(plan_of(still_room(), {0}), plan_of(darker, {0})),
-            (Names{"state/materials.0000", "state/standing.0000"}));
-}
-
 TEST(Plan, CausticPhotonsAreTracedOnlyWhereSomethingMirrors) {
   Scene scene = still_room();
-  EXPECT_EQ(plan_of(scene, {0}).photon_kinds, "indirect");
+  EXPECT_TRUE(plan_of(scene, {0}).segments[0].materials.lambert);
   scene.materials.push_back(matte("mirror", 1));
   scene.materials[1].metallic = 1;
   scene.materials[1].roughness = 0;
-  EXPECT_EQ(plan_of(scene, {0}).photon_kinds, "indirect") << "no triangle has the mirror";
+  EXPECT_FALSE(plan_of(scene, {0}).segments[0].materials.other) << "no triangle has the mirror";
   scene.meshes[1].primitives[0].material = 1;
-  EXPECT_EQ(plan_of(scene, {0}).photon_kinds, "caustic,indirect");
-}
-
-TEST(Plan, NoLambertSurfaceNoPhotons) {
-  Scene scene = still_room();
-  scene.materials[0].metallic = 1;
-  const Plan plan = plan_of(scene, {0});
-  EXPECT_EQ(plan.photon_kinds, "");
-  EXPECT_FALSE(plan.stages[0].needed);
-  EXPECT_EQ(plan.stages[0].because, "0 of 1 material reflect by a Lambert lobe");
-  EXPECT_NE(plan_makefile(plan, "plan", {}).find("plan_photons :=\n"), std::string::npos);
-}
-
-TEST(Plan, LightFollowsFromWhatStandsWhereASegmentHasStatesEnough) {
-  Scene scene = still_room();
-  slide(scene, kBox, {0, 1, 2, 3, 4, 5});
-  // Segments of four frames: 0 to 3 have four states, 4 and 5 two, and from 5 on the animation is over.
-  Plan plan = plan_of(scene, {0, 1, 2, 3, 4, 5}, 4);
-  const UpdatableLight light = updatable_light(plan);
-  EXPECT_EQ(light.segments, 1u);
-  EXPECT_EQ(light.states, 4u);
-  EXPECT_EQ(light.frame, 2);
-  use_moving(plan, "records", "a test");
-  EXPECT_EQ(plan.moving, "records");
-  EXPECT_TRUE(plan.segments[0].updated);
-  EXPECT_FALSE(plan.segments[1].updated);
-  const std::string text = plan_makefile(plan, "plan", {});
-  EXPECT_NE(text.find("plan_moving := records\n"), std::string::npos);
-  EXPECT_NE(text.find("stands_0003 := 0000\n"), std::string::npos);
-  EXPECT_EQ(text.find("stands_0004"), std::string::npos);
-  EXPECT_NE(text.find("state_0000 := $(addprefix plan/state/,static.0000 materials.0000 standing.0000 frozen.0000 moving.0000 lights.0000"),
-            std::string::npos);
-  EXPECT_NE(plan_json(plan, "room.glb", "", "").find("\"moving\": \"records\""), std::string::npos);
-}
-
-TEST(Plan, LightIsComputedAnewWhereNothingWouldBeSaved) {
-  Scene scene = still_room();
-  slide(scene, kCamera, {0, 1, 2, 3});
-  Plan still = plan_of(scene, {0, 1, 2, 3});
-  EXPECT_EQ(updatable_light(still).segments, 0u);
-  use_moving(still, "records", "a test");
-  EXPECT_EQ(still.moving, "anew");
-  slide(scene, kBox, {0, 1, 2, 3});
-  Plan moving = plan_of(scene, {0, 1, 2, 3});
-  use_indirect(moving, "gather", "a test");
-  use_moving(moving, "records", "a test");
-  EXPECT_EQ(moving.moving, "light") << "there are no records";
-  Plan kept = plan_of(scene, {0, 1, 2, 3});
-  use_moving(kept, "time", "a test");
-  EXPECT_EQ(kept.moving, "time");
-  EXPECT_TRUE(kept.segments.front().updated);
-  use_split(kept, true, "a test");
-  EXPECT_TRUE(kept.split) << "samples hold the low part";
-  Plan asked = plan_of(scene, {0, 1, 2, 3});
-  use_moving(asked, "anew", "a test");
-  EXPECT_EQ(plan_makefile(asked, "plan", {}).find("stands_"), std::string::npos);
-}
-
-TEST(Plan, BrightPointsAreDividedWherePointsAreRead) {
-  Plan plan = plan_of(still_room(), {0});
-  EXPECT_EQ(plan_makefile(plan, "plan", {}).find("plan_split"), std::string::npos);
-  use_split(plan, true, "a test");
-  EXPECT_NE(plan_makefile(plan, "plan", {}).find("plan_split := 1\n"), std::string::npos);
-  EXPECT_NE(plan_json(plan, "room.glb", "", "").find("\"split\": true"), std::string::npos);
-  Plan asked = plan_of(still_room(), {0});
-  use_split(asked, false, "a test");
-  EXPECT_FALSE(asked.split);
-  EXPECT_EQ(asked.stages[std::size_t(std::ranges::find(asked.stages, "photonmap-split", &Stage::name) - asked.stages.begin())].because, "a test");
-  Plan paths = plan_of(still_room(), {0});
-  use_indirect(paths, "paths", "a test");
-  use_split(paths, true, "a test");
-  EXPECT_FALSE(paths.split);
-  Scene scene = still_room();
-  slide(scene, kBox, {0, 1, 2, 3});
-  Plan moving = plan_of(scene, {0, 1, 2, 3});
-  use_moving(moving, "records", "a test");
-  use_split(moving, true, "a test");
-  EXPECT_FALSE(moving.split);
+  EXPECT_TRUE(plan_of(scene, {0}).segments[0].materials.other);
 }
 
 TEST(Plan, ASceneWithoutLightIsRefusedWithTheExportersBox) {
@@ -308,69 +191,146 @@ TEST(Plan, ASceneWithoutLightIsRefusedWithTheExportersBox) {
   }
 }
 
-TEST(PlanMakefile, SaysWhichPhotonsHoldForAFrameAndWhatTheyDependOn) {
+TEST(LookedFrames, AreEndsMiddleAndWhereSomethingComesOrGoes) {
   Scene scene = still_room();
-  slide(scene, kBox, {0, 1, 1, 0});
-  EXPECT_EQ(plan_makefile(plan_of(scene, {2}), "out/plan", scene.files),
-            "# Written by scene-plan; formats/plan/plan.md says what each variable is.\n"
-            "plan_frames := 0002\n"
-            "plan_pictures := 0002\n"
-            "plan_photons := 0001\n"
-            "plan_kinds := indirect\n"
-            "plan_indirect := records\n"
-            "plan_paths := 700000\n"
-            "plan_rays := 500\n"
-            "plan_moving := anew\n"
-            "plan_method := frames\n"
-            "plan_lights := 1\n"
-            "out/plan/plan.mk: room.glb\n"
-            "room.glb:\n"
-            "out/plan/plan.mk: data\\ folder/room.bin\n"
-            "data\\ folder/room.bin:\n"
-            "\n# frames 0 to 3\n"
-            "light_0000 := $(addprefix out/plan/state/,"
-            "static.0000 materials.0000 frozen.0000 moving.0000 lights.0000)\n"
-            "light_0001 := $(addprefix out/plan/state/,"
-            "static.0000 materials.0000 frozen.0000 moving.0001 lights.0001)\n"
-            "light_0002 := $(addprefix out/plan/state/,"
-            "static.0000 materials.0000 frozen.0000 moving.0002 lights.0002)\n"
-            "camera_0002 := out/plan/state/camera.0002\n"
-            "picture_0002 := 0002\n"
-            "photons_0002 := 0001\n"
-            "segment_0002 := 0000\n"
-            "previous_0002 :=\n"
-            "light_0003 := $(addprefix out/plan/state/,"
-            "static.0000 materials.0000 frozen.0000 moving.0003 lights.0003)\n"
-            "\n# photon maps, and the pictures they light\n"
-            "views_0001 := 0002\n");
+  std::vector<double> places(24, 0.0);
+  std::fill(places.begin() + 17, places.end(), 5.0);   // stands, jumps, stands
+  places.back() = 5.5;
+  slide(scene, kBox, places);
+  // 0 and 11 show the same; 17 is where it jumps; 23 moves on.
+  EXPECT_EQ(looked_frames(plan_of(scene, {3}).segments[0]), (std::vector<int>{0, 17, 23}));
 }
 
-TEST(PlanMakefile, NamesTheCamerasThatOneStateOfLightServes) {
+TEST(Graph, AFrameMadeAloneHasTheFilesThatItHasInARange) {
   Scene scene = still_room();
-  slide(scene, kBox, {0, 1, 1, 0, 0});
-  slide(scene, kCamera, {0, 0, 1, 0, 2});
-  const std::string text = plan_makefile(plan_of(scene, {0, 1, 2, 3, 4}), "plan", scene.files);
-  EXPECT_NE(text.find("plan_pictures := 0000 0001 0002 0004\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("views_0000 := 0000 0004\nviews_0001 := 0001 0002\n"), std::string::npos) << text;
+  slide(scene, kBox, {0, 1, 2, 3, 4, 5, 6, 7});
+  slide(scene, kCamera, {0, 0, 1, 1, 2, 2, 3, 3});
+  std::vector<int> all(8);
+  for (int f = 0; f < 8; ++f) all[std::size_t(f)] = f;
+  for (const MovingMethod moving : {MovingMethod::anew, MovingMethod::light, MovingMethod::records, MovingMethod::time})
+    for (const int filter : {0, 3})
+      for (const FrameMethod method : {FrameMethod::frames, FrameMethod::walkthrough}) {
+        if (filter > 0 && method != FrameMethod::frames) continue;
+        Decisions d = records();
+        d.moving = moving;
+        Wish wish;
+        wish.filter = filter;
+        wish.method = method;
+        wish.key_distance = 4;
+        const Graph range = graph_of(plan_of(scene, all, 4, helper_frames(all, wish)), d, wish);
+        const Graph alone = graph_of(plan_of(scene, {5}, 4, helper_frames({5}, wish)), d, wish);
+        EXPECT_EQ(alone.pictures.at(5), range.pictures.at(5)) << int(moving) << ' ' << filter << ' ' << int(method);
+        const std::set<std::string> more = names(range);
+        for (const std::string& name : names(alone)) EXPECT_TRUE(more.contains(name)) << name;
+      }
 }
 
-TEST(PlanMakefile, RefusesAFolderThatMakeCannotName) {
+TEST(Graph, ANameChangesWithAllThatTheFileIsMadeFromAndWithNothingElse) {
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 1, 2});
+  const Graph graph = graph_of(plan_of(scene, {0, 1}), records());
+  const auto same = [&](const Graph& other, const char* folder) { return names(graph, folder) == names(other, folder); };
+
+  Scene camera = scene;
+  camera.nodes[kCamera].translation.y = 1;
+  const Graph moved_camera = graph_of(plan_of(camera, {0, 1}), records());
+  EXPECT_TRUE(same(moved_camera, "photons") && same(moved_camera, "points"));
+  EXPECT_FALSE(same(moved_camera, "cache") || same(moved_camera, "pictures"));
+
+  Scene lamp = scene;
+  lamp.lights[0].intensity *= 2;
+  EXPECT_FALSE(same(graph_of(plan_of(lamp, {0, 1}), records()), "photons"));
+
+  Wish pixels;
+  pixels.pixels = "--spp 8";
+  const Graph other_pixels = graph_of(plan_of(scene, {0, 1}), records(), pixels);
+  EXPECT_TRUE(same(other_pixels, "cache"));
+  EXPECT_FALSE(same(other_pixels, "pictures"));
+
+  EXPECT_FALSE(same(graph_of(plan_of(scene, {0, 1}), records(), {}, "2"), "photons")) << "another program";
+  Wish draft;
+  draft.quality = Quality::draft;
+  EXPECT_FALSE(same(graph_of(plan_of(scene, {0, 1}), records(), draft), "pictures"));
+}
+
+TEST(Graph, RecordsOverTimeFollowFromTheStateBeforeInTheSegmentOnly) {
+  Scene scene = still_room();
+  slide(scene, kBox, {0, 1, 2, 3, 4, 5, 6, 7});
+  Decisions d = records();
+  d.moving = MovingMethod::time;
+  const Graph graph = graph_of(plan_of(scene, {2, 5}, 4), d);
+  EXPECT_NE(file_of(graph, "kept/0002").words.find("--previous kept/0001-"), std::string::npos);
+  EXPECT_NE(file_of(graph, "kept/0005").words.find("--previous kept/0004-"), std::string::npos);
+  EXPECT_EQ(file_of(graph, "kept/0004").words.find("--previous"), std::string::npos);
+}
+
+TEST(Graph, WhatIsNotNeededIsNotThere) {
   const Plan plan = plan_of(still_room(), {0});
-  for (const char* folder : {"my plan", "a:b", "a%b", "$(x)", "a#b", "a\\b", "a;b"})
-    EXPECT_THROW(plan_makefile(plan, folder, {}), InputError) << folder;
+  Decisions paths;
+  paths.indirect = IndirectMethod::paths;
+  EXPECT_EQ(graph_of(plan, paths).files.size(), 1u);
+  Decisions gather = records();
+  gather.indirect = IndirectMethod::gather;
+  EXPECT_TRUE(names(graph_of(plan, gather), "cache").empty());
+  EXPECT_TRUE(names(graph_of(plan, records()), "split").empty());
+  Decisions split = records();
+  split.split = true;
+  EXPECT_NE(file_of(graph_of(plan, split), "cache").words.find("--high split/0000-"), std::string::npos);
 }
 
-TEST(PlanJson, GivesFactsAndHashesOfEachFrame) {
+TEST(Graph, NothingIsWarpedIntoAFrameOfOtherLight) {
+  Scene scene = still_room();
+  std::vector<double> places(9), lamp(9, 0.0);
+  for (std::size_t f = 0; f < 9; ++f) places[f] = double(f);
+  lamp[3] = 1;   // the lamp is elsewhere in frame 3
+  slide(scene, kCamera, places);
+  slide(scene, kLamp, lamp);
+  Wish wish;
+  wish.method = FrameMethod::walkthrough;
+  wish.key_distance = 8;
+  const std::vector<int> frames{0, 1, 2, 3, 4, 5, 6, 7, 8};
+  const Graph graph = graph_of(plan_of(scene, frames, 24, helper_frames(frames, wish)), records(), wish);
+  // 0 to 8 is halved to 0-2 and 4-8; 2-4 holds frame 3.
+  EXPECT_TRUE(graph.pictures.at(1).starts_with("walked/"));
+  EXPECT_TRUE(graph.pictures.at(5).starts_with("walked/"));
+  for (const int key : {0, 2, 3, 4, 8}) EXPECT_TRUE(graph.pictures.at(key).starts_with("keys/")) << key;
+}
+
+TEST(PlanFiles, NoWordOfTheSceneReachesMake) {
+  Scene scene = still_room();
+  scene.path = "$(shell touch X).glb";
+  scene.nodes[kBox].name = scene.materials[0].name = "$(shell touch X)";
+  slide(scene, kBox, {0, 1, 2});
+  const Plan plan = plan_of(scene, {0, 1});
+  const std::string text = plan_makefile(plan, graph_of(plan, records()), [](const std::string& tool) { return tool; });
+  EXPECT_EQ(text.find("touch"), std::string::npos);
+  EXPECT_NE(text.find("frames := frames/0000.exr frames/0001.exr\n"), std::string::npos);
+}
+
+TEST(PlanFiles, JsonGivesFactsAndHashesOfEachFrame) {
   Scene scene = still_room();
   slide(scene, kBox, {0, 1, 1, 0});
-  const nlohmann::json json = nlohmann::json::parse(plan_json(plan_of(scene, {2}), "room.glb", "history\n"));
+  const Plan plan = plan_of(scene, {2});
+  const nlohmann::json json = nlohmann::json::parse(plan_json(plan, graph_of(plan, records()), "room.glb", "history\n"));
   EXPECT_EQ(json["format"], "tempolux plan");
-  EXPECT_EQ(json["stages"][0]["because"], "1 frame asked for, 1 state of light transport");
   EXPECT_EQ(json["segments"][0]["moves"][0]["node"], "Box");
-  const nlohmann::json& frame = json["segments"][0]["frames"][2];
-  EXPECT_EQ(frame["photons"], 1);
-  EXPECT_EQ(frame["hashes"]["camera"].get<std::string>().size(), 32u);
-  EXPECT_FALSE(json["segments"][0]["frames"][1]["hashes"].contains("camera"));
+  EXPECT_EQ(json["segments"][0]["frames"][2]["lit_as"], 1);
+  EXPECT_EQ(json["segments"][0]["frames"][2]["hashes"]["camera"].get<std::string>().size(), 32u);
+  EXPECT_TRUE(json["pictures"]["0002"].get<std::string>().starts_with("pictures/0001-")) << "shows what frame 1 shows";
+}
+
+TEST(PlanFiles, DecisionsAreReadBackAsTheyWere) {
+  Decisions d = records();
+  d.moving = MovingMethod::light;
+  d.moving_cost = {0.25, 0.5, 0.125};
+  d.photon_paths = 12345678901;
+  d.learn_lights = true;
+  d.view = "tempolux view 1.0\n1 2 3 4 5\n";
+  d.looked = {0, 5};
+  d.reasons = {{"photonmap-split", "a test"}};
+  const std::string text = decisions_text(d);
+  EXPECT_EQ(decisions_text(read_decisions(text)), text);
+  EXPECT_THROW(read_decisions("{}"), InputError);
 }
 
 TEST(FrameDigits, HaveAtLeastFourPlaces) {

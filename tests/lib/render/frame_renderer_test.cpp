@@ -53,6 +53,36 @@ TEST(FrameRenderer, PixelsAreEqualForAnyNumberOfThreads) {
   }
 }
 
+double squared_difference(const LayerImage& a, const LayerImage& b) {
+  double sum = 0;
+  for (std::size_t p = 0; p < a.pixels.size(); ++p) {
+    const Rgbd d = Rgbd(total(a.pixels[p])) - Rgbd(total(b.pixels[p]));
+    sum += d.r * d.r + d.g * d.g + d.b * d.b;
+  }
+  return sum;
+}
+
+/// A frame and either half of a reference of the same seed and samples are as far apart as the halves are: variances add up. Of equal
+/// random numbers the difference would be 0. Heavy tails: such sums scatter by 10 % (below), so two of them agree within 30 %.
+TEST(FrameRenderer, HalvesAreIndependentOfFramesOfTheSameSeed) {
+  const Cornell c;
+  FrameOptions options;
+  options.samples = 4;
+  const RenderedFrame plain = render_frame(c.render_scene(), c.view, options);
+  options.target_error = 1e9;   // reached at once
+  options.samples = 8;
+  const RenderedFrame until = render_frame(c.render_scene(), c.view, options);
+  options.target_error = 0;
+  options.halves = true;
+  const RenderedFrame reference = render_frame(c.render_scene(), c.view, options);
+  const double apart = squared_difference(reference.half[0], reference.half[1]);
+  for (const LayerImage* half : {&reference.half[0], &reference.half[1]}) {
+    EXPECT_NEAR(squared_difference(plain.mean, *half) / apart, 1, 0.3);
+    EXPECT_NEAR(squared_difference(until.half[0], *half) / apart, 1, 0.3);
+    EXPECT_NEAR(squared_difference(until.half[1], *half) / apart, 1, 0.3);
+  }
+}
+
 /// The estimate that the halves give of their mean's error agrees with the true one: the difference of two
 /// independent means is its square root of two times.
 TEST(FrameRenderer, HalvesAreIndependentAndTellTheError) {
@@ -128,12 +158,12 @@ TEST(FrameRenderer, TargetErrorIsReached) {
   FrameOptions options;
   options.samples = 2;
   options.target_error = 0.08;
+  options.halves = true;
   const RenderedFrame frame = render_frame(c.render_scene(), c.view, options);
   EXPECT_LE(frame.own_rmse, 0.08 * frame.mean_radiance);
   EXPECT_GT(frame.mean.samples, 2);
   // Passes continue the same sequence: the same samples in one go give the same means up to rounding.
   options.target_error = 0;
-  options.halves = true;
   options.samples = frame.mean.samples;
   const RenderedFrame again = render_frame(c.render_scene(), c.view, options);
   EXPECT_NEAR(again.mean_radiance, frame.mean_radiance, 1e-6 * frame.mean_radiance);

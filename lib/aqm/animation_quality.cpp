@@ -1,0 +1,102 @@
+// lib/aqm/animation_quality.cpp
+#include "lib/aqm/animation_quality.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "formats/error.h"
+#include "lib/aqm/display_speed.h"
+#include "lib/aqm/visible_difference.h"
+
+namespace tempolux {
+namespace {
+
+void check_colour(const Compared& pair, const std::string& name) {
+  const bool colour = pair.channels == std::vector<std::string>{"R", "G", "B"};
+  if (colour || pair.channels == std::vector<std::string>{"Y"}) return;
+  throw InputError(name +
+                   ": the layer is no colour, so no eye sees it; choose another --layer, or leave out "
+                   "--metric aqm and --flow");
+}
+
+/// Luminance of the reference, or of the mean of its halves.
+std::vector<float> reference_luminance(const Compared& pair, const vision::Display& display,
+                                       double exposure) {
+  if (!pair.halves()) return displayed_luminance(display, pair.reference, exposure);
+  std::vector<std::vector<float>> means(pair.reference.size());
+  std::vector<const std::vector<float>*> planes;
+  for (std::size_t c = 0; c < means.size(); ++c) {
+    means[c].resize(pair.reference[c]->size());
+    for (std::size_t i = 0; i < means[c].size(); ++i) means[c][i] = float(pair.reference_at(c, i));
+    planes.push_back(&means[c]);
+  }
+  return displayed_luminance(display, planes, exposure);
+}
+
+AnimationQuality count_seen(const Compared& pair, const std::vector<float>& probability) {
+  AnimationQuality quality;
+  for (std::size_t i = 0; i < probability.size(); ++i) {
+    if (!pair.counts(i)) continue;
+    const SeenShare pixel{1, double(probability[i]) > vision::kSeenProbability ? 1u : 0u};
+    quality.all.add(pixel);
+    if (pair.objects) quality.objects[(*pair.objects)[i]].add(pixel);
+  }
+  return quality;
+}
+
+}  // namespace
+
+void AnimationQuality::add(const AnimationQuality& frame) {
+  all.add(frame.all);
+  for (const auto& [id, share] : frame.objects) objects[id].add(share);
+}
+
+double shared_exposure_stops(const ComparedInputs& inputs) {
+  const auto stops = [&](const NamedImage& image) { return auto_exposure_stops(*image.image, inputs.layer); };
+  return 0.5 * (stops(inputs.test) + stops(inputs.reference));
+}
+
+JudgedFrame judge_frame(const Compared& pair, const PixelFlow* flow, const VisionOptions& options,
+                        const std::string& name) {
+  check_colour(pair, name);
+  if (flow && (flow->width != pair.width || flow->height != pair.height))
+    throw InputError(name + ": " + std::to_string(pair.width) + "x" + std::to_string(pair.height) +
+                     " pixels, but its flow has " + std::to_string(flow->width) + "x" +
+                     std::to_string(flow->height) + "; give the flow of this frame");
+  const double exposure = std::exp2(options.exposure_stops), ppd = options.display.pixels_per_degree;
+  const vision::DisplayedPair shown{pair.width, pair.height,
+                                    displayed_luminance(options.display, pair.test, exposure),
+                                    reference_luminance(pair, options.display, exposure), pair.counted};
+  const std::vector<float> speed =
+      flow ? vision::display_speed(*flow, ppd, options.frames_per_second) : std::vector<float>();
+  vision::Detection detection = vision::detection_map(shown, speed, {ppd, options.gaze});
+  JudgedFrame judged{count_seen(pair, detection.probability), {}};
+  judged.quality.adaptation_luminance = detection.adaptation_luminance;
+  judged.probability = std::move(detection.probability);
+  return judged;
+}
+
+Image probability_image(const JudgedFrame& judged, int width, int height) {
+  Image image;
+  image.width = width;
+  image.height = height;
+  image.add("P").values = judged.probability;
+  return image;
+}
+
+Picture heat_map(const JudgedFrame& judged, const Image& frame, const PreviewOptions& preview) {
+  Picture picture = make_picture(frame, preview);
+  for (std::size_t i = 0; i < judged.probability.size(); ++i) {
+    std::uint8_t* pixel = &picture.rgb[3 * i];
+    const double grey = 0.7 * (0.2126 * pixel[0] + 0.7152 * pixel[1] + 0.0722 * pixel[2]),
+                 p = double(judged.probability[i]);
+    // yellow to P = 1/2, red from where a difference counts as seen
+    const double green =
+        255 * std::clamp((vision::kSeenProbability - p) / (vision::kSeenProbability - 0.5), 0.0, 1.0);
+    const double heat[3] = {255, green, 0};
+    for (int c = 0; c < 3; ++c) pixel[c] = std::uint8_t(std::lround((1 - p) * grey + p * heat[c]));
+  }
+  return picture;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,77 @@
+#include "lib/gather/lamp_light.h"
+
+#include <optional>
+
+#include "lib/core/parallel.h"
+#include "lib/core/random.h"
+#include "lib/core/sobol.h"
+#include "lib/gather/medium_event.h"
+#include "lib/material/surface_material.h"
+
+namespace tempolux {
+namespace {
+
+constexpr std::size_t kFewest = 1 << 15, kMost = 1 << 18;   ///< photons emitted
+constexpr std::size_t kEnough = 1 << 10;                     ///< landed: their flux is known to 3 % then
+constexpr std::uint64_t kKey = 0x6c616d7073706f74ull;
+
+/// Where a photon lands, if that is on a Lambert lobe within `reach` m. Its flux is that of one photon of one.
+std::optional<LampPhoton> landed(const Tracer& tracer, const PointLookup& points, const PhotonEmission& emission, float reach, const PathRandom& random) {
+  if (is_black(emission.flux)) return std::nullopt;
+  Ray ray{emission.origin + emission.normal * emission.origin_offset, emission.travel, 0, reach};
+  Hit hit;
+  if (!tracer.intersect(ray, hit)) return std::nullopt;
+  SurfacePoint place = tracer.surface_point(hit);
+  const SurfaceMaterial material(tracer.frame(), place);
+  const Vec3 wi = -emission.travel;
+  const bool front = dot(place.normal_geometric, wi) > 0;
+  const Bsdf bsdf(material, front);
+  if (!bsdf.has_diffuse()) return std::nullopt;
+  const Vec3 normal = front ? place.normal_geometric : -place.normal_geometric;
+  const float cosine = dot(wi, dot(place.normal, normal) < 0 ? -place.normal : place.normal), geometric = dot(wi, normal);
+  const float distance = length(place.position - emission.origin);
+  if (!(cosine > 0 && geometric > 0 && distance > 0 && distance < reach)) return std::nullopt;
+  const PointLookup::Light* const point = points.find(place.position, normal);
+  float share = cosine / geometric;
+  if (bsdf.has_specular()) share *= bsdf.arrival_weight(cosine);
+  if (const Media* const media = tracer.frame().media.get()) [[unlikely]] {
+    ray.t_max = hit.t;
+    share *= media_transmittance(*media, ray, {random, 0, way_shadow});
+  }
+  return LampPhoton{place, normal, bsdf, emission.flux * share, distance, point ? point->point : kNone};
+}
+
+}  // namespace
+
+std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::uint64_t seed) {
+  if (points.size() == 0 || !lights.has_placed()) return {};
+  constexpr std::size_t kChunk = 1024;
+  const std::uint64_t key = mix64(seed ^ kKey);
+  const float reach = kBesideLamp * points.spacing();
+  std::vector<LampPhoton> all;
+  std::size_t done = 0;
+  for (std::size_t wanted = kFewest; wanted <= kMost; wanted *= 2) {
+    std::vector<std::vector<LampPhoton>> found((wanted - done) / kChunk);
+    parallel_chunks(wanted - done, kChunk, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = done + first; i < done + last; ++i) {
+        const Vec2 from = sobol_owen_2d(std::uint32_t(i), key), to = sobol_owen_2d(std::uint32_t(i), mix64(key + 1));
+        const PhotonEmission emission = lights.emit({double(from.x), double(from.y), double(to.x), double(to.y)});
+        if (std::optional<LampPhoton> photon = landed(tracer, points, emission, reach, PathRandom(key, i))) found[first / kChunk].push_back(*photon);
+      }
+    });
+    for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
+    done = wanted;
+    if (all.empty() || all.size() >= kEnough) break;
+  }
+  for (LampPhoton& photon : all) photon.flux *= 1 / float(done);
+  return all;
+}
+
+std::vector<LampPhoton> note_lamps_beside(const Tracer& tracer, const Lights& lights, PointLookup& points) {
+  std::vector<LampPhoton> photons = photons_beside_lamps(tracer, lights, points);
+  for (const LampPhoton& photon : photons)
+    if (photon.point != kNone) points.note_lamp(photon.point);
+  return photons;
+}
+
+}  // namespace tempolux

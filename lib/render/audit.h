@@ -1,0 +1,98 @@
+// lib/render/audit.h -- the bias of a frame's layers, measured by splats of photons and by paths.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lib/render/frame_renderer.h"
+#include "lib/render/photon_splats.h"
+
+namespace tempolux {
+
+/// An estimate with its standard error; error < 0: not known.
+struct Estimate {
+  double value = 0, error = -1;
+  bool known() const { return error >= 0; }
+};
+
+/// One layer over one part of the picture. Radiances are means over the part's pixels and channels [W/m^2/sr].
+struct AuditEntry {
+  Layer layer = Layer::indirect;
+  std::string part;             ///< "picture", "tile 2 3" (column, row of 4 x 4) or "object N"
+  std::uint32_t object = kNone; ///< id.object
+  std::size_t pixels = 0;
+  double shown = 0;             ///< the frame's
+  Estimate splats;              ///< by photons
+  Estimate paths;               ///< shown minus this is the bias that paths find
+  Estimate bias;                ///< of the frame, by the two together
+  double picture = 0;           ///< radiance of all layers over the whole picture, times its pixels over the part's: what `bias` is a share of
+  double share() const { return picture > 0 ? bias.value / picture : 0; }
+  double share_error() const { return picture > 0 ? bias.error / picture : 0; }
+  double of_layer() const { return shown - bias.value > 0 ? bias.value / (shown - bias.value) : 0; }
+  double of_layer_error() const { return shown - bias.value > 0 ? bias.error / (shown - bias.value) : 0; }
+};
+
+/// Photons for the audit, all of one map or of parts that add up to it.
+struct AuditPhotons {
+  /// `shift` [m] takes the photons into the scene's space.
+  using Body = std::function<void(const formats::PhotonBlock& block, Vec3d shift)>;
+  std::function<void(const Body&)> for_each_block;   ///< in file order
+  std::array<bool, kLayerCount> holds{};         ///< layers whose kind the map holds
+};
+
+/// Audits the layers direct, caustic and indirect of a frame, by splats where the map holds their kind.
+class FrameAudit {
+ public:
+  /// objects: id.object by pixel. Pixels of `mask` 0 are left out.
+  FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects, std::span<const std::uint8_t> mask);
+  /// Reads all photons.
+  void add_splats(const Tracer& tracer, const AuditPhotons& photons);
+  /// Picture of the splats alone, by layer; for `frame-render --integrator light`.
+  const std::vector<Layers>& splats() const { return splats_; }
+  /// Of `count` camera rays, spread over the picture, what the frame's way of finding light says less what paths find from the same first hit: bias without photons, where none are
+  /// in view. `scene` as the frame was rendered.
+  void add_paths(const RenderScene& scene, const FrameOptions& options, std::size_t count);
+  /// Layers that any estimate was made of, over the picture, the tiles and the objects, in this order.
+  std::vector<AuditEntry> entries() const;
+
+ private:
+  struct Part {
+    std::string name;
+    std::uint32_t object = kNone;
+    std::size_t pixels = 0;
+  };
+  /// Sums over a part by layer.
+  struct Sums {
+    std::array<double, kLayerCount> shown{}, splats{};
+    std::array<std::uint32_t, kLayerCount> splat_count{};
+    std::array<double, kLayerCount> difference{};      ///< of the pair of runs at hand
+    std::array<double, kLayerCount> pairs_square{};    ///< sum over pairs of their difference squared; of layer direct over photons
+    std::array<double, kLayerCount> paths{}, paths_square{}, paths_largest{};
+    std::size_t path_count = 0;
+    std::array<std::size_t, kLayerCount> met{};        ///< paths that found light
+  };
+  template <class Body>
+  void for_parts_of(std::size_t pixel, const Body& body) const;
+  AuditEntry entry(std::size_t part, std::size_t layer) const;
+  class PairedRuns;
+
+  const CameraView& view_;
+  const RenderedFrame& frame_;
+  std::span<const std::uint8_t> mask_;
+  std::vector<Part> parts_;                  ///< picture, 16 tiles, objects
+  std::vector<std::uint32_t> object_part_;   ///< by pixel
+  std::vector<Sums> sums_;                   ///< by part
+  std::vector<Layers> splats_;
+  double photons_ = 0, paired_photons_ = 0;  ///< of the map, and of them those in pairs of runs
+  std::array<bool, kLayerCount> holds_{};
+  double picture_ = 0;                       ///< sum over pixels of the mean channel of all layers
+};
+
+/// What is to be said of the entries: bias of a layer over the picture that is above 2 % of the picture's light and above three standard errors.
+bool is_biased(const AuditEntry& entry);
+inline constexpr double kAuditLimit = 0.02, kAuditErrors = 3;
+
+}  // namespace tempolux

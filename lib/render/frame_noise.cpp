@@ -1,0 +1,139 @@
+#include "lib/render/frame_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/core/random.h"
+
+namespace tempolux {
+namespace {
+
+constexpr double kEnough = 1024;          ///< pixels: their RMS is known within 2.2 % where noise is normal
+constexpr int kLeastEdge = 5, kMostEdge = 8;
+
+Rgbd total(const Layers& layers) {
+  Rgbd sum(0.0);
+  for (const Rgb& radiance : layers.value) sum += Rgbd(radiance);
+  return sum;
+}
+
+/// Means over channels of squared differences, linear and in codes.
+struct Squares {
+  double linear = 0, codes = 0;
+  Squares& operator+=(const Squares& o) {
+    linear += o.linear, codes += o.codes;
+    return *this;
+  }
+  Squares operator*(double f) const { return {linear * f, codes * f}; }
+};
+
+Squares squares(const Rgbd& a, const Rgbd& b, double exposure) {
+  Squares sum;
+  for (int c = 0; c < 3; ++c) {
+    const double linear = a[c] - b[c], codes = srgb_code(a[c] * exposure) - srgb_code(b[c] * exposure);
+    sum += Squares{linear * linear, codes * codes} * (1.0 / 3);
+  }
+  return sum;
+}
+
+/// Root of the mean of squared errors, pixel by pixel, and its standard error.
+class Mean {
+ public:
+  void add(const Squares& error) {
+    ++count_;
+    sum_ += error;
+    square_ += {error.linear * error.linear, error.codes * error.codes};
+  }
+  Noise noise() const {
+    Noise noise;
+    root(sum_.linear, square_.linear, noise.linear, noise.linear_error);
+    root(sum_.codes, square_.codes, noise.codes, noise.codes_error);
+    return noise;
+  }
+
+ private:
+  void root(double sum, double square, double& value, double& error) const {
+    if (count_ < 2) return;
+    const double n = double(count_), mean = std::max(0.0, sum / n), variance = std::max(0.0, square / n - sum * sum / (n * n)) / (n - 1);
+    value = std::sqrt(mean);
+    error = value > 0 ? std::sqrt(variance) / (2 * value) : std::sqrt(std::sqrt(variance));   // of a root: d sqrt(m) = dm / (2 sqrt(m))
+  }
+  std::size_t count_ = 0;
+  Squares sum_, square_;
+};
+
+/// error(colour) of a pixel's image and of its layers, with colour(layers) for the part of them that is looked at.
+struct ImageAndLayers {
+  Mean image, layer[kLayerCount];
+  template <class Error>
+  void add(const Error& error) {
+    image.add(error([](const Layers& layers) { return total(layers); }));
+    for (std::size_t l = 0; l < kLayerCount; ++l) layer[l].add(error([l](const Layers& layers) { return Rgbd(layers.value[l]); }));
+  }
+  FrameNoise noise(double exposure, std::size_t pixels) const {
+    FrameNoise noise{image.noise(), {}, exposure, pixels};
+    for (std::size_t l = 0; l < kLayerCount; ++l) noise.layer[l] = layer[l].noise();
+    return noise;
+  }
+};
+
+}  // namespace
+
+double srgb_code(double value) {
+  const double v = std::clamp(value, 0.0, 1.0);
+  return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+}
+
+double exposure_of(std::span<const Layers> pixels, std::span<const std::uint8_t> mask) {
+  std::vector<double> means;
+  means.reserve(pixels.size());
+  for (std::size_t p = 0; p < pixels.size(); ++p)
+    if (mask.empty() || mask[p]) means.push_back(channel_mean(total(pixels[p])));
+  const auto median = [&] {
+    const auto middle = means.begin() + std::ptrdiff_t(means.size() / 2);
+    std::nth_element(means.begin(), middle, means.end());
+    return *middle;
+  };
+  if (!means.empty() && !(median() > 0)) std::erase_if(means, [](double mean) { return !(mean > 0); });
+  return means.empty() ? 1 : 0.18 / median();
+}
+
+NoiseCheck::NoiseCheck(const CameraView& view, std::uint64_t seed, std::span<const std::uint8_t> mask)
+    : seed_(mix64(seed ^ 0x6e6f697365ull)), mask_(mask), width_(view.width()), height_(view.height()),
+      edge_(std::clamp(int(std::sqrt(double(width_) * height_ / kEnough)), kLeastEdge, kMostEdge)), columns_(width_ / edge_) {
+  again_.resize(std::size_t(columns_) * std::size_t(height_ / edge_));
+}
+
+std::uint32_t NoiseCheck::slot(int x, int y) const {
+  const int i = x / edge_, j = y / edge_;
+  if (i >= columns_ || j >= height_ / edge_) return kNone;
+  const auto index = std::uint32_t(j * columns_ + i);
+  // A place of its own in each square: a grid of fixed places would fall in step with tiles and grooves.
+  const auto place = int(mix64(index ^ 0x636865636bull) % std::uint64_t(edge_ * edge_));
+  return x % edge_ == place % edge_ && y % edge_ == place / edge_ ? index : kNone;
+}
+
+FrameNoise NoiseCheck::measure(const std::vector<Triple>& triples, double exposure) const {
+  ImageAndLayers sums;
+  for (const Triple& of : triples)
+    sums.add([&](const auto& colour) {
+      const Rgbd again = colour(of.again);
+      Squares error = squares(colour(of.shown), again, exposure);
+      error += squares(colour(of.sampled), again, exposure) * -0.5;
+      return error;
+    });
+  return sums.noise(exposure, triples.size());
+}
+
+FrameNoise noise_of_halves(const std::vector<Layers>& a, const std::vector<Layers>& b) {
+  std::vector<Layers> mean(a);
+  for (std::size_t p = 0; p < a.size(); ++p)
+    for (std::size_t l = 0; l < kLayerCount; ++l) mean[p].value[l] = (a[p].value[l] + b[p].value[l]) * 0.5f;
+  const double exposure = exposure_of(mean, {});
+  ImageAndLayers sums;
+  for (std::size_t p = 0; p < a.size(); ++p)
+    sums.add([&](const auto& colour) { return squares(colour(a[p]), colour(b[p]), exposure) * 0.25; });
+  return sums.noise(exposure, a.size());
+}
+
+}  // namespace tempolux

@@ -1,0 +1,106 @@
+"""Makefile.example as the measurements run it, and what a run has left in OUT (formats/plan/plan.md).
+
+Names of files inside OUT stand here and in no other script.
+"""
+import json
+import os
+import re
+import subprocess
+from pathlib import Path
+
+# Folders of OUT by the part of the work that tables show.
+STAGES = {"photons": ("photons", "stands", "moved", "refined"), "points": ("points", "stands_points", "split"),
+          "cache": ("cache", "stands_cache", "kept", "textures"),
+          "frames": ("lights", "keys", "walk", "walked", "raw", "filtered", "pictures", "smoky")}
+
+
+# ---- running it
+
+def command(project, tools, out, goal="demo", **variables):
+    """Words of a run. Variables have the names of Makefile.example; None leaves one out. Paths are absolute."""
+    return ["make", "-s", "-f", "Makefile.example", "-C", str(project), goal, f"BIN={tools}", f"OUT={out}",
+            *(f"{name}={value}" for name, value in variables.items() if value is not None)]
+
+
+def environment():
+    """That of this process, without what a make around it says."""
+    return {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKELEVEL", "MFLAGS")}
+
+
+def run_make(project, tools, out, goal="demo", **variables):
+    """CPU seconds of all processes of a run."""
+    before = os.times()
+    done = subprocess.run(command(project, tools, out, goal, **variables), capture_output=True, text=True, env=environment())
+    after = os.times()
+    if done.returncode:
+        raise RuntimeError(f"exit {done.returncode}: make {goal} OUT={out}\n{done.stderr}")
+    return after.children_user - before.children_user + after.children_system - before.children_system
+
+
+# ---- what it has left
+
+def plan_of(out):
+    return json.loads((Path(out) / "plan.json").read_text())
+
+
+def made_files(out):
+    """Names inside OUT that the current plan makes, relative to it: the first of each command's."""
+    return re.findall(r"^(\S+)[^:\n]*: words :=", (Path(out) / "plan.mk").read_text(), re.M)
+
+
+def count_of(out):
+    """How many processes the plan has, by part of the work."""
+    folders = [name.split("/")[0] for name in made_files(out)]
+    return {stage: sum(folder in of for folder in folders) for stage, of in STAGES.items()}
+
+
+def stats_files(out, stages=tuple(STAGES)):
+    """Statistics of all processes of the current plan that have run, of these parts of the work."""
+    wanted = {folder for stage in stages for folder in STAGES[stage]}
+    stems = [Path(out) / name.split(".")[0] for name in made_files(out) if name.split("/")[0] in wanted]
+    files = [stem.with_name(stem.name + end) for stem in stems for end in (".json", ".warp.json")]
+    return [file for file in files if file.exists()]
+
+
+def stats_of(out, stages=tuple(STAGES)):
+    """Their content."""
+    return [json.loads(file.read_text()) for file in stats_files(out, stages)]
+
+
+def cpu_of(out):
+    """CPU seconds by part of the work."""
+    return {stage: sum(stats["cpu_s"] for stats in stats_of(out, (stage,))) for stage in STAGES}
+
+
+def picture_of(out, frame):
+    """The file that a frame shows."""
+    return Path(out) / plan_of(out)["pictures"][f"{frame:04d}"]
+
+
+def frame_of(out, frame):
+    """The frame, under its plain name; `frame` may be a pattern of #."""
+    return Path(out) / "frames" / (f"{frame}.exr" if isinstance(frame, str) else f"{frame:04d}.exr")
+
+
+def bytes_of(out):
+    """Bytes of all files that the plan makes, the frames and their previews: what --estimate speaks of."""
+    files = [Path(out) / name for name in made_files(out)] + list((Path(out) / "frames").glob("*.*"))
+    return sum(file.stat().st_size for file in files if file.exists())
+
+
+def majorants_of(out, first):
+    """Bounds of the media of the segment that starts at `first`: a plan has them with --update."""
+    found = set(re.findall(rf"--majorants (state/{first:04d}-\S+)", (Path(out) / "plan.mk").read_text()))
+    if len(found) != 1:
+        raise RuntimeError(f"{out}/plan.mk: {len(found)} files of majorants for the segment of frame {first}; plan with --update")
+    return Path(out) / found.pop()
+
+
+# ---- the preset
+
+def preset(project, name="final"):
+    """Options of QUALITY=final or draft as lib/plan/stages.cpp has them: words by kind."""
+    row = re.search(rf"constexpr Preset k{name.capitalize()}\{{(.*)\}};", (project / "lib" / "plan" / "stages.cpp").read_text()).group(1)
+    photons, points, rays, records, error, samples, _ = (part.strip().strip('"') for part in row.split(", "))
+    return {"photons": int(photons.replace("'", "")), "points": points.split(), "records": ["--rays", rays, *records.split()],
+            "pixels": ["--spp", samples, "--pixel-error", error, "--learn-lights"]}

@@ -1,0 +1,174 @@
+// tests/lib/aqm/visible_difference_test.cpp -- what the model sees of gratings whose threshold is known, and
+// what must hold of any pair.
+#include "lib/aqm/visible_difference.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "lib/aqm/cortex_channels.h"
+#include "tests/lib/aqm/synthetic.h"
+
+namespace tempolux::vision {
+namespace {
+
+constexpr double kPixelsPerDegree = 30, kMean = 100;
+
+/// 192 x 192 pixels: a plane of 100 cd/m2, and on it a grating of Michelson contrast `contrast`, `frequency`
+/// c/px, at `degrees`.
+DisplayedPair grating(double frequency, double degrees, double contrast, int size = 192) {
+  DisplayedPair pair{
+      size, size, std::vector<float>(std::size_t(size) * std::size_t(size), float(kMean)), {}, {}};
+  pair.second = pair.first;
+  const double angle = degrees * std::numbers::pi / 180;
+  for (int y = 0; y < size; ++y)
+    for (int x = 0; x < size; ++x) {
+      const double along = (x - size / 2) * std::cos(angle) + (y - size / 2) * std::sin(angle);
+      pair.second[std::size_t(y * size + x)] =
+          float(kMean * (1 + contrast * std::cos(2 * std::numbers::pi * frequency * along)));
+    }
+  return pair;
+}
+
+/// Detection at the crest in the middle, `speed` deg/s across the display.
+double seen(const DisplayedPair& pair, double speed, Gaze gaze = Gaze::fixed) {
+  const std::vector<float> speeds(pair.first.size(), float(speed));
+  const Detection detection = detection_map(pair, speeds, {kPixelsPerDegree, gaze});
+  return detection.probability[std::size_t(pair.height / 2 * pair.width + pair.width / 2)];
+}
+
+/// The contrast at which a grating is seen with probability 1/2, times its sensitivity: 1 where the model is
+/// right. On a plane the sum over channels grows as contrast^3.5, so P at contrast 1/S gives the threshold.
+double threshold_times_sensitivity(double frequency, double degrees, double speed) {
+  const double sensitivity = contrast_sensitivity(frequency * kPixelsPerDegree, std::max(speed, kDriftSpeed));
+  const double p = seen(grating(frequency, degrees, 1 / sensitivity), speed);
+  return kHalfSeen / std::pow(-std::log1p(-p), 1 / kPsychometricSlope);
+}
+
+// Required: contrast 1/S is seen with probability 1/2 to within 15 % of contrast, at the crests, at band
+// centres. 192 pixels hold whole periods of each at 0 degrees. The response to contrasts up to 1/3 bends by
+// (m^2 / 8) (1 - p) (2 - p) = 1.8 %; masking by the plane is none; the rest is what the border's reflection
+// does to the lowest band.
+TEST(VisibleDifferenceTest, GratingsAtBandCentresAreSeenAtTheirThreshold) {
+  for (const int band : {2, 3, 4, 5})
+    for (const double degrees : {0.0, 30.0})
+      for (const double speed : {0.0, 0.5, 1.0, 2.0, 5.0}) {
+        const double frequency = band_frequency(band);
+        if (contrast_sensitivity(frequency * kPixelsPerDegree, std::max(speed, kDriftSpeed)) < 3) continue;
+        const double threshold = threshold_times_sensitivity(frequency, degrees, speed);
+        EXPECT_NEAR(threshold, 1, 0.15)
+            << frequency << " c/px, " << degrees << " degrees, " << speed << " deg/s";
+        std::printf("%.4f c/px %2.0f deg %4.2f deg/s: contrast x S %.3f\n", frequency, degrees, speed,
+                    threshold);
+      }
+}
+
+// Between bands and between orientations a grating excites several channels by parts: half in each of two
+// gives (2 / 2^3.5)^(1/3.5) = .61 of what one would give, in both at once .37. The threshold there is up to 1
+// / .37 = 2.7 times too high. Not lower than 1: parts of one grating never add up to more than the whole.
+TEST(VisibleDifferenceTest, GratingsBetweenBandsAreSeenAtMostThreeTimesLater) {
+  for (const double frequency : {0.25, 0.125, 0.0625})
+    for (const double degrees : {0.0, 15.0}) {
+      const double threshold = threshold_times_sensitivity(frequency, degrees, 0);
+      std::printf("%.4f c/px %2.0f deg still: contrast x S %.3f\n", frequency, degrees, threshold);
+      EXPECT_GT(threshold, 0.85);
+      EXPECT_LT(threshold, 2.8);
+    }
+}
+
+TEST(VisibleDifferenceTest, WhatMovesTooFastIsNotSeen) {
+  for (const auto& [band, speed] : {std::pair{2, 10.0}, {3, 20.0}, {4, 30.0}, {5, 80.0}}) {
+    ASSERT_LT(contrast_sensitivity(band_frequency(band) * kPixelsPerDegree, speed), 1);
+    EXPECT_LT(seen(grating(band_frequency(band), 0, 0.99), speed), 0.01) << band;
+  }
+}
+
+DisplayedPair noisy_pair(int width, int height, double amplitude) {
+  DisplayedPair pair{width, height, {}, {}, {}};
+  for (std::size_t i = 0; i < std::size_t(width) * std::size_t(height); ++i) {
+    pair.first.push_back(float(60 + 20 * synthetic::noise(1, i, 0)));
+    pair.second.push_back(pair.first.back() + float(amplitude * synthetic::noise(2, i, 0)));
+  }
+  return pair;
+}
+
+double share_seen(const Detection& detection) {
+  double count = 0;
+  for (const float p : detection.probability) count += p > kSeenProbability;
+  return count / double(detection.probability.size());
+}
+
+TEST(VisibleDifferenceTest, EqualPicturesDoNotDiffer) {
+  const DisplayedPair pair = noisy_pair(70, 50, 0);
+  for (const float p : detection_map(pair, {}, {30, Gaze::track}).probability) ASSERT_EQ(p, 0);
+}
+
+TEST(VisibleDifferenceTest, TheOrderOfTheTwoDoesNotMatter) {
+  const DisplayedPair pair = noisy_pair(70, 50, 3);
+  const DisplayedPair swapped{pair.width, pair.height, pair.second, pair.first, {}};
+  const Detection one = detection_map(pair, {}, {30, Gaze::track}),
+                  other = detection_map(swapped, {}, {30, Gaze::track});
+  EXPECT_GT(share_seen(one), 0.01);
+  EXPECT_LT(share_seen(one), 0.99);
+  EXPECT_EQ(one.probability, other.probability);
+}
+
+// On a plane nothing is masked: every term rises with contrast. The mean response moves with it, by 1e-3 at
+// most: hence steps of 1.2.
+TEST(VisibleDifferenceTest, MoreContrastIsNeverSeenLess) {
+  double before = 0;
+  for (double contrast = 0.002; contrast < 0.9; contrast *= 1.2) {
+    const double now = seen(grating(1.0 / 12, 0, contrast), 0);
+    EXPECT_GE(now, before) << contrast;
+    before = now;
+  }
+  EXPECT_GT(before, 0.999);
+}
+
+// A picture that is brighter everywhere by a constant factor: frequency 0, which no eye sees by itself.
+TEST(VisibleDifferenceTest, AUniformChangeIsNotSeen) {
+  DisplayedPair pair = grating(1.0 / 12, 0, 0, 64);
+  for (float& value : pair.second) value *= 1.2f;
+  for (const float p : detection_map(pair, {}, {30, Gaze::track}).probability) EXPECT_LT(p, 1e-3);
+}
+
+// What does not count is taken for equal, whatever it holds, and does not leak into its neighbours.
+TEST(VisibleDifferenceTest, WhatDoesNotCountIsNotSeen) {
+  DisplayedPair pair = grating(1.0 / 12, 0, 0, 64);
+  pair.counted.assign(pair.first.size(), 1);
+  for (std::size_t i = 20 * 64; i < 30 * 64; ++i) pair.second[i] = 0, pair.counted[i] = 0;
+  for (const float p : detection_map(pair, {}, {30, Gaze::track}).probability) EXPECT_EQ(p, 0);
+}
+
+TEST(VisibleDifferenceTest, SinglePixelsAndNarrowPicturesHaveAnAnswer) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {300, 1}, {3, 2}}) {
+    DisplayedPair pair = noisy_pair(width, height, 30);
+    for (const float p : detection_map(pair, {}, {30, Gaze::track}).probability)
+      EXPECT_TRUE(p >= 0 && p <= 1);
+  }
+}
+
+// Local amplitude has no phase, and bands 1 and 2, which see most of a dot, are sampled at every pixel. What
+// is left comes from band 3, which is sampled at every second pixel: 1.2 %. With bands 1 and 2 at every
+// second pixel it was 19 %.
+TEST(VisibleDifferenceTest, ADotIsSeenAlikeWhereverItLies) {
+  double least = 1e9, most = 0;
+  for (const auto& [x, y] : {std::pair{32, 32}, {33, 32}, {32, 33}, {33, 33}}) {
+    double low = 0, high = 2;
+    for (int i = 0; i < 14; ++i) {  // the contrast at which the dot itself is seen with probability 1/2
+      const double middle = 0.5 * (low + high);
+      DisplayedPair pair = grating(0.1, 0, 0, 64);
+      pair.second[std::size_t(y * 64 + x)] = float(kMean * (1 + middle));
+      const double p = detection_map(pair, {}, {30, Gaze::track}).probability[std::size_t(y * 64 + x)];
+      (p < 0.5 ? low : high) = middle;
+    }
+    std::printf("dot at %d, %d: contrast %.4f\n", x, y, low);
+    least = std::min(least, low), most = std::max(most, low);
+  }
+  EXPECT_LT(most, 1.02 * least);
+}
+
+}  // namespace
+}  // namespace tempolux::vision

@@ -1,0 +1,107 @@
+// The noise that a frame says it has against that between seeds; --seen-error's loop.
+#include "lib/render/frame_noise.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/frames.h"
+
+namespace tempolux {
+namespace {
+
+using test::Cornell;
+using test::NoLight;
+
+/// .18 x 12.92 no longer: 255 (1.055 x .18^(1/2.4) - .055) = 117.6; below .0031308 the line 255 x 12.92 v; clipped at both ends.
+TEST(FrameNoise, CodesAreThoseOfSrgb) {
+  EXPECT_NEAR(srgb_code(0.18), 117.65, 0.05);
+  EXPECT_NEAR(srgb_code(0.001), 3.2946, 1e-4);
+  EXPECT_EQ(srgb_code(-1), 0);
+  EXPECT_NEAR(srgb_code(7), 255, 1e-9);
+}
+
+/// Median to .18: of 1, 2, 4 the exposure is .09; what a mask leaves out does not count; black that is more than half of a picture neither.
+TEST(FrameNoise, ExposureIsByTheMedian) {
+  std::vector<Layers> pixels(3);
+  pixels[0][Layer::direct] = Rgb(1.0f), pixels[1][Layer::direct] = Rgb(4.0f), pixels[2][Layer::direct] = Rgb(2.0f);
+  EXPECT_NEAR(exposure_of(pixels, {}), 0.09, 1e-9);
+  const std::vector<std::uint8_t> mask{0, 1, 0};
+  EXPECT_NEAR(exposure_of(pixels, mask), 0.045, 1e-9);
+  pixels.resize(40);
+  EXPECT_NEAR(exposure_of(pixels, {}), 0.09, 1e-9);
+  EXPECT_EQ(exposure_of(std::vector<Layers>(4), {}), 1);
+}
+
+/// Mean squares over 12 seeds of what frames say, against the variance between the seeds' pictures, by samples fixed and adaptive. 84 pixels are looked at in each frame, so a frame's variance is known
+/// within 15 to 30 % and the mean of the seeds within 10; band 25 %. Halves of the pixels' own samples would say 1.9 times as much of direct light.
+TEST(FrameNoise, IsThatBetweenSeeds) {
+  const Cornell c;
+  const NoLight none(c.tracer);
+  FrameOptions options;
+  options.known = &none.known;
+  options.samples = 4;
+  constexpr int kSeeds = 12;
+  for (const double pixel_error : {0.0, 0.02}) {
+    options.pixel_error = pixel_error;
+    std::vector<Rgbd> sum(64 * 36, Rgbd(0.0)), square(64 * 36, Rgbd(0.0));
+    double said = 0, error = 0;
+    for (options.seed = 1; options.seed <= kSeeds; ++options.seed) {
+      const RenderedFrame frame = render_frame(c.render_scene(), c.view, options);
+      ASSERT_TRUE(frame.noise.known());
+      EXPECT_EQ(frame.noise.pixels, 84u);   // 12 x 7 squares of 5
+      const Noise& noise = frame.noise.layer[std::size_t(Layer::direct)];
+      said += noise.linear * noise.linear / kSeeds;
+      error += noise.linear_error / noise.linear / kSeeds;
+      for (std::size_t p = 0; p < sum.size(); ++p) {
+        const Rgbd value(frame.mean.pixels[p][Layer::direct]);
+        sum[p] += value;
+        square[p] += value * value;
+      }
+    }
+    double measured = 0;
+    for (std::size_t p = 0; p < sum.size(); ++p) measured += channel_mean(square[p] - sum[p] * sum[p] * (1.0 / kSeeds)) / (kSeeds - 1) / double(sum.size());
+    EXPECT_NEAR(said / measured, 1, 0.25) << pixel_error;
+    EXPECT_GT(error, 0.03);
+    EXPECT_LT(error, 0.3);
+  }
+}
+
+/// Asked for 2 codes and for half of that, frames of paths have, between two seeds, at most 15 % more and at least half of it; what --pixel-limit does not allow is not reached and said.
+TEST(FrameNoise, SeenErrorIsReachedOrNot) {
+  const Cornell c;
+  FrameOptions options;
+  options.samples = 4;
+  options.pixel_error = 0.02;
+  const auto codes = [](const RenderedFrame& a, const RenderedFrame& b) {
+    double sum = 0;
+    for (std::size_t p = 0; p < a.mean.pixels.size(); ++p) {
+      Rgbd x(0.0), y(0.0);
+      for (std::size_t l = 0; l < kLayerCount; ++l) x += Rgbd(a.mean.pixels[p].value[l]), y += Rgbd(b.mean.pixels[p].value[l]);
+      for (int i = 0; i < 3; ++i) {
+        const double d = srgb_code(x[i] * a.noise.exposure) - srgb_code(y[i] * a.noise.exposure);
+        sum += d * d / (6.0 * double(a.mean.pixels.size()));
+      }
+    }
+    return std::sqrt(sum);
+  };
+  for (const double asked : {4.0, 2.0}) {
+    options.seen_error = asked;
+    options.seed = 1;
+    const RenderedFrame a = render_frame(c.render_scene(), c.view, options);
+    options.seed = 2;
+    const RenderedFrame b = render_frame(c.render_scene(), c.view, options);
+    EXPECT_LE(a.noise.image.codes, asked);
+    EXPECT_LE(codes(a, b), 1.15 * asked);
+    EXPECT_GE(codes(a, b), 0.5 * asked);
+    EXPECT_LT(a.at_limit, 0.5);
+  }
+  options.seen_error = 0.2;
+  options.adaptive_limit = 8;
+  const RenderedFrame frame = render_frame(c.render_scene(), c.view, options);
+  EXPECT_GT(frame.noise.image.codes, 0.2);
+  EXPECT_GT(frame.at_limit, 0.5);
+}
+
+}  // namespace
+}  // namespace tempolux

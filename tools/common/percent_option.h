@@ -1,0 +1,26 @@
+// tools/common/percent_option.h -- limits that are numbers, or shares of what a viewer sees when they end in
+// "%".
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <utility>
+
+namespace tempolux::tools {
+
+/// For transform(): rewrites "5%" as 0.05 and calls `given`; other words stay.
+inline CLI::Validator percent(std::function<void()> given) {
+  return CLI::Validator(
+      [given = std::move(given)](std::string& word) {
+        double number = 0;
+        if (!word.ends_with("%") || !CLI::detail::lexical_cast(word.substr(0, word.size() - 1), number))
+          return std::string();
+        word = std::to_string(number / 100);
+        given();
+        return std::string();
+      },
+      "");
+}
+
+}  // namespace tempolux::tools
