@@ -234,9 +234,9 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--integrator photons: name the photon map with --photons FILE");
   if (!options.light.dynamic.empty() && options.light.photons.empty())
     throw InputError("--dynamic: what movers change is nothing alone; name the segment's static map with --photons FILE");
-  if (!options.light.high.empty() && options.light.points.empty())
-    throw InputError("--high: name the low part of the points with --points FILE");
-  if (!options.light.high.empty() && !options.light.irradcache.empty())
+  if (!options.light.high.empty() && options.light.points.empty() && (options.light.photons.empty() || !options.light.dynamic.empty()))
+    throw InputError("--high: name the low part of the same map with --points FILE or --photons FILE");
+  if (!options.light.high.empty() && !options.light.points.empty() && !options.light.irradcache.empty())
     throw InputError("--high: records of --irradcache hold the high part; give irradcache-build records --high, and the whole points here");
   if (options.integrator == "cache" && options.light.irradcache.empty())
     throw InputError("--integrator cache: name the cache with --irradcache FILE");
@@ -296,8 +296,8 @@ void add_light_options(tools::Tool& tool, Options& options) {
          "that find no record")
       ->type_name("FILE");
   app.add_option("--high", options.light.high,
-                 ".irradpoints file of photonmap-split, the high part, or a pattern: --points is then the low one; without --irradcache bright "
-                 "points are sampled explicitly")
+                 "the high part of photonmap-split, or a pattern: --points is then the low one; without --irradcache bright points are sampled "
+                 "explicitly. Without --points, that of photons: --photons is then the low one")
       ->type_name("FILE");
   app.add_option("--high-samples", options.light.high_samples, "explicit samples of --high for each sample of a pixel")
       ->capture_default_str()->check(tools::number_between(1, 1 << 16));

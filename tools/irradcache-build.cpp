@@ -46,7 +46,8 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
     throw InputError("name either the photon map, --photons FILE, or the points made from it, --points FILE");
   if (mode == "both") refuse_unread(app, "a run without a step", {"--map", "--update", "--dynamic"});
   if (mode == "records" && !options.update.empty()) refuse_unread(app, "records --update", {"--records", "--high"});
-  if (!options.high.empty() && options.points.empty()) throw InputError("--high: name the low part with --points FILE");
+  if (!options.high.empty() && (!options.update.empty() || options.map == "static"))
+    throw InputError("--high: parts of light are those of a whole scene's map; leave out --update and --map static, or give the whole");
   if (options.high.empty()) refuse_unread(app, "a run without --high", {"--high-samples"});
   if (mode == "points" && options.dynamic.size() > 1) throw InputError("--dynamic: points take one map, that of their frame");
   tools::check_influence(options.influence);
@@ -55,7 +56,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (!options.update.empty() && options.map == "static")
     throw InputError("--update: makes points of the whole scene; leave out --map static");
   if (mode == "points")
-    refuse_unread(app, "points", {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--high", "--high-samples", "--records", "--rays", "--error-bound", "--free-radii",
+    refuse_unread(app, "points", {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--high-samples", "--records", "--rays", "--error-bound", "--free-radii",
                                   "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points",
@@ -76,7 +77,8 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--points", options.points, ".irradpoints file of this frame, instead of --photons")
       ->type_name("FILE");
   app.add_option("--high", options.high,
-                 ".irradpoints file of photonmap-split, the high part; --points is then the low one: bright points are sampled explicitly")
+                 "the high part of photonmap-split, --points or --photons then the low one and this of the same format: records sample what is "
+                 "bright explicitly; points are those of both parts together")
       ->type_name("FILE");
   app.add_option("--high-samples", options.gather.bright_samples, "explicit samples of a record")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));

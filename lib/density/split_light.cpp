@@ -1,6 +1,9 @@
 #include "lib/density/split_light.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 namespace tempolux {
 namespace {
@@ -122,6 +125,42 @@ std::vector<float> join_parts(std::span<IrradiancePointRecord> low, std::span<co
     shares[at++] = whole > 0 ? float(std::min(1.0, part / whole)) : 0.0f;
   }
   return shares;
+}
+
+namespace {
+
+/// What the two parts of a photon share: all but its flux.
+auto place_key(const Photon& p) { return std::tuple(p.position, p.normal, p.object, p.kind, p.bounce); }
+
+/// Numbers of the photons in the order of their keys; equal ones in the order of the file.
+std::vector<std::size_t> order_by_key(std::span<const Photon> photons) {
+  std::vector<std::size_t> order(photons.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return place_key(photons[i]); });
+  return order;
+}
+
+}  // namespace
+
+void join_parts(formats::PhotonMap& low, const formats::PhotonMap& high) {
+  const std::vector<std::size_t> lows = order_by_key(low.photons), highs = order_by_key(high.photons);
+  std::vector<bool> alone(high.photons.size());
+  std::size_t at = 0;
+  for (const std::size_t h : highs) {
+    const Photon& part = high.photons[h];
+    while (at < lows.size() && place_key(low.photons[lows[at]]) < place_key(part)) ++at;
+    alone[h] = at == lows.size() || place_key(low.photons[lows[at]]) != place_key(part);
+    if (alone[h]) continue;
+    Photon& whole = low.photons[lows[at++]];
+    for (std::size_t c = 0; c < 3; ++c) whole.flux[c] += part.flux[c];
+  }
+  for (std::size_t h = 0; h < alone.size(); ++h) {
+    if (!alone[h]) continue;
+    low.photons.push_back(high.photons[h]);
+    if (!high.directions.empty()) low.directions.push_back(high.directions[h]);
+  }
+  low.header.part.clear();
+  low.totals.photon_count = low.photons.size();
 }
 
 ChosenPhotons choose_kinds(const PhotonBlock& block, unsigned kinds) {

@@ -45,6 +45,10 @@ DividedPoints divide(std::span<const formats::IrradiancePointRecord> points, con
 /// the high part has of its light, all kinds and channels added; nothing if `high` holds a point that `low` has not, in its order.
 std::vector<float> join_parts(std::span<formats::IrradiancePointRecord> low, std::span<const formats::IrradiancePointRecord> high);
 
+/// The same of photons: adds the flux of the high part to the low one, which becomes the whole. Photons keep the order of the low part;
+/// those that are in the high part alone come last. `low` and `high` are the two parts of one map: InputError is the caller's.
+void join_parts(formats::PhotonMap& low, const formats::PhotonMap& high);
+
 /// Photons of the kinds in `kinds` (bit k: PathKind k), and the others.
 struct ChosenPhotons {
   formats::PhotonBlock chosen, rest;

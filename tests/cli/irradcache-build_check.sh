@@ -109,8 +109,8 @@ tempolux-info --diff whole.irradcache split1.irradcache >/dev/null && bad '--hig
 refuses 'the low part' irradcache-build records "$still" --points low.irradpoints $small -o refused
 refuses 'not a part of light' irradcache-build records "$still" --points p.irradpoints --high high.irradpoints $small -o refused
 refuses 'is the low part' irradcache-build records "$still" --points low.irradpoints --high low.irradpoints $small -o refused
-refuses 'name the low part' irradcache-build "$still" --photons p.photons --high high.irradpoints $small -o refused
-refuses '--high' irradcache-build points "$still" --photons p.photons --high high.irradpoints -o refused
+refuses 'not a part of light' irradcache-build "$still" --photons p.photons --high high.irradpoints $small -o refused
+refuses 'not a part of light' irradcache-build points "$still" --photons p.photons --high high.irradpoints -o refused
 refuses '--high-samples' irradcache-build records "$still" --points p.irradpoints --high-samples 10 $small -o refused
 irradcache-build points "$still" --photons p.photons --point-count 700 -o other.irradpoints -q
 photonmap-split other.irradpoints --low otherlow.irradpoints --high foreign.irradpoints --energy 1 -q

@@ -103,6 +103,7 @@ refuses 'go together' photonmap-split p.photons --low refused
 refuses 'says not how' photonmap-split p.photons
 refuses 'needs -o' photonmap-split p.photons --kind direct
 refuses 'not with --kind' photonmap-split p.photons --kind direct -o refused --energy 3
+photon-trace "$room" --frame 1 --photons 4k -o p2.photons -q && $split p2.photons --low bl2.photons --high bh2.photons || bad 'another map'
 # Pixels without a cache sample the high part themselves: the same light but for noise (36864 samples that scatter by some twice their
 # mean: 1 %); of an infinite limit nothing is high, and the frame is that of the whole.
 frame="frame-render $room --frame 1 --size 32x18 --spp 64 --pixel-error 0 --channels layers -q"
@@ -116,6 +117,24 @@ aqm-compare parts.exr whole.exr --layer indirect --json c.json -q >/dev/null
 "${PYTHON:-python3}" -c 'import json, sys; b = json.load(open("c.json"))["total"]["bias"]; sys.exit(not -0.04 < b < 0.04)' || bad "other light: $(grep bias c.json)"
 refuses 'the low part' $frame --points l.irradpoints -o refused
 refuses 'name the low part' $frame --high h.irradpoints -o refused
+# The two parts of .photons are taken together: points and pixels are those of the whole, bit by bit. Records sample what is bright: the same
+# light but for noise (as above, 4 %).
+build="irradcache-build $room --frame 1 --point-count 1k -q"
+irradcache-build points "$room" --frame 1 --photons l.photons --high h.photons --point-count 1k -o joined.irradpoints -q || bad 'points of two parts'
+tempolux-info --diff p.irradpoints joined.irradpoints >out.txt || bad "points of two parts: $(cat out.txt)"
+$frame --photons p.photons -o whole.exr || bad 'frame by whole photons'
+$frame --photons l.photons --high h.photons -o parts.exr || bad 'frame by photons in two parts'
+tempolux-info --diff whole.exr parts.exr >out.txt || bad "frame by photons in two parts: $(cat out.txt)"
+$build --photons p.photons --size 32x18 -o whole.irradcache || bad 'records of whole photons'
+$build --photons l.photons --high h.photons --size 32x18 -o parts.irradcache --stats records.json || bad 'records of photons in two parts'
+grep -q '"bright_points": [1-9]' records.json || bad 'irradcache-build samples no bright points'
+for c in whole parts; do $frame --irradcache $c.irradcache -o $c.exr || bad "frame by records, $c"; done
+aqm-compare parts.exr whole.exr --layer indirect --json c.json -q >/dev/null
+"${PYTHON:-python3}" -c 'import json, sys; b = json.load(open("c.json"))["total"]["bias"]; sys.exit(not -0.04 < b < 0.04)' || bad "other light: $(grep bias c.json)"
+refuses 'give the whole, or' $frame --photons l.photons -o refused
+refuses 'is the high part' $frame --photons h.photons --high h.photons -o refused
+refuses 'not those of' $build --photons l.photons --high bh2.photons -o refused
+refuses 'leave out --update' irradcache-build points "$room" --frame 1 --map static --photons l.photons --high h.photons -o refused
 refuses 'not a part of light' $frame --points p.irradpoints --high h.irradpoints -o refused
 
 refuses 'only with --kind' photonmap-split p.photons --low refused --high other --rest third

@@ -15,6 +15,15 @@ GatherPoints points_of_photons(Tool& tool, const std::string& file, const Tracer
   return make_points(tool, map, tracer, lights, options);
 }
 
+DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights) {
+  tool.stats().phase("read photons");
+  const SceneFrame& frame = tracer.frame();
+  const DividedPhotonMap map = read_divided_photons(tool, frame_name(options.photons, frame.frame), frame_name(options.high, frame.frame), frame,
+                                                    LightNeeded::all);
+  tool.stats().phase("points", true);
+  return make_divided_points(tool, map, tracer, lights, options.points_of(frame));
+}
+
 void build_standing_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number) {
   Output output(frame_name(options.output, number), tool.common().no_clobber);
   tool.stats().phase("evaluate");
@@ -73,8 +82,9 @@ void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, in
   const Tracer tracer(frame, standing);
   Lights lights(frame, input.emission(frame.frame));
   lights.weigh_sky_by_cosine();
-  const GatherPoints points =
-      points_of_photons(tool, frame_name(options.photons, number), tracer, lights, options.points_of(frame));
+  const GatherPoints points = options.high.empty()
+      ? points_of_photons(tool, frame_name(options.photons, number), tracer, lights, options.points_of(frame))
+      : points_of_parts(tool, options, tracer, lights).whole;
   tool.stats().phase("write");
   write_points(tool, points, frame, output);
 }

@@ -38,6 +38,8 @@ struct CacheOptions {
 /// Points from a file of photons, in two phases: only the second works with all threads.
 GatherPoints points_of_photons(Tool& tool, const std::string& file, const Tracer& tracer, const Lights& lights,
                                const PointOptions& options);
+/// The same from the low part, options.photons, and the high part, options.high.
+DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights);
 
 /// .irradpoints of a frame, from its global map.
 void build_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number, StandingTree& standing);

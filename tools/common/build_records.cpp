@@ -86,9 +86,11 @@ void count(Tool& tool, std::size_t records, const GatherCounts& counts) {
 
 /// Points made from photons, read, or read as two parts: high_shares receives what the high part has of each.
 GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights, std::vector<float>& high_shares) {
-  if (options.points.empty()) return points_of_photons(tool, options.photons, tracer, lights, options.points_of(tracer.frame()));
-  if (options.high.empty()) return read_points(tool, options.points, tracer.frame());
-  DividedGatherPoints divided = read_divided_points(tool, options.points, options.high, tracer.frame());
+  if (options.high.empty())
+    return options.points.empty() ? points_of_photons(tool, options.photons, tracer, lights, options.points_of(tracer.frame()))
+                                  : read_points(tool, options.points, tracer.frame());
+  DividedGatherPoints divided = options.points.empty() ? points_of_parts(tool, options, tracer, lights)
+                                                       : read_divided_points(tool, options.points, options.high, tracer.frame());
   high_shares = std::move(divided.high_shares);
   return std::move(divided.whole);
 }

@@ -6,6 +6,7 @@
 #include "formats/error.h"
 #include "lib/density/split_light.h"
 #include "lib/gather/cache_files.h"
+#include "lib/gather/high_shares.h"
 #include "lib/material/surface_material.h"
 
 namespace tempolux::tools {
@@ -37,7 +38,8 @@ void check_kinds(Tool& tool, const std::string& file, const std::string& kinds, 
 /// A part of the light taken for all of it would be light lost without a word.
 void refuse_part(const std::string& file, const std::string& part) {
   if (!part.empty())
-    throw InputError(file + ": holds the " + part + " part of the light alone (photonmap-split); give the whole");
+    throw InputError(file + ": holds the " + part + " part of the light alone (photonmap-split); give the whole, or the low part here and the high "
+                     "one as --high");
 }
 
 void check_photons(Tool& tool, const std::string& file, const formats::PhotonHeader& header, const SceneFrame& frame, LightNeeded needed,
@@ -115,6 +117,29 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
   return map;
 }
 
+DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const std::string& high, const SceneFrame& frame, LightNeeded needed) {
+  DividedPhotonMap map;
+  for (const bool is_high : {false, true}) {
+    const std::string& file = is_high ? high : low;
+    const std::string part = is_high ? "high" : "low";
+    formats::PhotonMap& in = is_high ? map.high : map.whole;
+    tool.depends_on(file);
+    in = formats::load_photons(file);
+    if (in.header.part != part)
+      throw InputError(file + ": is " + (in.header.part.empty() ? "not a part of light" : "the " + in.header.part + " part") + "; give " +
+                       (is_high ? "--high" : "--photons") + " the " + part + " part that photonmap-split writes");
+  }
+  const formats::PhotonHeader &one = map.whole.header, &other = map.high.header;
+  // A photon's place is one of the whole map's: both parts have its paths, its flux sent out and the state of the scene.
+  if (one.emitted_count != other.emitted_count || one.origin != other.origin || one.columns != other.columns || one.kinds != other.kinds ||
+      one.map != other.map || map.whole.totals.emitted_flux != map.high.totals.emitted_flux)
+    throw InputError(high + ": its photons are not those of " + low + "; give the two parts of one file");
+  check_identity(tool, high, other.identity, frame);
+  join_parts(map.whole, map.high);
+  check_photons(tool, low, map.whole.header, frame, needed, "global");
+  return map;
+}
+
 formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, const SceneFrame& frame) {
   tool.depends_on(file);
   formats::PhotonMap map = formats::load_photons(file);
@@ -136,6 +161,12 @@ GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer
   estimate_points(tracer, lights, map, shift_of(map.header.origin, frame), options, result.points);
   tool.stats().count("points", double(result.points.size()));
   return result;
+}
+
+DividedGatherPoints make_divided_points(Tool& tool, const DividedPhotonMap& map, const Tracer& tracer, const Lights& lights, const PointOptions& options) {
+  DividedGatherPoints divided{make_points(tool, map.whole, tracer, lights, options), {}};
+  divided.high_shares = shares_of_photons(tracer, lights, map.high, options, divided.whole.points);
+  return divided;
 }
 
 void update_points(Tool& tool, const formats::PhotonMap& fixed, const formats::PhotonMap& moved, const Tracer& whole,

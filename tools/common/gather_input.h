@@ -29,6 +29,13 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
 formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed, const std::string& map,
                                 const std::function<bool(Vec3, const formats::Photon&)>& keep);
 
+/// The two parts of photonmap-split: the whole map, bit by bit, checked as read_photons checks it; and the high part.
+struct DividedPhotonMap {
+  formats::PhotonMap whole, high;
+};
+/// InputError if the files are not the two parts of one map.
+DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const std::string& high, const SceneFrame& frame, LightNeeded needed);
+
 /// The dynamic map of another frame of the same segment: what stands must be the same, what moves not.
 formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, const SceneFrame& frame);
 
@@ -53,6 +60,8 @@ DividedGatherPoints read_divided_points(Tool& tool, const std::string& low, cons
 /// Makes points from the photons of a whole map with all kinds of light (read_photons).
 GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
                          const PointOptions& options);
+/// The same from the two parts of a map, and of each point the share that the high part has.
+DividedGatherPoints make_divided_points(Tool& tool, const DividedPhotonMap& map, const Tracer& tracer, const Lights& lights, const PointOptions& options);
 /// Of a frame: from `points` of the standing scene, to which the points on what moves are added (update_points).
 void update_points(Tool& tool, const formats::PhotonMap& fixed, const formats::PhotonMap& moved, const Tracer& whole,
                    const Tracer& standing, const Lights& lights, const PointOptions& options, GatherPoints& points,

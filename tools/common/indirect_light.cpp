@@ -62,7 +62,10 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
   tool.stats().phase("read photons");
   formats::PhotonMap map;
   Vec3d moved{};
-  if (options.dynamic.empty()) {
+  if (!options.high.empty() && options.points.empty()) {
+    map = read_divided_photons(tool, name, frame_name(options.high, number), frame, needed).whole;
+    moved = shift(map);
+  } else if (options.dynamic.empty()) {
     map = read_photons(tool, name, frame, needed);
     moved = shift(map);
   } else {

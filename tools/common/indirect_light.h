@@ -14,7 +14,7 @@ namespace tempolux::tools {
 struct IndirectLightOptions {
   std::string photons, irradcache, points, meshirrad;   ///< files, or patterns; "": none
   std::string dynamic;                       ///< the same: photons is then the segment's static map
-  std::string high;                          ///< the same: points is then the low part of photonmap-split
+  std::string high;                          ///< the same: points, or without points photons, is then the low part of photonmap-split
   int high_samples = 4;                      ///< of an eye path
   bool photons_alone = false;                ///< photons must tell indirect light
   PhotonLightOptions photon_light;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tuple>
 
 #include "formats/exact_sum.h"
 #include "lib/core/random.h"
@@ -241,6 +242,32 @@ TEST(SplitLight, PhotonsKeepTheirSumAndColumns) {
   }
   EXPECT_EQ(whole.rounded(), divided.rounded());
   EXPECT_FALSE(parts.high.photons.empty());
+}
+
+// Some photons are in one part alone: without flux in the low one, by a limit of 0 in the high one. Directions stay with their photons.
+TEST(SplitLight, PartsOfAMapJoinToTheWholeToTheLastBit) {
+  PhotonBlock block = floor_with_spot(3000, 6000, 6);
+  for (std::size_t i = 0; i < block.photons.size(); ++i) block.directions.push_back({std::uint16_t(i), 7});
+  block.photons[5].flux = {0, 0, 0};
+  block.photons[7] = block.photons[6];   // two photons that differ in nothing
+  block.directions[7] = block.directions[6];
+  for (const EnergyLimit& limit : {EnergyLimit{2, -1}, EnergyLimit{0, -1}, EnergyLimit{1e9, -1}}) {
+    const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
+    formats::PhotonMap low, high;
+    low.photons = parts.low.photons, low.directions = parts.low.directions;
+    high.photons = parts.high.photons, high.directions = parts.high.directions;
+    low.header.part = "low";
+    join_parts(low, high);
+    EXPECT_EQ(low.header.part, "");
+    ASSERT_EQ(low.photons.size(), block.photons.size());
+    std::vector<std::tuple<std::uint16_t, std::array<float, 3>, std::array<float, 3>>> whole, joined;
+    for (std::size_t i = 0; i < block.photons.size(); ++i) {
+      whole.emplace_back(block.directions[i][0], block.photons[i].position, block.photons[i].flux);
+      joined.emplace_back(low.directions[i][0], low.photons[i].position, low.photons[i].flux);
+    }
+    std::ranges::sort(whole), std::ranges::sort(joined);
+    EXPECT_EQ(whole, joined);
+  }
 }
 
 TEST(SplitLight, PointsOfABrightPatchAreDividedInProportion) {
