@@ -119,7 +119,6 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   frame_options.seed = tool.common().seed_for_frame(number);
   if (options.integrator != "path") frame_options.known = &light.get();
   frame_options.spread_outliers = !options.keep_outliers && options.integrator != "path";
-  frame_options.sample_halves = wants_sample_halves(options.channels);
   frame_options.progress = [&](double fraction) { tool.progress(fraction); };
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
@@ -215,6 +214,12 @@ void check(Options& options, const std::vector<int>& frames) {
   if (halves && options.pixel_error > 0)
     throw InputError("--pixel-error: halves take the same samples everywhere; leave out one");
   if (halves) options.frame.pixel_error = 0;
+  options.frame.sample_halves = wants_sample_halves(options.channels);
+  options.frame.independent_halves = wants_independent_halves(options.channels);
+  if (options.frame.independent_halves && options.frame.samples % 2 != 0)
+    throw InputError("--spp " + std::to_string(options.frame.samples) + ": the channels halves need an even number of samples");
+  if (options.frame.independent_halves && halves)
+    throw InputError("--channels halves and --halves or --target-error: halves are channels or files; leave out one");
   check_channels(options.channels);
 }
 
@@ -297,7 +302,7 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()->check(tools::number_between(1, 1 << 24));
   app.add_option("--channels", options.channels,
                  "RGBA, layers (or emission, specular, direct, caustic, indirect, volume), Z, N, P, id, albedo, motion, "
-                 "coverage, influence, variance, diffuse.variance, samples")
+                 "coverage, influence, variance, diffuse.variance, samples, halves")
       ->delimiter(',')->type_name("NAMES")->default_str("RGBA,Z,N,id");
   app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")
       ->type_name("FILE");

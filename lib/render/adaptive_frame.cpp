@@ -35,9 +35,9 @@ void render_adaptive(const RenderScene& scene, const CameraView& view, const Fra
     PixelSum half[2];
     half[0].for_filter = half[1].for_filter = options.for_filter;
     const std::uint64_t before = counts.onward;
-    for_each_sample(scene, view, options.seed, options.known, pixel, x, y, {}, first, image.halves_of(pixel), counts,
+    for_each_sample(scene, view, options, pixel, x, y, {}, first, image.halves_of(pixel), counts,
                     [&](int s, const PathParts& sample) {
-                      half[s < noise.first_half() ? 0 : 1].add(sample);
+                      half[noise.half(s)].add(sample);
                       if (spreads) brightest[pixel].note(sample, options.for_filter);
                     });
     noise.note(pixel, half[0], half[1], counts.onward - before);
@@ -48,7 +48,7 @@ void render_adaptive(const RenderScene& scene, const CameraView& view, const Fra
     const PartCounts& more = missing[pixel];
     if (more.own > 0 && (options.mask.empty() || options.mask[pixel])) {
       PixelSum sum;
-      for_each_sample(scene, view, options.seed, options.known, pixel, x, y, first, more, image.halves_of(pixel), counts,
+      for_each_sample(scene, view, options, pixel, x, y, first, more, image.halves_of(pixel), counts,
                       [&](int, const PathParts& sample) {
                         sum.add(sample);
                         if (spreads) brightest[pixel].note(sample, options.for_filter);

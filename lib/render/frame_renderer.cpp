@@ -21,8 +21,10 @@ constexpr std::size_t kChunk = 4096;   ///< pixels
 void render_pass(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const FrameOptions& options,
                  int count, LayerImage& image, RayCounts& rays, const std::function<void(double)>& progress) {
   const int first = image.samples;
-  for_each_pixel(view, options, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
-    join(sample_pixel(scene, view, seed, options.known, pixel, x, y, {first, first, first}, {count, count, count}, image.halves_of(pixel), counts), first, count,
+  FrameOptions of_pass = options;
+  of_pass.seed = seed;
+  for_each_pixel(view, of_pass, rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
+    join(sample_pixel(scene, view, of_pass, pixel, x, y, {first, first, first}, {count, count, count}, image.halves_of(pixel), counts), first, count,
          image.pixels[pixel]);
   });
   image.samples += count;
@@ -120,7 +122,7 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
 }
 
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {
-  if (!layers.sample_halves.empty()) add_variance_channels(layers.sample_halves, channels, image);
+  if (!layers.sample_halves.empty()) add_variance_channels(layers.sample_halves, layers.media, channels, image);
   constexpr std::size_t kSum = kLayerCount;
   std::vector<std::pair<std::size_t, std::size_t>> colours;  // the first of three channels, its layer
   std::optional<std::size_t> alpha;

@@ -26,6 +26,9 @@ struct FrameOptions {
   /// With pixel_error: light that one sample alone claims is shared out among the pixels around, of a masked frame those of the mask (lib/render/spread_outliers.h).
   bool spread_outliers = false;
   bool sample_halves = false;           ///< keep LayerImage::sample_halves
+  /// Each pixel's samples of odd number are stratified by themselves and independent of those of even number. The two halves have equal numbers of
+  /// samples, so `samples` is even. All samples together are then less well stratified. Not with `halves`.
+  bool independent_halves = false;
   const KnownLight* known = nullptr;    ///< where paths may end
   std::vector<std::uint8_t> mask;       ///< by pixel, 0: leave it out; empty: all pixels
   std::function<void(double)> progress; ///< called with [0, 1]; may be empty
@@ -60,7 +63,7 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
 void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, Image& image);
 
 /// Adds to `image` the colour channels asked for: "RGBA", "layers" or a layer's name. The sum of the layers
-/// in the order of kLayerNames, in float32, is R G B exactly. Of add_variance_channels() what was kept.
+/// in the order of kLayerNames, in float32, is R G B exactly. Also what add_variance_channels() adds.
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image);
 
 /// Data channels of one ray through each pixel's centre: "Z", "N", "P", "id", "albedo", "motion" (forward

@@ -25,7 +25,7 @@ double wanted_samples(double sigma, double cost, double error) {
 }
 
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
-    : view_(view), options_(options), first_{options.samples, options.samples, options.for_filter ? options.samples : (options.samples + 1) / 2}, first_half_((options.samples + 1) / 2),
+    : view_(view), options_(options), first_{options.samples, options.samples, options.for_filter || options.independent_halves ? options.samples : (options.samples + 1) / 2}, first_half_((options.samples + 1) / 2),
       lattice_(std::max(1, int(std::sqrt(double(view.width()) * view.height() / kOnLattice)))),
       pixels_(std::size_t(view.width()) * std::size_t(view.height())) {
   lattice_ = std::min({lattice_, view.width(), view.height()});
@@ -114,11 +114,13 @@ PartCounts PixelNoise::missing_at(int x, int y) const {
   const double error = error_at(level / n);
   const auto further = [&](double variance, double cost, int first) {
     const double wanted = wanted_samples(std::sqrt(variance), cost, error);
-    return std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
+    const int missing = std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
+    return options_.independent_halves ? missing + missing % 2 : missing;
   };
   PartCounts more{further(own_variance(x, y), kOwn, first_.own), further(lit_variance, kLit, first_.lit),
                   further(onward_variance, std::max(kLeastOnward, rays / n), first_.onward)};
   more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
+  if (options_.independent_halves) more.own += more.own % 2;
   return more;
 }
 

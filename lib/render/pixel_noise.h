@@ -28,7 +28,8 @@ class PixelNoise {
   /// The first samples. Rays onward are the dearest part and often the least needed: half as many do to tell
   /// their noise, but where a filter is to do with the first samples alone.
   const PartCounts& first() const { return first_; }
-  int first_half() const { return first_half_; }   ///< of the first samples: the others are the second half
+  /// Which half first sample s belongs to.
+  int half(int s) const { return options_.independent_halves ? s & 1 : s >= first_half_; }
   /// The two halves of a pixel's first samples, and the rays that their part `onward` took. Thread-safe for different pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
   /// By pixel, once all are noted.
@@ -59,7 +60,7 @@ class PixelNoise {
   const CameraView& view_;
   const FrameOptions& options_;
   PartCounts first_;
-  int first_half_;
+  int first_half_;       ///< samples in the first half of the first ones
   double picture_ = 0;   ///< mean of the first samples of the pixels of a lattice
   int lattice_;          ///< pixels from one of them to the next
   std::vector<std::uint8_t> looked_at_;

@@ -134,20 +134,47 @@ class Dealt {
   Vec2 offset_;
 };
 
+/// Random numbers and efforts of the samples of one pass of a pixel, numbered from 0.
+/// Joint: the pass goes on in the pixel's one sequence; its first half is one half of the samples, its second half is the other.
+/// Independent halves: samples of even number go on in one sequence, those of odd number in another one. All counts are even then.
+class SampleSequence {
+ public:
+  SampleSequence(const FrameOptions& options, std::size_t pixel, const PartCounts& first, const PartCounts& count)
+      : random_{PixelRandom(options.seed, pixel, 0), PixelRandom(options.seed, pixel, 0).second_half()}, first_(first), count_(count),
+        independent_(options.independent_halves), dealt_{{options.seed, pixel, of_half(first), of_half(count)},
+                                                         {~options.seed, pixel, of_half(first), of_half(count)}} {}
+  PixelRandom random(int i) const { return random_[sequence(i)].of_sample(std::uint32_t(of_half(first_.own) + at(i))); }
+  PathEffort effort(int i) const { return dealt_[sequence(i)](at(i)); }
+  /// Which half of the pixel's samples sample i belongs to.
+  int half(int i, const SampleHalves& halves) const {
+    if (independent_) return i & 1;
+    return count_.own == 1 ? halves.half[1].own.count < halves.half[0].own.count : 2 * i >= count_.own;
+  }
+
+ private:
+  int sequence(int i) const { return independent_ ? i & 1 : 0; }
+  int at(int i) const { return independent_ ? i >> 1 : i; }
+  int of_half(int n) const { return independent_ ? n / 2 : n; }
+  PartCounts of_half(const PartCounts& n) const { return {of_half(n.own), of_half(n.lit), of_half(n.onward)}; }
+
+  PixelRandom random_[2];
+  PartCounts first_, count_;
+  bool independent_;
+  Dealt dealt_[2];
+};
+
 /// A pixel's samples, numbered on from `first`, one after the other: add(i, sample). halves: SampleHalves of the pixel, or nullptr.
 template <class Add>
-void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const KnownLight* known,
+void for_each_sample(const RenderScene& scene, const CameraView& view, const FrameOptions& options,
                      std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves, RayCounts& counts, const Add& add) {
   constexpr int kTogether = 8, kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
-  const Dealt dealt(seed, pixel, first, count);
+  const SampleSequence sequence(options, pixel, first, count);
   for (int done = 0; done < count.own; done += kTogether) {
     const int n = std::min(kTogether, count.own - done);
     Ray rays[kTogether];
     Hit hits[kTogether];
-    const PixelRandom random(seed, pixel, 0);
-    const auto of = [&](int i) { return random.of_sample(std::uint32_t(first.own + done + i)); };
     for (int i = 0; i < n; ++i) {
-      const Vec2 jitter = of(i).get2(0, Purpose::pixel);
+      const Vec2 jitter = sequence.random(done + i).get2(0, Purpose::pixel);
       rays[i] = view.ray(float(x) + jitter.x, float(y) + jitter.y);
     }
     if (n < kFewest)
@@ -155,18 +182,18 @@ void for_each_sample(const RenderScene& scene, const CameraView& view, std::uint
     else
       scene.tracer.intersect({rays, std::size_t(n)}, {hits, std::size_t(n)});
     for (int i = 0; i < n; ++i) {
-      const PathEffort effort = dealt(done + i);
-      const PathParts parts = trace_eye_path(scene, rays[i], hits[i], of(i), known, counts, view.cone(), effort);
-      if (halves) halves->add(done + i, count.own, parts, effort);
+      const PathEffort effort = sequence.effort(done + i);
+      const PathParts parts = trace_eye_path(scene, rays[i], hits[i], sequence.random(done + i), options.known, counts, view.cone(), effort);
+      if (halves) halves->add(sequence.half(done + i, *halves), parts, effort);
       add(done + i, parts);
     }
   }
 }
 
-inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, std::uint64_t seed, const KnownLight* known,
+inline PixelSum sample_pixel(const RenderScene& scene, const CameraView& view, const FrameOptions& options,
                              std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves, RayCounts& counts) {
   PixelSum sum;
-  for_each_sample(scene, view, seed, known, pixel, x, y, first, count, halves, counts,
+  for_each_sample(scene, view, options, pixel, x, y, first, count, halves, counts,
                   [&](int, const PathParts& sample) { sum.add(sample); });
   return sum;
 }

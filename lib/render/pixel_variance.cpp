@@ -1,6 +1,7 @@
 #include "lib/render/pixel_variance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lib/core/parallel.h"
@@ -14,52 +15,65 @@ bool asked(const std::vector<std::string>& channels, const char* name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();
 }
 
-void add_variance(const std::vector<SampleHalves>& halves, Rgb SampleHalves::Sum::*part, const std::string& layer, Image& image) {
+/// Adds NAME.R .G .B, of each pixel colour(halves).
+template <class Colour>
+void add_colour(const std::vector<SampleHalves>& halves, const std::string& name, Image& image, const Colour& colour) {
   const std::size_t first_channel = image.channels.size();
-  for (const char* name : {".R", ".G", ".B"}) image.add(layer + name);
+  for (const char* channel : {".R", ".G", ".B"}) image.add(name + channel);
   parallel_chunks(halves.size(), kChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
-      const Rgb variance = halves[p].variance(part);
-      for (int c = 0; c < 3; ++c) image.channels[first_channel + std::size_t(c)].values[p] = variance[c];
+      const Rgb value = colour(halves[p]);
+      for (int c = 0; c < 3; ++c) image.channels[first_channel + std::size_t(c)].values[p] = value[c];
     }
   });
+}
+
+/// Parts of one sample, joined: they have own numbers of samples.
+template <class Half>
+auto parts_of(Half& half) {
+  return std::array{&half.own, &half.lit, &half.onward};
 }
 
 }  // namespace
 
 void SampleHalves::Sum::add(const Layers& sample, float samples) {
-  const Rgb scattered = sample[Layer::direct] + sample[Layer::caustic] + sample[Layer::indirect];
-  image += sample[Layer::emission] + sample[Layer::specular] + scattered + sample[Layer::volume];
-  diffuse += scattered;
+  for (std::size_t l = 0; l < kLayerCount; ++l) radiance.value[l] += sample.value[l];
   count += samples;
 }
 
-void SampleHalves::add(int rank, int count, const PathParts& sample, const PathEffort& effort) {
-  const bool second = count == 1 ? half[1].own.count < half[0].own.count : 2 * rank >= count;
-  Half& to = half[second ? 1 : 0];
-  to.own.add(sample.own, 1);
-  to.lit.add(sample.lit, float(effort.lit));
-  to.onward.add(sample.onward, float(effort.onward));
+void SampleHalves::add(int h, const PathParts& sample, const PathEffort& effort) {
+  half[h].own.add(sample.own, 1);
+  half[h].lit.add(sample.lit, float(effort.lit));
+  half[h].onward.add(sample.onward, float(effort.onward));
 }
 
 SampleHalves& SampleHalves::operator+=(const SampleHalves& more) {
-  for (int h = 0; h < 2; ++h)
-    for (Sum Half::*part : {&Half::own, &Half::lit, &Half::onward}) {
-      Sum& sum = half[h].*part;
-      sum.image += (more.half[h].*part).image;
-      sum.diffuse += (more.half[h].*part).diffuse;
-      sum.count += (more.half[h].*part).count;
+  for (int h = 0; h < 2; ++h) {
+    const auto other = parts_of(more.half[h]);
+    for (std::size_t i = 0; Sum* sum : parts_of(half[h])) {
+      sum->add(other[i]->radiance, other[i]->count);
+      ++i;
     }
+  }
   return *this;
 }
 
-Rgb SampleHalves::variance(Rgb Sum::*of) const {
+Rgb SampleHalves::mean(int h, std::size_t l) const {
+  Rgb mean(0.0f);
+  for (const Sum* sum : parts_of(half[h]))
+    if (sum->count > 0) mean += sum->radiance.value[l] * (1 / sum->count);
+  return mean;
+}
+
+Rgb SampleHalves::variance(std::span<const Layer> layers) const {
   double error[3] = {0, 0, 0};
-  for (Sum Half::*part : {&Half::own, &Half::lit, &Half::onward}) {
-    const Sum &first = half[0].*part, &second = half[1].*part;
-    const double a = double(first.count), b = double(second.count);
+  const auto first = parts_of(half[0]), second = parts_of(half[1]);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const double a = double(first[i]->count), b = double(second[i]->count);
     if (!(a > 0 && b > 0)) continue;
-    for (int c = 0; c < 3; ++c) error[c] += (double((first.*of)[c]) / a - double((second.*of)[c]) / b) * std::sqrt(a * b) / (a + b);
+    for (const Layer layer : layers)
+      for (int c = 0; c < 3; ++c)
+        error[c] += (double(first[i]->radiance[layer][c]) / a - double(second[i]->radiance[layer][c]) / b) * std::sqrt(a * b) / (a + b);
   }
   Rgb result;
   // A square beyond float32 is cut to its largest: a file holds no infinity.
@@ -68,12 +82,21 @@ Rgb SampleHalves::variance(Rgb Sum::*of) const {
 }
 
 bool wants_sample_halves(const std::vector<std::string>& channels) {
-  return asked(channels, "variance") || asked(channels, "diffuse.variance") || asked(channels, "samples");
+  return asked(channels, "variance") || asked(channels, "diffuse.variance") || asked(channels, "samples") || wants_independent_halves(channels);
 }
 
-void add_variance_channels(const std::vector<SampleHalves>& halves, const std::vector<std::string>& channels, Image& image) {
-  if (asked(channels, "variance")) add_variance(halves, &SampleHalves::Sum::image, "variance", image);
-  if (asked(channels, "diffuse.variance")) add_variance(halves, &SampleHalves::Sum::diffuse, "diffuse.variance", image);
+bool wants_independent_halves(const std::vector<std::string>& channels) { return asked(channels, "halves"); }
+
+void add_variance_channels(const std::vector<SampleHalves>& halves, bool media, const std::vector<std::string>& channels, Image& image) {
+  if (asked(channels, "variance"))
+    add_colour(halves, "variance", image, [](const SampleHalves& pixel) { return pixel.variance(kImageLayers); });
+  if (asked(channels, "diffuse.variance"))
+    add_colour(halves, "diffuse.variance", image, [](const SampleHalves& pixel) { return pixel.variance(kDiffuseLayers); });
+  if (asked(channels, "halves"))
+    for (std::size_t l = 0; l < kLayerCount; ++l)
+      for (int h = 0; h < 2; ++h)
+        if (media || l != std::size_t(Layer::volume))
+          add_colour(halves, std::string(kLayerNames[l]) + (h == 0 ? ".a" : ".b"), image, [=](const SampleHalves& pixel) { return pixel.mean(h, l); });
   if (!asked(channels, "samples")) return;
   std::vector<float>& samples = image.add("samples").values;
   for (std::size_t p = 0; p < halves.size(); ++p) samples[p] = halves[p].samples();
