@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -17,8 +16,6 @@
 
 namespace tempolux {
 namespace {
-
-int env(const char* name, int value) { return std::getenv(name) ? std::atoi(std::getenv(name)) : value; }
 
 constexpr int kSmallRadius = 2;
 constexpr std::array<const char*, 2> kShownLayers{"emission", "specular"};
@@ -129,7 +126,7 @@ bool has_halves(const Image& image) {
 }
 
 FrameHalves::FrameHalves(Image& image) {
-  if (env("TSPREAD", 1)) spread_in_halves(image);
+  spread_in_halves(image);
   for (std::size_t group = 0; group < kGroups; ++group)
     for (std::size_t half = 0; half < 2; ++half) views_[group][half] = std::make_unique<LightFrame>(half_of(image, group, half), layers_of(group));
 }
@@ -150,7 +147,7 @@ struct HalvesFilter::State {
     for (std::size_t h = 0; h < 2; ++h) compare_by(small[h], middle.view(group, h), collected[h]);
     swap_means(collected);
     for (std::size_t h = 0; h < 2; ++h) large[h] = fit(middle.view(group, h), collected[h], {.radius = options.radius});
-    if (env("TSMALL", 1)) add_candidate(group, collected, coverage, image, frames, small, kSmallRadius, candidates);
+    add_candidate(group, collected, coverage, image, frames, small, kSmallRadius, candidates);
     add_candidate(group, collected, coverage, image, frames, large, options.radius, candidates);
   }
 
@@ -159,8 +156,7 @@ struct HalvesFilter::State {
     for (auto& of_layer : candidates) of_layer.emplace_back();
     for (std::size_t h = 0; h < 2; ++h) {
       const LightFrame& frame = middle.view(group, h);
-      if (env("TUNMIX", 1)) unmix(frame, collected[h], coverage, radius, frames, fitted[h]);
-      else fitted[h].other.resize(fitted[h].light.size());
+      unmix(frame, collected[h], coverage, radius, frames, fitted[h]);
       for (std::size_t l = 0; l < frame.layers.size(); ++l) {
         Halves& candidate = candidates[l].back();
         for (std::size_t c = 0; c < 3; ++c) {
@@ -168,7 +164,7 @@ struct HalvesFilter::State {
           values = image.find(channel_name(frame.layers[l] + kHalfNames[h], c))->values;
           if (fitted[h].light[l][c].empty()) continue;   // black
           const EdgePlane light{fitted[h].light[l][c], fitted[h].other[l][c], frame.albedo[c]};
-          if (coverage.known() && env("TRESOLVE", 1)) resolve(light, coverage, frame.width, frame.height, values);
+          if (coverage.known()) resolve(light, coverage, frame.width, frame.height, values);
           else
             for_each_row(frame.height, [&](int y) {
               for (int x = 0; x < frame.width; ++x) values[std::size_t(y) * std::size_t(frame.width) + std::size_t(x)] = light.own_at(x, y);
@@ -189,13 +185,16 @@ struct HalvesFilter::State {
       collected = {collectors[0]->take(), collectors[1]->take()};
       fit_both(group, collected, coverage, image, int(1 + added), candidates);
     }
+    std::vector<std::uint8_t> kinds(image.pixel_count());
+    for (int y = 0; y < frame.height; ++y)
+      for (int x = 0; x < frame.width; ++x) kinds[std::size_t(y) * std::size_t(frame.width) + std::size_t(x)] = frame.inside.at(x, y) != 0;
     for (std::size_t l = 0; l < frame.layers.size(); ++l) {
       Halves raw;
       for (std::size_t c = 0; c < 3; ++c) {
         raw.a[c] = image.find(channel_name(frame.layers[l] + ".a", c))->values;
         raw.b[c] = image.find(channel_name(frame.layers[l] + ".b", c))->values;
       }
-      Colours chosen = choose(raw, candidates[l], frame.width, frame.height);
+      Colours chosen = choose(raw, candidates[l], kinds, frame.width, frame.height);
       for (std::size_t c = 0; c < 3; ++c)
         if (Channel* channel = float_channel(image, channel_name(frame.layers[l], c))) channel->values = std::move(chosen[c]);
     }
