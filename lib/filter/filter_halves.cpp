@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "formats/error.h"
 #include "lib/filter/choose.h"
 #include "lib/filter/collect.h"
 #include "lib/filter/fit.h"
@@ -117,18 +118,28 @@ void swap_means(std::array<Collected, 2>& collected) {
 
 }  // namespace
 
-bool has_halves(const Image& image) {
-  const auto has = [&](const char* layer) {
-    const std::string name = layer;
-    return image.find(name + ".a.R") && image.find(name + ".b.R");
-  };
-  return std::any_of(kFilteredLayers.begin(), kFilteredLayers.end(), has) || std::any_of(kShownLayers.begin(), kShownLayers.end(), has);
+namespace {
+
+bool has_halves(const Image& image, std::size_t group) {
+  const std::span<const char* const> layers = layers_of(group);
+  return std::any_of(layers.begin(), layers.end(), [&](const std::string& layer) { return image.find(layer + ".a.R") && image.find(layer + ".b.R"); });
 }
 
+}  // namespace
+
+bool has_halves(const Image& image) { return has_halves(image, 0); }
+
 FrameHalves::FrameHalves(Image& image) {
+  for (std::size_t group = 0; group < kGroups; ++group)
+    for (const std::string layer : layers_of(group))
+      for (const char* half : kHalfNames)
+        for (std::size_t c = 0; c < 3 && image.find(layer + half + ".R"); ++c)
+          if (!float_channel(image, channel_name(layer, c)) || !float_channel(image, channel_name(layer + ".a", c)) ||
+              !float_channel(image, channel_name(layer + ".b", c)))
+            throw InputError("halves of layer " + layer + " are not all there, or the layer is not; write it with --channels layers,halves");
   spread_in_halves(image);
   for (std::size_t group = 0; group < kGroups; ++group)
-    for (std::size_t half = 0; half < 2; ++half) views_[group][half] = std::make_unique<LightFrame>(half_of(image, group, half), layers_of(group));
+    for (std::size_t half = 0; half < 2 && has_halves(image, group); ++half) views_[group][half] = std::make_unique<LightFrame>(half_of(image, group, half), layers_of(group));
 }
 
 struct HalvesFilter::State {
@@ -175,8 +186,8 @@ struct HalvesFilter::State {
   }
 
   void filter_group(std::size_t group, const Coverage& coverage, Image& image) {
+    if (!middle.has(group)) return;
     const LightFrame& frame = middle.view(group, 0);
-    if (frame.layers[0].empty()) return;
     std::vector<std::vector<Halves>> candidates(frame.layers.size());
     const auto alone = [&](std::size_t h) { return Collector({&middle.view(group, h), &flow}, 1, nullptr).take(); };
     std::array<Collected, 2> collected{alone(0), alone(1)};
@@ -196,7 +207,7 @@ struct HalvesFilter::State {
       }
       Colours chosen = choose(raw, candidates[l], kinds, frame.width, frame.height);
       for (std::size_t c = 0; c < 3; ++c)
-        if (Channel* channel = float_channel(image, channel_name(frame.layers[l], c))) channel->values = std::move(chosen[c]);
+        float_channel(image, channel_name(frame.layers[l], c))->values = std::move(chosen[c]);
     }
   }
 };

@@ -8,7 +8,7 @@
 
 namespace tempolux {
 
-/// Does the image hold the halves of a layer that is filtered (frame-render --channels halves)?
+/// Does the image hold the halves of a matte layer (frame-render --channels halves)?
 bool has_halves(const Image& image);
 
 /// A frame with halves as the filter sees it: by group of layers and by half.
@@ -18,6 +18,8 @@ class FrameHalves {
   static constexpr std::size_t kGroups = 2;
   /// The image's halves become those of its layers as they are, after outliers were spread.
   explicit FrameHalves(Image& image);
+  /// Are halves of the group there? Of frames around the middle one the first group alone is read.
+  bool has(std::size_t group) const { return views_[group][0] != nullptr; }
   const LightFrame& view(std::size_t group, std::size_t half) const { return *views_[group][half]; }
 
  private:

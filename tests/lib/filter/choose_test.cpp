@@ -74,7 +74,19 @@ TEST(Choose, TheBetterCandidateIsTaken) {
     EXPECT_LT(squared_error(choose(raw, candidates, kInside, kSide, kSide)[2], 1), 0.06 * double(sigma) * double(sigma) / 2);
 }
 
-/// Candidates that are the raw halves: f correlates with A as A itself. Taken for independent they would look twice as good as they are.
+/// f = (A + c) / 2 and g = (B + c) / 2 with c = 1 + b keep half of the raw noise: the covariance of F and M is V / 2, the mean of (F - M)^2 is (b^2 + V) / 4. With
+/// b^2 = 3 V the share is (V - V / 2) / V = 1 / 2, and the mean is off by b / 4. Without the covariance the share would be 1. Tolerance: as above.
+TEST(Choose, NoiseThatACandidateKeepsCountsAgainstIt) {
+  const float sigma = 0.1f, b = sigma * std::sqrt(1.5f);
+  const Halves raw{noise(8, sigma), noise(9, sigma)};
+  Halves candidate = raw;
+  for (Colours* half : {&candidate.a, &candidate.b})
+    for (auto& plane : *half)
+      for (float& v : plane) v = (v + 1 + b) / 2;
+  const Colours out = choose(raw, {candidate}, kInside, kSide, kSide);
+  EXPECT_NEAR(mean(out[0]) - 1, double(b) / 4, 0.05 * double(b));
+}
+
 TEST(Choose, ACandidateThatFiltersNothingChangesNothing) {
   const Halves raw{noise(8, 0.2f), noise(9, 0.2f)};
   const Colours out = choose(raw, {raw}, kInside, kSide, kSide);
@@ -90,7 +102,9 @@ TEST(Choose, WhatIsNoNumberIsFilledAndDecidesNothing) {
   const Colours out = choose(raw, {candidate}, kInside, kSide, kSide);
   for (const auto& plane : out)
     for (std::size_t p = 0; p < kCount; ++p)
-      if (p != 7000) EXPECT_EQ(plane[p], 1.0f);
+      if (p != 7000) {
+        EXPECT_EQ(plane[p], 1.0f);
+      }
   EXPECT_EQ(out[2][7000], 5e29f);
 }
 
