@@ -4,7 +4,7 @@
 //     st-filter f.####.exr --flow flow.####.exr --frames 0-47 -o filtered.####.exr
 //     st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad          (tools/common/filter_mesh.h)
 //
-// How: docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
+// Frames of frame-render --channels halves,... are filtered where their halves prove that it pays. How: docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
