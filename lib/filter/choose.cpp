@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kAround = 2;          ///< pixels: estimates are means over 5 x 5 pixels of a kind, twice
 constexpr float kDark = 0.02f;      ///< of the layer's mean: darker light counts as if it were so bright
-constexpr float kOwnNoise = 0.5f;   ///< share of a pixel's own noise in its scale
+constexpr float kOwnNoise = 0.25f;   ///< share of a pixel's own noise in its scale
 constexpr std::uint8_t kNoNumber = 2;   ///< kind of pixels that no estimate counts: a half is not finite, or too bright for squares
 
 using Values = std::vector<float>;

@@ -21,7 +21,7 @@ struct Halves {
 ///     of the squared error of F:   ((f - B)^2 + (g - A)^2) / 2 - (A - B)^2 / 2 - (f - g)^2 / 4
 ///     of the squared error of M:   (A - B)^2 / 4
 ///     of the covariance of both:   (f - g) (A - B) / 4.
-/// Each is divided by the square of the light around plus half of the pixel's own noise, summed over colours and averaged over pixels around of the
+/// Each is divided by the square of the light around plus a quarter of the pixel's own noise, summed over colours and averaged over pixels around of the
 /// same kind (`kinds`: 1 inside surfaces, 0 at edges). A pixel's own noise lowers its weight alike in all three: a lone bright sample does not decide
 /// for what is around it. The candidate of the least error is taken; shares of candidates are averaged likewise. Then that F counts by
 /// w = (error of M - covariance) / (mean of (F - M)^2), from 0 to 1, and M by 1 - w. Rousselle, Knaus, Zwicker: Adaptive rendering with non-local means
