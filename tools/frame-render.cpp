@@ -20,6 +20,7 @@
 #include "lib/render/frame_renderer.h"
 #include "lib/render/influence_channels.h"
 #include "lib/render/learn_lights.h"
+#include "lib/render/seen_channels.h"
 #include "lib/scene/light_units.h"
 #include "tools/common/audit_input.h"
 #include "tools/common/base_frame.h"
@@ -166,6 +167,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   Image image{options.width, options.height, {}, {}, {}, {}};
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
   add_coverage_channel(scene, view, options.channels, image);
+  add_seen_channels(scene, view, options.channels, image);
   add_influence_channels(scene, view, light.get().localised, options.channels, image);
   tool.stats().phase("write");
   const ExrWriteOptions exr{options.half_float, options.compression == "none" ? ExrWriteOptions::Compression::none
@@ -362,7 +364,7 @@ void add_options(tools::Tool& tool, Options& options) {
       ->capture_default_str()->check(tools::number_between(1, 1 << 24));
   app.add_option("--channels", options.channels,
                  "RGBA, layers (or emission, specular, direct, caustic, indirect, volume), Z, N, P, id, albedo, motion, "
-                 "coverage, influence, variance, diffuse.variance, samples, halves")
+                 "coverage, influence, variance, diffuse.variance, samples, halves, seen")
       ->delimiter(',')->type_name("NAMES")->default_str("RGBA,Z,N,id");
   app.add_option("--mask", options.mask, "EXR file, or a pattern: trace only pixels where a channel is not 0")
       ->type_name("FILE");

@@ -4,7 +4,7 @@
 //     st-filter f.####.exr --flow flow.####.exr --frames 0-47 -o filtered.####.exr
 //     st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad          (tools/common/filter_mesh.h)
 //
-// How: docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
+// Frames of frame-render --channels halves,... are filtered where their halves prove that it pays. How: docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <map>
@@ -15,6 +15,7 @@
 
 #include "formats/error.h"
 #include "lib/filter/filter_frame.h"
+#include "lib/filter/filter_halves.h"
 #include "lib/image/channel_groups.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
@@ -43,7 +44,8 @@ struct Names {
 /// A frame that is read, with what the filter needs of it.
 struct LoadedFrame {
   Image image;
-  std::unique_ptr<LightFrame> light;
+  std::unique_ptr<LightFrame> light;     ///< of a frame without halves
+  std::unique_ptr<FrameHalves> halves;   ///< of one with them
   FlowFrame flow;
 };
 
@@ -60,16 +62,23 @@ class FilterRun {
     const std::string& name = names_[at].frame;
     LoadedFrame& middle = load(at, true);
     tool_.stats().phase("filter", true);
-    FrameFilter filter(middle.image, {middle.light.get(), &middle.flow}, at - first, last - at, options_.filter);
+    std::optional<FrameFilter> plain;
+    std::optional<HalvesFilter> halves;
+    if (middle.halves) halves.emplace(*middle.halves, middle.flow, at - first, last - at, options_.filter);
+    else plain.emplace(middle.image, WindowFrame{middle.light.get(), &middle.flow}, at - first, last - at, options_.filter);
     const auto add = [&](std::size_t i) {
       const LoadedFrame& other = load(i, sequence_);
       tool_.stats().phase("filter", true);
-      naming(name, [&] { filter.add({other.light.get(), &other.flow}); });
+      if (!middle.halves != !other.halves) throw InputError(names_[i].frame + ": frames of a window have halves or none has; write all with the same --channels");
+      naming(name, [&] {
+        if (halves) halves->add(*other.halves, other.flow);
+        else plain->add({other.light.get(), &other.flow});
+      });
       if (!sequence_) loaded_.erase(i);   // two frames in memory, however many there are
     };
     for (std::size_t i = at; i > first; --i) add(i - 1);
     for (std::size_t i = at + 1; i <= last; ++i) add(i);
-    Image image = filter.finish(std::move(middle.image));
+    Image image = halves ? halves->finish(std::move(middle.image)) : plain->finish(std::move(middle.image));
     naming(name, [&] { if (!options_.channels.empty()) keep_channels(options_.channels, image); });
     image.text["tempolux:history"] += tool_.history_line(number);
     tool_.stats().phase("write");
@@ -108,7 +117,10 @@ class FilterRun {
     else if (image.find("forward.u") || image.find("backward.u"))
       loaded.flow = to_filter ? FlowFrame(image, image.width, image.height, names.frame)
                               : FlowFrame(std::move(image), image.width, image.height, names.frame);
-    naming(names.frame, [&] { loaded.light = std::make_unique<LightFrame>(to_filter ? LightFrame(image) : LightFrame(std::move(image))); });
+    naming(names.frame, [&] {
+      if (has_halves(image)) loaded.halves = std::make_unique<FrameHalves>(image);
+      else loaded.light = std::make_unique<LightFrame>(to_filter ? LightFrame(image) : LightFrame(std::move(image)));
+    });
     explain(names, loaded);
     if (!to_filter) image = {};
     return loaded;
@@ -134,7 +146,7 @@ class FilterRun {
       warn("motion", names.frame + ": no flow (forward.u, forward.v, backward.u, backward.v) and no --flow; filtered as if nothing moved");
     else if (!loaded.flow.empty() && !(loaded.flow.has_forward() && loaded.flow.has_backward()))
       warn("direction", (names.flow.empty() ? names.frame : names.flow) + ": flow in one direction only; the other is taken for its opposite");
-    if (loaded.light->noise == NoiseKnowledge::none)
+    if (loaded.light && loaded.light->noise == NoiseKnowledge::none)
       warn("noise", names.frame + ": no variance and no samples; filtered by what cannot be seen at " +
                         std::to_string(int(options_.filter.pixels_per_degree)) + " pixels per degree");
     if (!loaded.image.find("Z") && !loaded.image.find("id.object"))
@@ -192,7 +204,7 @@ void filter_range(tools::Tool& tool, const Options& options) {
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "mesh") return tools::filter_mesh(argc - 1, argv + 1);
-  tools::Tool tool("st-filter", "Filter frames of few samples, in space and along the pixel flow in time.", argc, argv);
+  tools::Tool tool("st-filter", "Filter frames of few samples, in space and along the pixel flow in time; frames with halves where their halves prove that it pays.", argc, argv);
   Options options;
   CLI::App& app = tool.app();
   app.add_option("input", options.frames, "frames in the order of time, EXR, or with --frames a pattern such as f.####.exr")

@@ -10,6 +10,7 @@
 #include "formats/error.h"
 #include "lib/filter/collect.h"
 #include "lib/filter/fit.h"
+#include "lib/filter/picture.h"
 #include "lib/filter/resolve.h"
 #include "lib/filter/rows.h"
 #include "lib/filter/unmix.h"
@@ -18,19 +19,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::array<const char*, 6> kLayersInOrder{"emission", "specular", "direct", "caustic", "indirect", "volume"};
 constexpr int kFirstRadius = 2;   ///< pixels: of the fit that values are compared by
-constexpr std::array<const char*, 3> kComponents{"R", "G", "B"};
-
-std::string channel_name(const std::string& layer, std::size_t c) {
-  return layer.empty() ? kComponents[c] : layer + "." + kComponents[c];
-}
-
-Channel* float_channel(Image& image, const std::string& name) {
-  Channel* channel = image.find(name);
-  return channel && !channel->values.empty() ? channel : nullptr;
-}
-
 /// Pixels at edges keep their values, if they are numbers: what they see of which surface is not known.
 void write_inside(const LightFrame& frame, const EdgePlane& light, std::vector<float>& values) {
   for_each_row(frame.height, [&](int y) {
@@ -38,14 +27,6 @@ void write_inside(const LightFrame& frame, const EdgePlane& light, std::vector<f
     for (int x = 0; x < frame.width; ++x)
       if ((frame.inside.at(x, y) != 0 || frame.use.at(x, y) != 0 || !std::isfinite(to[x])) && !is_too_bright(to[x])) to[x] = light.own_at(x, y);
   });
-}
-
-void check_frame(const LightFrame& frame, const LightFrame& other) {
-  if (other.width != frame.width || other.height != frame.height)
-    throw InputError("frames of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + " and of " +
-                     std::to_string(other.width) + "x" + std::to_string(other.height) + " pixels; all frames of a window have one size");
-  if (other.layers != frame.layers || other.albedo[0].empty() != frame.albedo[0].empty())
-    throw InputError("frames of a window have different layers; write all with the same --channels");
 }
 
 /// What stands for knowledge of noise where there is none.
@@ -100,44 +81,15 @@ void compare_by_fit(const LightFrame& frame, int radius, Collected& collected) {
   });
 }
 
-/// What is not finite in what passes the filter becomes 0; of depth infinity is allowed, and what is not a number becomes it.
-void leave_numbers(Image& image) {
-  for (Channel& channel : image.channels) {
-    const bool depth = channel.name == "Z";
-    for (float& value : channel.values)
-      if (!std::isfinite(value)) value = depth ? INFINITY : 0.0f;
-  }
-}
-
-/// Sums of the layers by pixel, for R, G and B, in the order of frames.md 2; empty without any.
-using LayerSums = std::array<std::vector<float>, 3>;
-LayerSums sum_layers(Image& image) {
-  LayerSums sums;
-  for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t l = 0; l < kLayersInOrder.size(); ++l) {
-      const Channel* layer = float_channel(image, channel_name(kLayersInOrder[l], c));
-      if (!layer) continue;
-      if (sums[c].empty()) sums[c] = layer->values;
-      else std::transform(layer->values.begin(), layer->values.end(), sums[c].begin(), sums[c].begin(), [](float v, float sum) { return sum + v; });
-    }
-  return sums;
-}
-
-/// The picture after its layers have changed: their sum. Where it held more light than its layers, as some of them are not there, it keeps that. Half floats are
-/// off by 2^-11 each: twice that is no light.
-void renew_picture(const LayerSums& before, const LayerSums& after, Image& image) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    Channel* whole = float_channel(image, kComponents[c]);
-    if (!whole || after[c].empty()) continue;
-    for (std::size_t p = 0; p < whole->values.size(); ++p) {
-      const float held = whole->values[p], rest = held - before[c][p];
-      const bool more = std::isfinite(rest) && std::abs(rest) > 1e-3f * (std::abs(held) + std::abs(before[c][p]));
-      whole->values[p] = more ? after[c][p] + rest : after[c][p];
-    }
-  }
-}
-
 }  // namespace
+
+void check_frame(const LightFrame& frame, const LightFrame& other) {
+  if (other.width != frame.width || other.height != frame.height)
+    throw InputError("frames of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + " and of " +
+                     std::to_string(other.width) + "x" + std::to_string(other.height) + " pixels; all frames of a window have one size");
+  if (other.layers != frame.layers || other.albedo[0].empty() != frame.albedo[0].empty())
+    throw InputError("frames of a window have different layers; write all with the same --channels");
+}
 
 struct FrameFilter::State {
   const LightFrame& frame;

@@ -40,6 +40,9 @@ class FrameFilter {
   std::unique_ptr<State> state_;
 };
 
+/// InputError if two frames of a window differ in size or layers.
+void check_frame(const LightFrame& frame, const LightFrame& other);
+
 /// The same of window[middle], all of whose frames are at hand.
 Image filter_frame(Image image, std::span<const WindowFrame> window, std::size_t middle, const FilterOptions& options);
 

@@ -25,7 +25,7 @@ bool has_rgb(const Image& image, const std::string& layer) {
 class Preparation {
  public:
   /// spare: the image, if its samples may be freed; else nullptr.
-  Preparation(const Image& image, Image* spare, LightFrame& frame) : image_(image), spare_(spare), frame_(frame), width_(std::size_t(frame.width)) {}
+  Preparation(const Image& image, Image* spare, std::span<const char* const> wanted, LightFrame& frame) : wanted_(wanted), image_(image), spare_(spare), frame_(frame), width_(std::size_t(frame.width)) {}
 
   void take_surfaces() {
     const auto take_if_there = [&](const char* name, Plane& plane) {
@@ -81,7 +81,7 @@ class Preparation {
   }
 
   void take_light() {
-    for (const char* layer : kFilteredLayers)
+    for (const char* layer : wanted_)
       if (has_rgb(image_, layer)) frame_.layers.push_back(layer);
     if (frame_.layers.empty()) frame_.layers.push_back("");
     const bool albedo = has_rgb(image_, "albedo");
@@ -237,6 +237,7 @@ class Preparation {
     });
   }
 
+  std::span<const char* const> wanted_;
   const Image& image_;
   Image* spare_;
   LightFrame& frame_;
@@ -251,12 +252,16 @@ bool is_read_by_others(const std::string& channel) {
   return channel.starts_with("diffuse.variance") || std::any_of(kFilteredLayers.begin(), kFilteredLayers.end(), is_of) ||
          std::any_of(kReadGroups.begin(), kReadGroups.end(), is_of);
 }
-bool is_read_to_filter(const std::string& channel) { return is_read_by_others(channel) || is_in_group(channel, "layers") || channel == "A"; }
+bool is_read_to_filter(const std::string& channel) {
+  constexpr std::array<const char*, 5> kGroups{"layers", "emission", "specular", "volume", "seen"};
+  const auto is_of = [&](const char* group) { return is_in_group(channel, group); };
+  return is_read_by_others(channel) || std::any_of(kGroups.begin(), kGroups.end(), is_of) || channel == "A";
+}
 
 namespace {
 
-void prepare(const Image& image, Image* spare, LightFrame& frame) {
-  Preparation preparation(image, spare, frame);
+void prepare(const Image& image, Image* spare, std::span<const char* const> wanted, LightFrame& frame) {
+  Preparation preparation(image, spare, wanted, frame);
   preparation.take_surfaces();
   preparation.take_light();
   preparation.take_noise();
@@ -265,8 +270,12 @@ void prepare(const Image& image, Image* spare, LightFrame& frame) {
 
 }  // namespace
 
-LightFrame::LightFrame(const Image& image) : width(image.width), height(image.height) { prepare(image, nullptr, *this); }
-LightFrame::LightFrame(Image&& image) : width(image.width), height(image.height) { prepare(image, &image, *this); }
+LightFrame::LightFrame(const Image& image, std::span<const char* const> wanted) : width(image.width), height(image.height) {
+  prepare(image, nullptr, wanted, *this);
+}
+LightFrame::LightFrame(Image&& image, std::span<const char* const> wanted) : width(image.width), height(image.height) {
+  prepare(image, &image, wanted, *this);
+}
 
 bool LightFrame::on_surface(int x, int y, int dx, int dy) const {
   return SurfaceRow(*this, y, dx, dy).surface(std::size_t(x)) != 0;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ bool is_read_by_others(const std::string& channel);
 /// A coloured plane.
 using ColourPlane = std::array<Plane, 3>;
 
+/// The layers st-filter filters; emission and specular pass by.
+inline constexpr std::array<const char*, 3> kFilteredLayers{"direct", "caustic", "indirect"};
+
 /// Light is radiance over albedo where the frame has albedo, so that textures are left out.
 struct LightFrame {
   int width = 0, height = 0;
@@ -46,16 +50,13 @@ struct LightFrame {
 
   /// Where `use` is 0 mean and variances are those of the surface at the pixel's centre, from its other pixels. Pixels that are
   /// not finite are left out like edges.
-  explicit LightFrame(const Image& image);
+  explicit LightFrame(const Image& image, std::span<const char* const> wanted = kFilteredLayers);
   /// The same, of an image that is not needed any more: what was taken of its samples is freed, its channels are there without.
-  explicit LightFrame(Image&& image);
+  explicit LightFrame(Image&& image, std::span<const char* const> wanted = kFilteredLayers);
 
   /// Is the pixel (dx, dy) from (x, y) on its surface, as PixelSurfaces::same says, whether it is of use or not?
   bool on_surface(int x, int y, int dx, int dy) const;
   bool has_pixel(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
 };
-
-/// The layers st-filter filters; emission and specular pass by.
-inline constexpr std::array<const char*, 3> kFilteredLayers{"direct", "caustic", "indirect"};
 
 }  // namespace tempolux

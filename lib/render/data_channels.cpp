@@ -13,7 +13,7 @@ namespace {
 
 const std::vector<std::string> kGroups{"RGBA", "layers", "emission", "specular", "direct", "caustic", "indirect", "volume",
                                        "Z", "N", "P", "id", "albedo", "motion",
-                                       "coverage", "influence", "variance", "diffuse.variance", "samples", "halves"};
+                                       "coverage", "influence", "variance", "diffuse.variance", "samples", "halves", "seen"};
 
 bool asked(const std::vector<std::string>& channels, const char* name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();

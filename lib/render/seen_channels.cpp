@@ -1,0 +1,93 @@
+#include "lib/render/seen_channels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "lib/core/parallel.h"
+#include "lib/material/bsdf.h"
+#include "lib/render/shading.h"
+
+namespace tempolux {
+namespace {
+
+constexpr int kMostMirrors = 16;
+
+struct Shown {
+  float depth = 0;
+  Vec3 normal{};
+  std::uint32_t id = kNone;
+  Rgb albedo{1.0f};
+};
+
+/// The way on by a delta lobe; none if there is no such lobe.
+std::optional<Bsdf::Sample> sharp_way(const ShadingPoint& shading) {
+  if (!shading.bsdf.has_specular() || !shading.bsdf.specular_is_delta()) return std::nullopt;
+  // 0.5 follows what is more than half of the light; where that is a Lambert lobe one end or the other of [0, 1) is the mirror above it.
+  for (const float lobe : {0.5f, 0.0001f, 0.9999f}) {
+    const Bsdf::Sample next = shading.bsdf.sample(shading.eye, lobe, {0.5f, 0.5f});
+    if (next.delta && !next.diffuse && !is_black(next.weight)) return next;
+  }
+  return std::nullopt;
+}
+
+std::uint32_t mixed(std::uint32_t id, std::uint32_t next) {
+  const std::uint32_t hash = (id ^ (next + 0x9e3779b9u)) * 0x85ebca6bu;
+  return hash ^ (hash >> 15);
+}
+
+Shown follow(const Tracer& tracer, const CameraView& view, const Ray& eye) {
+  Shown shown;
+  Ray ray = eye;
+  float way = 0;
+  for (int mirrors = 0;; ++mirrors) {
+    Hit hit;
+    tracer.intersect(ray, hit);
+    if (hit.surface == kNone) {
+      shown.id = mirrors > 0 ? mixed(shown.id, kNone) : kNone;
+      shown.depth = 0;
+      shown.normal = {};
+      shown.albedo = Rgb(1.0f);
+      return shown;
+    }
+    SurfacePoint point = tracer.surface_point(hit);
+    way += hit.t;
+    const SurfaceMaterial material(tracer.frame(), point, view.pixel_size(way));
+    const ShadingPoint shading(point, -ray.direction, material);
+    shown.id = mirrors > 0 ? mixed(shown.id, point.object) : point.object;
+    shown.depth = float(view.depth(eye.origin + eye.direction * way));
+    shown.normal = shading.normal;
+    const float cosine = std::max(shading.wo_local.z, 1e-3f);
+    shown.albedo = shading.bsdf.has_specular() ? shading.bsdf.specular_albedo(cosine) : Rgb(mirrors > 0 ? 0.0f : 1.0f);
+    if (mirrors > 0) shown.albedo += shading.bsdf.diffuse_reflectance(cosine);
+    const std::optional<Bsdf::Sample> next = mirrors < kMostMirrors ? sharp_way(shading) : std::nullopt;
+    if (!next) return shown;
+    ray = spawn_ray(point, shading.frame.to_world(next->wi));
+  }
+}
+
+}  // namespace
+
+void add_seen_channels(const RenderScene& scene, const CameraView& view, const std::vector<std::string>& channels, Image& image) {
+  if (std::find(channels.begin(), channels.end(), "seen") == channels.end()) return;
+  constexpr std::array<const char*, 7> kNames{"seen.Z", "seen.N.X", "seen.N.Y", "seen.N.Z", "seen.albedo.R", "seen.albedo.G", "seen.albedo.B"};
+  for (const char* name : kNames) image.add(name);
+  image.add_ids("seen.id");
+  std::array<float*, kNames.size()> to{};
+  for (std::size_t i = 0; i < kNames.size(); ++i) to[i] = image.find(kNames[i])->values.data();
+  std::uint32_t* const ids = image.find("seen.id")->ids.data();
+  const auto width = std::size_t(view.width());
+  parallel_chunks(image.pixel_count(), 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      const Ray ray = view.ray(float(p % width) + 0.5f, float(p / width) + 0.5f);
+      const Shown shown = follow(scene.tracer, view, ray);
+      const std::array<float, kNames.size()> values{shown.depth,    shown.normal.x, shown.normal.y, shown.normal.z,
+                                                    shown.albedo.r, shown.albedo.g, shown.albedo.b};
+      for (std::size_t i = 0; i < values.size(); ++i) to[i][p] = values[i];
+      ids[p] = shown.id;
+    }
+  });
+}
+
+}  // namespace tempolux
