@@ -30,7 +30,7 @@ using namespace tempolux;
 namespace {
 
 struct Options {
-  std::string scene, folder = "out", tidy_folder, quality = "final", method = "frames", report;
+  std::string scene, folder = "out", tidy_folder, quality = "final", method = "frames", filter = "auto", report;
   std::vector<std::string> recipes;
   double tidy_hours = 24;
   bool estimate = false, json = false;
@@ -59,6 +59,7 @@ Wish wish_of(const tools::Tool& tool, const Options& options) {
   Wish wish = options.wish;
   wish.quality = Quality(index_of(kQualities, options.quality));
   wish.method = FrameMethod(index_of(kFrameMethods, options.method));
+  wish.filter = options.filter == "auto" ? Wish::kAutoFilter : options.filter == "none" ? 0 : std::stoi(options.filter);
   wish.camera = tool.common().camera;
   const std::vector<std::string> shared = tools::shared_arguments(tool.common());
   for (std::size_t i = 0; i < shared.size(); ++i)   // what files hold counts, not where they lie
@@ -108,8 +109,8 @@ void add_wishes(tools::Tool& tool, Options& options) {
   const auto words = [&](const char* name, std::string& value, const char* help) { app.add_option(name, value, help)->type_name("WORDS"); };
   choice("--quality", options.quality, "draft: rougher, in less than half of the time; final", {"draft", "final"});
   choice("--method", options.method, "frames: each rendered; walkthrough: key frames, those between warped; auto: where it pays", {"frames", "walkthrough", "auto"});
-  app.add_option("--filter", wish.filter, "filter each frame with those around it: frames of the window, 3, 5, 7 or 9; 0: no filter")
-      ->capture_default_str()->check(CLI::IsMember({0, 3, 5, 7, 9}));
+  choice("--filter", options.filter, "filter frames where the halves of their samples show that it helps: frames of the window, 1: each alone; none; "
+         "auto: 1, unless --pixel-words are given", {"auto", "none", "1", "3", "5", "7", "9"});
   choice("--indirect", wish.indirect, "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot",
          {"auto", "records", "gather", "paths"});
   choice("--moving", wish.moving, "what of a frame's light follows from that of what stands: anew (nothing), light (photons and points), records (they, too), "

@@ -142,7 +142,7 @@ class FilterRun {
 
   /// Warnings once per run, in the words of the first file that they are about.
   void explain(const Names& names, const LoadedFrame& loaded) {
-    if (options_.width > 1 && loaded.flow.empty())
+    if (options_.width > 1 && names_.size() > 1 && loaded.flow.empty())
       warn("motion", names.frame + ": no flow (forward.u, forward.v, backward.u, backward.v) and no --flow; filtered as if nothing moved");
     else if (!loaded.flow.empty() && !(loaded.flow.has_forward() && loaded.flow.has_backward()))
       warn("direction", (names.flow.empty() ? names.frame : names.flow) + ": flow in one direction only; the other is taken for its opposite");
@@ -204,7 +204,7 @@ void filter_range(tools::Tool& tool, const Options& options) {
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "mesh") return tools::filter_mesh(argc - 1, argv + 1);
-  tools::Tool tool("st-filter", "Filter frames of few samples, in space and along the pixel flow in time; frames with halves where their halves prove that it pays.", argc, argv);
+  tools::Tool tool("st-filter", "Filter frames in space and along the pixel flow, those with halves where the halves prove that it pays.", argc, argv);
   Options options;
   CLI::App& app = tool.app();
   app.add_option("input", options.frames, "frames in the order of time, EXR, or with --frames a pattern such as f.####.exr")

@@ -18,9 +18,10 @@ inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto"}
 
 /// What the user asks for. Words are options as on a command line, separated by blanks.
 struct Wish {
+  static constexpr int kAutoFilter = -1;   ///< as the preset has it
   Quality quality = Quality::final;
   FrameMethod method = FrameMethod::frames;
-  int filter = 0;                       ///< frames of the filter's window, odd; 0: no filter
+  int filter = kAutoFilter;             ///< frames of the filter's window, odd; 0: no filter
   std::string indirect = "auto";        ///< or one of kIndirectMethods
   std::string moving = "auto";          ///< or one of kMovingMethods
   std::string split = "auto";           ///< or on, off

@@ -333,23 +333,26 @@ class Builder {
     return add(stage::smoke, frame, c);
   }
   std::string clear_picture(int frame) {
-    if (wish_.filter > 0) return filtered_picture(frame);
     const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk));
     if (walk) return walked_picture(frame);
+    if (wish_.filter > 0) return filtered_picture(frame);
     return add(stage::pictures, frame, frame_command(frame, pixels_, wish_.channels));
   }
 
-  /// A frame of few samples, filtered with those around it. The window ends at the animation's ends.
+  /// A frame with the halves of its samples, filtered alone or with those around it. The window ends at the animation's ends.
   std::string filtered_picture(int frame) {
-    const int samples = wish_.quality == Quality::draft ? 1 : 2;
-    std::ostringstream pixels;
-    pixels << "--spp " << samples << " --pixel-error " << wish_.pixel_error << " --for-filter --seed-mode frame --compression none";
+    // Frames around it must have noise of their own.
+    const std::string pixels = pixels_ + (wish_.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
+    std::string channels = std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish_.filter > 1 ? ",motion" : "");
+    std::istringstream asked(wish_.channels);
+    for (std::string name; std::getline(asked, name, ',');)
+      if (("," + channels + ",").find("," + name + ",") == std::string::npos) channels += "," + name;
     Command c;
     std::size_t position = 0;
     for (int f = frame - wish_.filter / 2; f <= frame + wish_.filter / 2; ++f) {
       if (f != clamped(f)) continue;
       const int shown = state(f).picture;
-      const std::string raw = add(stage::raw, shown, frame_command(shown, pixels.str(), "RGBA,layers,Z,N,id,albedo,motion,coverage,samples"));
+      const std::string raw = add(stage::raw, shown, frame_command(shown, pixels, channels));
       if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
       if (f == frame) position = c.inputs.size();
     }
@@ -482,8 +485,8 @@ Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, 
     throw InputError("METHOD=walkthrough: the scene has media, which warping between keys does not know; use METHOD=frames");
   if (!plan.media && !(wish.update.empty() && wish.refine.empty()))
     throw InputError("UPDATE and REFINE are for maps of scenes with media; this scene has none");
-  if (wish.filter > 0 && wish.method != FrameMethod::frames)
-    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=" + kFrameMethods[std::size_t(wish.method)] + ": one or the other; leave METHOD out");
+  if (wish.filter > 0 && wish.method == FrameMethod::walkthrough)
+    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=walkthrough: keys are not filtered; use one or the other");
   return Builder(plan, wish, tool_hash, majorants).build();
 }
 

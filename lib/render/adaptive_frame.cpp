@@ -53,6 +53,7 @@ class AdaptiveFrame {
   void take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count);
   void put_together();
   void spread();
+  void keep_confirmed(std::size_t pixel, const Layers& before);
   void reach_seen_error();
   void finish();
   bool shown(std::size_t pixel) const { return options_.mask.empty() || options_.mask[pixel]; }
@@ -147,7 +148,20 @@ void AdaptiveFrame::spread() {
   for (const RayCounts& counts : rays) frame_.rays += counts;
   samples.further_of = further_of;
   samples.further = further;
+  std::vector<Layers> before;
+  for (const std::size_t pixel : judged) before.push_back(pixels[pixel]);
   frame_.spread = spread_outliers(samples, pixels);
+  for (std::size_t i = 0; i < judged.size(); ++i) keep_confirmed(judged[i], before[i]);
+}
+
+/// A claim that kJudges samples have confirmed is no noise, though only one half of the pixel's samples may have met it: in its layer both halves become their
+/// mean, so that a filter which goes by their difference lets it stand.
+void AdaptiveFrame::keep_confirmed(std::size_t pixel, const Layers& before) {
+  SampleHalves* const halves = frame_.mean.halves_of(pixel);
+  if (!halves) return;
+  const BrightestSamples& claims = brightest_[pixel];
+  const BrightestSample& claim = std::max({claims.own, claims.lit, claims.onward}, [](const auto& a, const auto& b) { return a.brightest < b.brightest; });
+  if (channel_sum(frame_.mean.pixels[pixel][claim.layer]) >= channel_sum(before[claim.layer])) halves->join(claim.layer);
 }
 
 /// Noise is measured after each pass, and the next one is as large as what is left asks for. Errors fall as

@@ -47,6 +47,17 @@ void SampleHalves::add(int h, const PathParts& sample, const PathEffort& effort)
   half[h].onward.add(sample.onward, float(effort.onward));
 }
 
+void SampleHalves::join(Layer layer) {
+  const std::size_t l = std::size_t(layer);
+  for (Sum Half::*part : {&Half::own, &Half::lit, &Half::onward}) {
+    Sum &a = half[0].*part, &b = half[1].*part;
+    if (!(a.count + b.count > 0)) continue;
+    const Rgb mean = (a.radiance.value[l] + b.radiance.value[l]) * (1 / (a.count + b.count));
+    a.radiance.value[l] = mean * a.count;
+    b.radiance.value[l] = mean * b.count;
+  }
+}
+
 SampleHalves& SampleHalves::operator+=(const SampleHalves& more) {
   for (int h = 0; h < 2; ++h) {
     const auto other = parts_of(more.half[h]);

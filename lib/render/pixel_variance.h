@@ -28,6 +28,8 @@ struct SampleHalves {
   /// A sample of half h, 0 or 1.
   void add(int h, const PathParts& sample, const PathEffort& effort);
   SampleHalves& operator+=(const SampleHalves& more);
+  /// Gives both halves their common mean in a layer.
+  void join(Layer layer);
   float samples() const { return half[0].own.count + half[1].own.count; }
   /// Mean radiance of layer l over half h [W/m^2/sr]; of a part without samples in this half 0.
   Rgb mean(int h, std::size_t l) const;

@@ -191,7 +191,7 @@ def large(bench, _):
         ratio = path_cpu * path_mse / (cpu * rmse**2) if rmse > 0 else math.inf
         met = met and ratio >= 100
         rows.append([name, quantity(cpu), f"{rmse:.5f}", f"{percent(bias)} +- {percent(bias_error)}", quantity(path_cpu),
-                     f"{math.sqrt(max(0, path_mse)):.5f}", quantity(path_cpu * path_mse / rmse**2), f"{ratio:.0f}x"])
+                     f"{math.sqrt(max(0, path_mse)):.5f}", quantity(path_cpu * path_mse / rmse**2) if rmse > 0 else "-", f"{ratio:.0f}x"])
     return figure("960x540 against our path tracer", "at equal RMSE at least 100x less CPU",
                   ["scene", "CPU s", "RMSE", "bias", f"path tracing, {samples} samples: CPU s", "RMSE",
                    "CPU s at our RMSE, by 1/sqrt", "ratio"], rows, None if bench.tiny else met,

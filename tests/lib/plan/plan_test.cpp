@@ -96,6 +96,7 @@ Numbers pictures(const Plan& plan) {
 
 /// The graph of a plan whose segments all have these decisions.
 Graph graph_of(Plan plan, const Decisions& decisions, Wish wish = {}, const std::string& tool_version = "1") {
+  if (wish.filter == Wish::kAutoFilter) wish.filter = 0;
   for (PlannedSegment& segment : plan.segments) segment.decisions = decisions;
   return make_graph(plan, with_preset(wish), [&](const std::string& tool) { return tool + tool_version; }, {});
 }
