@@ -71,12 +71,15 @@ walked/%.exr:
 
 # A frame shows a picture; shown/FRAME-KEY says which. Frames that show the same are copies of one.
 picture = $(filter-out shown/%,$|)
-show = rm -f shown/$1-??????????; cp --reflink=auto $(picture) frames/.$1.$$$$ && mv -f frames/.$1.$$$$ frames/$1.exr && touch $2
+show = cp --reflink=auto $(picture) frames/.$1.$$$$ && $(publish) 'rm -f shown/$1-??????????; mv -f frames/.'$1.$$$$' frames/$1.exr && touch $2'
+# Two makes that publish other pictures of a frame: one after the other, so that the key is that of what lies there.
+publish = $(if $(shell command -v flock),flock shown/.lock) sh -c
 # To look at, at one exposure for the whole sequence: the one that suits the first frame.
 shown/exposure-%:
 	$(quiet)$(RUN) "$$BIN"/tempolux-info $| --json | sed -n 's/.*"auto_exposure_stops": *\([^,]*\),*$$/\1/p' | grep . > $@.$$$$ && mv -f $@.$$$$ $@
 exposure = --exposure "$$(cat $(filter shown/exposure-%,$|))"
-preview = rm -f shown/$1-*.png; $(RUN) "$$BIN"/tempolux-info --png frames/$1.png $(exposure) $(picture) && touch $2
+preview = $(RUN) "$$BIN"/tempolux-info --png frames/.$1.$$$$.png $(exposure) $(picture) && \
+  $(publish) 'rm -f shown/$1-*.png; mv -f frames/.'$1.$$$$'.png frames/$1.png && touch $2'
 sheet = rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && touch $1
 # A walkthrough's keys have a border in the sheet; its log says where keys were placed and why.
 marks = $(if $(log),$$(sh "$$PIPELINES/walkthrough.sh" marks))
