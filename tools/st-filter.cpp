@@ -204,7 +204,7 @@ void filter_range(tools::Tool& tool, const Options& options) {
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "mesh") return tools::filter_mesh(argc - 1, argv + 1);
-  tools::Tool tool("st-filter", "Filter frames in space and along the pixel flow, those with halves where the halves prove that it pays.", argc, argv);
+  tools::Tool tool("st-filter", "Filter frames in space and along the pixel flow; by halves of their samples, where that pays.", argc, argv);
   Options options;
   CLI::App& app = tool.app();
   app.add_option("input", options.frames, "frames in the order of time, EXR, or with --frames a pattern such as f.####.exr")
