@@ -109,7 +109,7 @@ def animation(bench, _):
     all_cpu, _ = spent(bench, out, SCENE=scene.resolve(), FRAMES=frames, SIZE=size)
     stages = list(pipeline.cpu_of(out).values())
     pictures = len(pipeline.plan_of(out)["pictures"])
-    samples = mean(stats["results"]["samples_per_pixel"] for stats in pipeline.stats_of(out, ("frames",)))
+    samples = mean(stats["results"]["samples_per_pixel"] for stats in pipeline.stats_of(out, ("frames",)) if "samples_per_pixel" in stats["results"])
     shutil.rmtree(out)
     rows = [[*map(quantity, stages), quantity(all_cpu - sum(stages)), quantity(all_cpu), quantity(all_cpu / pictures), quantity(bench.normalised(all_cpu))]]
     return figure(title, asked, header, rows, None if bench.tiny else bench.normalised(all_cpu) < 150,

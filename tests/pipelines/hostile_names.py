@@ -22,6 +22,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import walk_scenes                                                                   # noqa: E402
 
+# The make that runs the tests is no part of those started here.
+for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
+    os.environ.pop(name, None)
+
 NAMES = {
     # plain names with what a keyboard has
     "a blank": "oak tree", "two blanks": "oak  tree", "a blank first": " oak", "a blank last": "oak ", "a quote": "it's", "double quotes": 'a"b"c',

@@ -30,6 +30,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import walk_scenes                                                                   # noqa: E402
 
+# The make that runs the tests is no part of those started here.
+for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
+    os.environ.pop(name, None)
+
 # What every run is given: so little of everything that a run takes half a processor second.
 SMALL = {"PHOTONS": "4k", "RAYS": "30", "ERROR": "0.05"}
 # The values that a variable takes; the first is what a walk starts with. "" leaves the variable out.

@@ -18,6 +18,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+# The make that runs the tests is no part of those started here.
+for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
+    os.environ.pop(name, None)
+
 CASES = Path("../shared/scenes/made/cases")
 if not CASES.is_dir():
     CASES = Path(os.environ.get("TEMPOLUX_SCENES", "/nowhere")) / "made" / "cases"

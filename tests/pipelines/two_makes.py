@@ -24,6 +24,10 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import random_walk                                                                   # noqa: E402
 
+# The make that runs the tests is no part of those started here.
+for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
+    os.environ.pop(name, None)
+
 CASES = {"frames": ("box", {"QUALITY": "final", "MOVING": "light"}), "time": ("box", {"QUALITY": "final", "MOVING": "time"}),
          "filter": ("box", {"FILTER": "3"}), "walkthrough": ("lamp", {"METHOD": "walkthrough"})}
 
