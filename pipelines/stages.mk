@@ -52,13 +52,14 @@ textures/%.meshirrad:
 lights/%.lightgrid:
 	$(run)/frame-render $(seen) -o $@ --stats lights/$*.json
 
-# Pixels. raw: few samples, for the filter; keys: for warping; smoky: with smoke put in.
+# Pixels. raw: samples in halves, for the filter, removed when a frame that is filtered alone has been; keys: for warping; smoky: with smoke put in.
 pictures/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats pictures/$*.json
 raw/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats raw/$*.json
 filtered/%.exr:
-	$(run)/st-filter $(words) -o $@ --stats filtered/$*.json
+	$(quiet)test -f $@ || { $(say)$(RUN) "$$BIN"/st-filter $(words) -o $@ --stats filtered/$*.json; } || test -f $@
+	$(quiet)rm -f $(filter $(passing),$|)
 smoky/%.exr:
 	$(run)/volume-compose $(seen) -o $@ --stats smoky/$*.json
 keys/%.exr:

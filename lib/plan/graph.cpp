@@ -82,7 +82,7 @@ class Builder {
     for (const std::string& part : {std::string(stage.name), tool_hash_(std::string(stage.tool)), command.words, command.content, wish_.common})
       hasher.add(std::string_view(part));
     const std::string stem = std::string(stage.folder) + "/" + frames + "-" + hasher.hex().substr(0, kKeyDigits);
-    GraphFile file{stem + std::string(stage.extension), {}, std::string(stage.name), command.words, command.inputs};
+    GraphFile file{stem + std::string(stage.extension), {}, std::string(stage.name), command.words, false, command.inputs};
     for (const std::string& extension : beside_extensions) file.beside.push_back(stem + extension);
     if (known_.insert(file.name).second) graph_.files.push_back(file);
     return file.name;
@@ -356,6 +356,8 @@ class Builder {
       if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
       if (f == frame) position = c.inputs.size();
     }
+    if (wish_.filter == 1)
+      for (GraphFile& file : graph_.files) file.passing |= file.name == c.inputs.front();
     c.option("--position " + std::to_string(position) + " --channels " + wish_.channels);
     return add(stage::filtered, frame, c);
   }

@@ -21,6 +21,7 @@ struct GraphFile {
   std::vector<std::string> beside;   ///< further files that the same command writes
   std::string stage;                 ///< StageInfo::name
   std::string words;                 ///< options of the command, inputs included
+  bool passing = false;              ///< read once and large: removed by the command that reads it
   std::vector<std::string> inputs;   ///< names of files that must exist before
 };
 
