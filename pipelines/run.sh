@@ -22,7 +22,6 @@ if [ "$goal" = tidy ]; then exec "$BIN/scene-plan" --tidy "$OUT"; fi
 set -- "$SCENE" --frames "$FRAMES" --size "$SIZE" --quality "$QUALITY" --channels "$CHANNELS" --camera "$CAMERA" \
   --method "$METHOD" --filter "$FILTER" --indirect "$INDIRECT" --moving "$MOVING" --split "$SPLIT" --strategy "$STRATEGY" \
   --key-distance "$KEY_DISTANCE" --report "$(echo "$REPORT_FRAMES" | tr " " ,)" --reference-samples "$PATHS"
-wish() { [ -z "$2" ] || words="$words $1"; }
 for pair in update:UPDATE refine:REFINE photons:PHOTONS rays:RAYS pixel-error:ERROR halve-above:THRESHOLD light-units:LIGHT_UNITS \
   environment-color:SKY environment:ENVIRONMENT volume:VOLUME point-words:POINTS record-words:CACHE pixel-words:PIXELS \
   smoke-words:SMOKE texture-words:TEXTURES; do

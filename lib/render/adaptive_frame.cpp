@@ -154,8 +154,8 @@ void AdaptiveFrame::spread() {
   for (std::size_t i = 0; i < judged.size(); ++i) keep_confirmed(judged[i], before[i]);
 }
 
-/// A claim that kJudges samples have confirmed is no noise, though only one half of the pixel's samples may have met it: in its layer both halves become their
-/// mean, so that a filter which goes by their difference lets it stand.
+/// Gives both halves of a pixel their mean in the layer whose claim kJudges samples have confirmed. One half alone may have met the thing;
+/// a filter that takes the difference of the halves for noise would then remove the thing.
 void AdaptiveFrame::keep_confirmed(std::size_t pixel, const Layers& before) {
   SampleHalves* const halves = frame_.mean.halves_of(pixel);
   if (!halves) return;
