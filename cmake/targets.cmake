@@ -1,5 +1,6 @@
 # The compile options everything shares, and one function per kind of target.
 
+# A target whose property TEMPOLUX_COLD is true holds no loops that take time: it is optimised less, which halves what it takes to compile.
 add_library(tempolux_options INTERFACE)
 target_include_directories(tempolux_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(tempolux_options INTERFACE
@@ -9,7 +10,7 @@ target_compile_options(tempolux_options INTERFACE
   -ffp-contract=off            # the same bits on every machine of one instruction set
   -fno-math-errno -fno-trapping-math
   $<IF:$<BOOL:${TEMPOLUX_NATIVE}>,-march=native,-march=x86-64-v3>
-  $<$<CONFIG:Release>:-O3>)
+  $<$<CONFIG:Release>:$<IF:$<BOOL:$<TARGET_PROPERTY:TEMPOLUX_COLD>>,-O1,-O3>>)
 target_compile_definitions(tempolux_options INTERFACE TEMPOLUX_VERSION="${PROJECT_VERSION}")
 if(TEMPOLUX_SANITIZE)
   target_compile_options(tempolux_options INTERFACE -fsanitize=${TEMPOLUX_SANITIZE}
@@ -21,13 +22,17 @@ if(TEMPOLUX_FUZZ)
 endif()
 set(CMAKE_EXE_LINKER_FLAGS "${CMAKE_EXE_LINKER_FLAGS} -Wl,--as-needed")
 
-# tempolux_library(NAME DEPENDS lib...): all .cpp of this folder's NAME/ as library tempolux_NAME.
+# tempolux_library(NAME [APART] DEPENDS lib...): all .cpp of this folder's NAME/ as library tempolux_NAME. APART: never compiled together
+# (TEMPOLUX_UNITY), as names of its anonymous namespaces clash.
 function(tempolux_library name)
-  cmake_parse_arguments(ARG "" "" "DEPENDS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "APART" "" "DEPENDS;PRIVATE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   if(sources)
     add_library(tempolux_${name} STATIC ${sources})
     set_target_properties(tempolux_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    if(TEMPOLUX_UNITY AND NOT ARG_APART)
+      set_target_properties(tempolux_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    endif()
     target_link_libraries(tempolux_${name} PUBLIC tempolux_options ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE})
   else()
     add_library(tempolux_${name} INTERFACE)
@@ -44,7 +49,7 @@ function(tempolux_tool name)
   add_executable(${name} ${name}.cpp)
   target_link_libraries(${name} PRIVATE tempolux_options tempolux_tool_main ${ARG_DEPENDS})
   target_precompile_headers(${name} REUSE_FROM tempolux_tool_main)
-  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+  set_target_properties(${name} PROPERTIES TEMPOLUX_COLD ON RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
   add_dependencies(${name} tempolux-images tempolux-decode)   # opened when a scene has images, started when it is packed
   if(name STREQUAL "aqm-compare")
     add_dependencies(${name} tempolux-fourier)   # opened by the model of vision

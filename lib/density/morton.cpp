@@ -10,7 +10,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kChunk = 1 << 14;
+constexpr std::size_t kCodeChunk = 1 << 14;
 
 /// Where the bits of each axis go in the code, and how coordinates become cells.
 struct CurveLayout {
@@ -76,7 +76,7 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points) {
   const CurveLayout layout(box.empty() ? Box3{{}, {}} : box);
 
   std::vector<std::uint64_t> items(points.size());
-  parallel_chunks(points.size(), kChunk, [&](std::size_t first, std::size_t last) {
+  parallel_chunks(points.size(), kCodeChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) items[i] = std::uint64_t(layout.code(points[i])) << 32 | i;
   });
   sort_by_code(items);

@@ -18,25 +18,25 @@ namespace {
 
 /// What libpng's callbacks see. libpng reports an error by calling one of them, which must not return: a jump
 /// back to the frame that set it. No object with a destructor may live in the frames jumped over.
-struct Session {
+struct PngSession {
   std::jmp_buf back;
   char message[256] = "";
   const std::uint8_t* data = nullptr;  // reading: what is left
   std::size_t left = 0;
   std::string* out = nullptr;  // writing
 
-  static Session& of(png_structp png) { return *static_cast<Session*>(png_get_io_ptr(png)); }
+  static PngSession& of(png_structp png) { return *static_cast<PngSession*>(png_get_io_ptr(png)); }
 };
 
 [[noreturn]] void on_error(png_structp png, png_const_charp text) {
-  auto& session = *static_cast<Session*>(png_get_error_ptr(png));
+  auto& session = *static_cast<PngSession*>(png_get_error_ptr(png));
   std::strncpy(session.message, text, sizeof session.message - 1);
   std::longjmp(session.back, 1);
 }
 void on_warning(png_structp, png_const_charp) {}
 
 void on_read(png_structp png, png_bytep to, std::size_t count) {
-  Session& session = Session::of(png);
+  PngSession& session = PngSession::of(png);
   if (count > session.left) png_error(png, "the file ends too early");
   std::memcpy(to, session.data, count);
   session.data += count;
@@ -44,7 +44,7 @@ void on_read(png_structp png, png_bytep to, std::size_t count) {
 }
 
 void on_write(png_structp png, png_bytep from, std::size_t count) {
-  Session& session = Session::of(png);
+  PngSession& session = PngSession::of(png);
   session.out->append(reinterpret_cast<const char*>(from), count);
 }
 void on_flush(png_structp) {}
@@ -59,7 +59,7 @@ struct Raw {
 };
 
 /// Reads header and transformations into `raw`; false with session.message set on error.
-bool start_reading(Session& session, png_structp png, png_infop info, Raw& raw) {
+bool start_reading(PngSession& session, png_structp png, png_infop info, Raw& raw) {
   if (setjmp(session.back)) return false;
   png_set_read_fn(png, &session, on_read);
   png_set_user_limits(png, 65536, 65536);
@@ -78,7 +78,7 @@ bool start_reading(Session& session, png_structp png, png_infop info, Raw& raw) 
   return true;
 }
 
-bool read_rows(Session& session, png_structp png, png_bytepp rows) {
+bool read_rows(PngSession& session, png_structp png, png_bytepp rows) {
   if (setjmp(session.back)) return false;
   png_read_image(png, rows);
   png_read_end(png, nullptr);
@@ -86,7 +86,7 @@ bool read_rows(Session& session, png_structp png, png_bytepp rows) {
 }
 
 Raw read_raw(std::span<const unsigned char> bytes, const std::string& place, std::uint64_t max_pixels) {
-  Session session;
+  PngSession session;
   session.data = bytes.data();
   session.left = bytes.size();
   const auto fail = [&](const std::string& what) { throw InputError(place + ": PNG: " + what); };
@@ -137,7 +137,7 @@ std::vector<float> linear_table(const Raw& raw, std::string& transfer) {
 
 constexpr int kDeflateLevel = 3;   ///< a quarter of level 6's time, 4 % more bytes of rendered frames
 
-bool write_all(Session& session, png_structp png, png_infop info, const Picture& picture) {
+bool write_all(PngSession& session, png_structp png, png_infop info, const Picture& picture) {
   if (setjmp(session.back)) return false;
   png_set_write_fn(png, &session, on_write, on_flush);
   png_set_IHDR(png, info, png_uint_32(picture.width), png_uint_32(picture.height), 8, PNG_COLOR_TYPE_RGB,
@@ -195,7 +195,7 @@ CodedPixels decode_png(std::span<const unsigned char> bytes, const std::string& 
 
 void save_png(const std::string& path, const Picture& picture) {
   std::string bytes;
-  Session session;
+  PngSession session;
   session.out = &bytes;
   struct Handle {
     png_structp png = nullptr;

@@ -98,14 +98,14 @@ double stops_of(const Content& content) {
 
 std::uint8_t to_byte(float unit) { return std::uint8_t(std::lround(255 * std::clamp(unit, 0.0f, 1.0f))); }
 
-using Pixel = std::array<float, 3>;  // sRGB-encoded, to be clipped to [0, 1]
+using Encoded = std::array<float, 3>;  // sRGB-encoded, to be clipped to [0, 1]
 
 /// Calls shade(i) for every pixel; black where it is not finite.
 template <class Shade>
 Picture shade_pixels(const Image& image, Shade shade) {
   Picture picture{image.width, image.height, std::vector<std::uint8_t>(image.pixel_count() * 3)};
   for (std::size_t i = 0; i < image.pixel_count(); ++i) {
-    const Pixel pixel = shade(i);
+    const Encoded pixel = shade(i);
     const bool finite = std::isfinite(pixel[0]) && std::isfinite(pixel[1]) && std::isfinite(pixel[2]);
     for (std::size_t c = 0; c < 3; ++c) picture.rgb[3 * i + c] = finite ? to_byte(pixel[c]) : 0;
   }
@@ -116,12 +116,12 @@ Picture colour_picture(const Image& image, const Planes& planes, float scale) {
   if (any_negative(planes)) {
     return shade_pixels(image, [&](std::size_t i) {
       const float d = largest_component(planes, i), t = linear_to_srgb(scale * std::abs(d));
-      const Pixel end = d > 0 ? Pixel{1, 0.2f, 0} : Pixel{0, 0.25f, 1};
-      return Pixel{0.5f + t * (end[0] - 0.5f), 0.5f + t * (end[1] - 0.5f), 0.5f + t * (end[2] - 0.5f)};
+      const Encoded end = d > 0 ? Encoded{1, 0.2f, 0} : Encoded{0, 0.25f, 1};
+      return Encoded{0.5f + t * (end[0] - 0.5f), 0.5f + t * (end[1] - 0.5f), 0.5f + t * (end[2] - 0.5f)};
     });
   }
   return shade_pixels(image, [&](std::size_t i) {
-    Pixel pixel;
+    Encoded pixel;
     for (std::size_t c = 0; c < 3; ++c) {
       const float value = (*planes[planes.size() == 3 ? c : 0])[i];
       pixel[c] = std::isfinite(value) ? linear_to_srgb(scale * value) : NAN;
@@ -136,10 +136,10 @@ Picture depth_picture(const Image& image, const std::vector<float>& depth) {
   std::copy_if(depth.begin(), depth.end(), std::back_inserter(values), something);
   const float near = percentile(values, 0.01), far = percentile(values, 0.99);
   return shade_pixels(image, [&](std::size_t i) {
-    if (!something(depth[i])) return Pixel{0, 0, 0};
+    if (!something(depth[i])) return Encoded{0, 0, 0};
     const float t = far > near ? std::clamp((depth[i] - near) / (far - near), 0.0f, 1.0f) : 0.0f;
     const float grey = 1 - 0.9f * t;
-    return Pixel{grey, grey, grey};
+    return Encoded{grey, grey, grey};
   });
 }
 
@@ -156,7 +156,7 @@ Picture vector_picture(const Image& image, const Planes& planes) {
     if (!(high[c] > low[c])) low[c] -= 1, high[c] += 1;
   }
   return shade_pixels(image, [&](std::size_t i) {
-    Pixel pixel;
+    Encoded pixel;
     for (std::size_t c = 0; c < 3; ++c) pixel[c] = ((*planes[c])[i] - low[c]) / (high[c] - low[c]);
     return pixel;
   });
@@ -164,10 +164,10 @@ Picture vector_picture(const Image& image, const Planes& planes) {
 
 Picture id_picture(const Image& image, const std::vector<std::uint32_t>& ids) {
   return shade_pixels(image, [&](std::size_t i) {
-    if (ids[i] == kNothingId) return Pixel{0, 0, 0};
+    if (ids[i] == kNothingId) return Encoded{0, 0, 0};
     const std::uint64_t bits = mix64(ids[i] + 1ull);
     const auto part = [&](int shift) { return 0.25f + 0.75f * float(bits >> shift & 0xff) / 255; };
-    return Pixel{part(0), part(8), part(16)};
+    return Encoded{part(0), part(8), part(16)};
   });
 }
 
@@ -191,7 +191,7 @@ Picture make_picture(const Image& image, const PreviewOptions& options) {
       return id_picture(image, *content.ids);
     case Content::Kind::motion:
       return shade_pixels(image, [&](std::size_t i) {
-        return Pixel{0.5f + 0.5f * scale * (*planes[0])[i], 0.5f + 0.5f * scale * (*planes[1])[i], 0.5f};
+        return Encoded{0.5f + 0.5f * scale * (*planes[0])[i], 0.5f + 0.5f * scale * (*planes[1])[i], 0.5f};
       });
     case Content::Kind::colour:
       break;

@@ -12,7 +12,7 @@ namespace tempolux {
 
 inline constexpr std::size_t kFirstBuckets = 256;
 inline constexpr float kOffPlane = 0.05f;   ///< of the radius: how far off the plane between the normals a point may be
-inline constexpr double kRounding = 1e-6;   ///< distances are of float: a sphere may reach this much farther
+inline constexpr double kSphereRounding = 1e-6;   ///< distances are of float: a sphere may reach this much farther
 
 /// One cell of a level.
 struct Cell {
@@ -28,7 +28,7 @@ inline Cell cell_at(Vec3d local, double inverse) {
 /// The cells that a validity sphere meets.
 template <class Body>
 void for_each_cell(Vec3d local, float radius, double inverse_cell, const Body& body) {
-  const double reach = double(radius) * (1 + kRounding);
+  const double reach = double(radius) * (1 + kSphereRounding);
   const Cell low = cell_at(local - Vec3d{1, 1, 1} * reach, inverse_cell);
   const Cell high = cell_at(local + Vec3d{1, 1, 1} * reach, inverse_cell);
   const double width = 1 / inverse_cell;

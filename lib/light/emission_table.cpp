@@ -1,9 +1,9 @@
 // The emission table of a segment, and the slots it stands for.
 #include <algorithm>
-#include <numbers>
 #include <vector>
 
 #include "formats/hash.h"
+#include "lib/core/pi.h"
 #include "lib/core/check.h"
 #include "lib/light/lights.h"
 #include "lib/light/punctual.h"
@@ -12,7 +12,6 @@
 namespace tempolux {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr double kLeastShare = 0.2;  ///< of the environment, and of all other lights
 
 double emission_weight(Rgbd flux) { return std::max(luminance(flux), 0.05 * max_component(flux)); }

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "lib/core/parallel.h"
+#include "lib/core/pi.h"
 #include "lib/light/linear_density.h"
 
 namespace tempolux {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr double kUnits = 4294967295.0;  ///< what cells of a row share, less one each
 
 /// The u for which sample_linear gives x.

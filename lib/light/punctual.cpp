@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "lib/core/frame.h"
+#include "lib/core/pi.h"
 #include "lib/core/sampling.h"
 
 namespace tempolux {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 
 double one_minus_cos(double angle) {
   const double s = std::sin(angle / 2);

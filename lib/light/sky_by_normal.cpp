@@ -9,9 +9,9 @@ namespace tempolux {
 namespace {
 
 constexpr std::uint32_t kInside = 4;       ///< places along either side of a part at which the cosine is looked at
-constexpr double kLeast = 0.05;            ///< of the mean share, for parts that seem to be below
+constexpr double kLeastOfMean = 0.05;            ///< of the mean share, for parts that seem to be below
 /// A bin of normals is about 1/8 wide: what is half of that below the horizon of its middle is above it for some.
-constexpr double kSlack = 1.0 / 16;
+constexpr double kAroundHorizon = 1.0 / 16;
 
 /// The octahedral map [Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 3(2), 2014].
 std::uint32_t bin_of(Vec3 n) {
@@ -59,10 +59,10 @@ SkyByNormal::SkyByNormal(const EnvironmentLight& environment) : environment_(env
       double sum = 0;
       for (std::uint32_t part = 0; part < kParts; ++part) {
         for (std::uint32_t i = 0; i < kInside * kInside; ++i)
-          weight[part] += std::max(0.0, double(dot(directions[part * kInside * kInside + i], normal)) + kSlack);
+          weight[part] += std::max(0.0, double(dot(directions[part * kInside * kInside + i], normal)) + kAroundHorizon);
         sum += weight[part];
       }
-      const double least = sum > 0 ? kLeast * sum / kParts : 1;
+      const double least = sum > 0 ? kLeastOfMean * sum / kParts : 1;
       double all = 0, end = 0;
       for (double& w : weight) all += w += least;
       Ends& ends = ends_[bin];

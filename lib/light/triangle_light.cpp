@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "lib/core/parallel.h"
+#include "lib/core/pi.h"
 #include "lib/core/sampling.h"
 #include "lib/light/spherical_triangle.h"
 #include "lib/scene/texture_lookup.h"
@@ -12,7 +12,6 @@
 namespace tempolux {
 namespace {
 
-constexpr double kPiD = std::numbers::pi;
 constexpr float kOffsetScale = 0x1p-20f;  // of the largest coordinate, as for rays that leave surfaces
 
 /// The triangle as seen from a point.

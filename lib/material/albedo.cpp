@@ -8,25 +8,23 @@
 namespace tempolux {
 namespace {
 
-using namespace albedo_table;
-
-constexpr float kFirstRoot = 0.14142136f;  // kMinAlpha^(1/4)
+constexpr float kFirstRoot = 0.14142136f;  // albedo_table::kMinAlpha^(1/4)
 
 }  // namespace
 
-GgxAlbedo::GgxAlbedo(float alpha) : alpha_(std::clamp(alpha, float(kMinAlpha), 1.0f)) {
+GgxAlbedo::GgxAlbedo(float alpha) : alpha_(std::clamp(alpha, float(albedo_table::kMinAlpha), 1.0f)) {
   const float position = (std::sqrt(std::sqrt(alpha_)) - kFirstRoot) / (1 - kFirstRoot);
-  row_ = cubic_weights(std::clamp(position, 0.0f, 1.0f), kRows, weight_);
+  row_ = cubic_weights(std::clamp(position, 0.0f, 1.0f), albedo_table::kRows, weight_);
 }
 
 AlbedoPair GgxAlbedo::at(float cos_theta) const {
   const float cos = std::clamp(cos_theta, 0.0f, 1.0f), sum = cos + alpha_;
   float across[4];
-  const int column = cubic_weights(std::sqrt(std::min(1.0f, cos * (1 + alpha_) / sum)), kColumns, across);
+  const int column = cubic_weights(std::sqrt(std::min(1.0f, cos * (1 + alpha_) / sum)), albedo_table::kColumns, across);
   float total = 0, m = 0;
   for (int r = 0; r < 4; ++r) {
-    const float* e = &kTotal[row_ + r][column];
-    const float* c = &kCosine[row_ + r][column];
+    const float* e = &albedo_table::kTotal[row_ + r][column];
+    const float* c = &albedo_table::kCosine[row_ + r][column];
     total += weight_[r] * (across[0] * e[0] + across[1] * e[1] + across[2] * e[2] + across[3] * e[3]);
     m += weight_[r] * (across[0] * c[0] + across[1] * c[1] + across[2] * c[2] + across[3] * c[3]);
   }
@@ -38,8 +36,8 @@ AlbedoPair GgxAlbedo::at(float cos_theta) const {
 AlbedoPair GgxAlbedo::mean() const {
   AlbedoPair sum;
   for (int r = 0; r < 4; ++r) {
-    sum.a += weight_[r] * kMeanA[row_ + r];
-    sum.b += weight_[r] * kMeanB[row_ + r];
+    sum.a += weight_[r] * albedo_table::kMeanA[row_ + r];
+    sum.b += weight_[r] * albedo_table::kMeanB[row_ + r];
   }
   return sum;
 }

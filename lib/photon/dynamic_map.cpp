@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "lib/core/parallel.h"
+#include "lib/photon/photon_ledger.h"
 
 namespace tempolux {
 namespace {
@@ -14,8 +15,6 @@ struct Piece {
   PhotonBatch batch;
   std::string bytes;
 };
-
-std::array<double, 3> to_array(const Rgbd& c) { return {c.r, c.g, c.b}; }
 
 /// Where each path's photons are in a batch: of path i the numbers from first[i] to first[i + 1], by bounce.
 struct ByPath {
@@ -109,9 +108,9 @@ PhotonMapResult write_dynamic_map(const PhotonTracer& standing, const PhotonTrac
         absorbed += piece.batch.absorbed;
         if (progress) progress(double(i + 1) / double(borders.size() - 1));
       });
-  result.totals.emitted_flux = to_array(emitted);
-  result.totals.escaped_flux = to_array(escaped);
-  result.totals.absorbed_flux = to_array(absorbed);
+  result.totals.emitted_flux = as_array(emitted);
+  result.totals.escaped_flux = as_array(escaped);
+  result.totals.absorbed_flux = as_array(absorbed);
   result.totals = writer.finish(result.totals);
   return result;
 }

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 #include "formats/photons/photons.h"
 #include "lib/photon/photon_map.h"
 
 namespace tempolux {
+
+inline std::array<double, 3> as_array(const Rgbd& c) { return {c.r, c.g, c.b}; }
 
 /// Adds a batch to its group's entry.
 inline void add_to_ledger(const PhotonBatch& batch, std::int32_t frame, formats::GroupFlux& group) {

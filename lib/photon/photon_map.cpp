@@ -17,8 +17,6 @@ struct EncodedBatch {
   std::string bytes;
 };
 
-std::array<double, 3> to_array(const Rgbd& c) { return {c.r, c.g, c.b}; }
-
 }  // namespace
 
 PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions& options,
@@ -52,10 +50,10 @@ PhotonMapResult write_photon_map(const PhotonTracer& tracer, const PhotonOptions
         if (!ledger.empty()) add_to_ledger(item.batch, header.identity.first_frame, ledger[item.batch.block.group]);
         if (progress) progress(double(i + 1) / double(tracer.batch_count()));
       });
-  result.totals.emitted_flux = to_array(emitted);
-  result.totals.escaped_flux = to_array(escaped);
+  result.totals.emitted_flux = as_array(emitted);
+  result.totals.escaped_flux = as_array(escaped);
   // What lossless walls absorb is 0 in the mean, and what roulette gives and takes may leave it below.
-  for (double& flux : result.totals.absorbed_flux = to_array(absorbed)) flux = std::max(flux, 0.0);
+  for (double& flux : result.totals.absorbed_flux = as_array(absorbed)) flux = std::max(flux, 0.0);
   for (formats::GroupFlux& group : ledger) close_ledger(group);
   writer.finish(result.totals, ledger);
   return result;
