@@ -22,11 +22,11 @@
 #include "lib/photon/dynamic_map.h"
 #include "lib/photon/photon_map.h"
 #include "lib/scene/standing.h"
-#include "tools/common/importance.h"
+#include "tools/stages/importance.h"
 #include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
-#include "tools/common/update_photons.h"
+#include "tools/stages/update_photons.h"
 
 using namespace tempolux;
 

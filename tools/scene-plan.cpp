@@ -21,9 +21,9 @@
 #include "lib/plan/estimate.h"
 #include "tools/common/option_words.h"
 #include "tools/common/percent_option.h"
-#include "tools/common/pilot.h"
-#include "tools/common/planning.h"
-#include "tools/common/tidy.h"
+#include "tools/stages/pilot.h"
+#include "tools/stages/planning.h"
+#include "tools/stages/tidy.h"
 
 using namespace tempolux;
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "formats/error.h"
-#include "tools/common/info_facts.h"
+#include "tools/info/info_facts.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
 

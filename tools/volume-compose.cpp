@@ -17,7 +17,7 @@
 #include "lib/gather/final_gather.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
-#include "tools/common/gather_input.h"
+#include "tools/stages/gather_input.h"
 #include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
