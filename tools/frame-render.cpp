@@ -22,16 +22,16 @@
 #include "lib/render/learn_lights.h"
 #include "lib/render/seen_channels.h"
 #include "lib/scene/light_units.h"
+#include "tools/common/option_words.h"
+#include "tools/common/scene_input.h"
+#include "tools/common/tool_main.h"
 #include "tools/stages/audit_input.h"
 #include "tools/stages/base_frame.h"
 #include "tools/stages/frame_account.h"
 #include "tools/stages/frame_output.h"
 #include "tools/stages/indirect_light.h"
 #include "tools/stages/light_grid_file.h"
-#include "tools/stages/localised_cache.h"
-#include "tools/common/scene_input.h"
-#include "tools/common/option_words.h"
-#include "tools/common/tool_main.h"
+#include "tools/stages/influence_options.h"
 
 using namespace tempolux;
 

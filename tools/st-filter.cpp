@@ -20,9 +20,9 @@
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
 #include "tools/common/keep_memory.h"
-#include "tools/stages/filter_mesh.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/filter_mesh.h"
 
 using namespace tempolux;
 

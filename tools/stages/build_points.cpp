@@ -6,13 +6,21 @@
 #include "lib/scene/standing.h"
 
 namespace tempolux::tools {
+namespace {
+
+GatherPoints counted(Tool& tool, GatherPoints points) {
+  tool.stats().count("points", double(points.points.size()));
+  return points;
+}
+
+}  // namespace
 
 GatherPoints points_of_photons(Tool& tool, const std::string& file, const Tracer& tracer,
                                       const Lights& lights, const PointOptions& options) {
   tool.stats().phase("read photons");
   const formats::PhotonMap map = read_photons(tool, file, tracer.frame(), LightNeeded::all);
   tool.stats().phase("points", true);
-  return make_points(tool, map, tracer, lights, options);
+  return counted(tool, make_points(map, tracer, lights, options));
 }
 
 DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights) {
@@ -21,7 +29,9 @@ DividedGatherPoints points_of_parts(Tool& tool, const CacheOptions& options, con
   const DividedPhotonMap map = read_divided_photons(tool, frame_name(options.photons, frame.frame), frame_name(options.high, frame.frame), frame,
                                                     LightNeeded::all);
   tool.stats().phase("points", true);
-  return make_divided_points(tool, map, tracer, lights, options.points_of(frame));
+  DividedGatherPoints divided = make_points(map, tracer, lights, options.points_of(frame));
+  divided.whole = counted(tool, std::move(divided.whole));
+  return divided;
 }
 
 void build_standing_points(Tool& tool, SceneInput& input, const CacheOptions& options, int number) {
@@ -36,7 +46,7 @@ void build_standing_points(Tool& tool, SceneInput& input, const CacheOptions& op
   const formats::PhotonMap map = read_photons(tool, frame_name(options.photons, number), frame,
                                                      LightNeeded::all, "static");
   tool.stats().phase("points", true);
-  const GatherPoints points = make_points(tool, map, tracer, lights, options.points_of(frame));
+  const GatherPoints points = counted(tool, make_points(map, tracer, lights, options.points_of(frame)));
   tool.stats().phase("write");
   write_points(tool, points, frame, output, std::array{frame.segment.first, frame.segment.last});
 }
@@ -63,8 +73,8 @@ void build_updated_points(Tool& tool, SceneInput& input, const CacheOptions& opt
     throw InputError(dynamic + ": of " + std::to_string(moved.header.emitted_count) + " paths, and the static map of " +
                      std::to_string(fixed.header.emitted_count) + "; trace it with the .paths file of that map");
   tool.stats().phase("points", true);
-  PointUpdateCounts counts;
-  update_points(tool, fixed, moved, whole, without, lights, options.points_of(frame), points, counts);
+  const PointUpdateCounts counts = update_points({fixed, moved}, whole, without, lights, options.points_of(frame), points);
+  points = counted(tool, std::move(points));
   tool.stats().phase("write");
   points.history = points.history + moved.header.history;
   write_points(tool, points, frame, output);

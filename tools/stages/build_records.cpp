@@ -10,9 +10,8 @@
 #include "lib/gather/bright_points.h"
 #include "lib/gather/cache_files.h"
 #include "lib/image/images_by_module.h"
-#include "lib/render/known_light.h"
+#include "lib/render/camera_records.h"
 #include "lib/scene/standing.h"
-#include "tools/stages/localised_cache.h"
 
 namespace tempolux::tools {
 namespace {
@@ -43,10 +42,6 @@ formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneF
   return header;
 }
 
-/// Of min_weight: what covers a pixel once there are records for another frame's camera. All frames are interpolated
-/// from what the first was worth; a stricter first keeps the others from adding a few everywhere.
-constexpr float kLaterWeight = 0.5f;
-
 /// By pixel of the frame, 0: nobody looks there; empty without --mask.
 std::vector<std::uint8_t> wanted_pixels(Tool& tool, const CacheOptions& options, int number) {
   if (options.mask.empty()) return {};
@@ -66,13 +61,19 @@ void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const
                      std::to_string(first.frame) + ": one cache cannot hold for both; make one for each");
 }
 
-/// What the camera sees, but for pixels that are not wanted.
-PixelViews looks_through(const Tracer& tracer, const CameraView& view, std::vector<std::uint8_t> wanted, int width) {
-  return [&tracer, &view, wanted = std::move(wanted), width](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-    seen_through(tracer, view, looks, seen);
-    for (std::size_t i = 0; i < looks.size() && !wanted.empty(); ++i)
-      if (!wanted[std::size_t(looks[i].y) * std::size_t(width) + std::size_t(looks[i].x)]) seen[i].reset();
+/// The cameras that records are placed for. `at`: the scene at a frame, or as it stands there; `first`: at the first.
+RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames, const SceneFrame& first,
+                         std::function<SceneFrame(int)> at) {
+  RecordCameras cameras{frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {}, {}, {}};
+  cameras.at = [&options, &first, at = std::move(at)](int number) {
+    SceneFrame frame = at(number);
+    check_lit_alike(options, frame, first);
+    return frame;
   };
+  cameras.wanted = [&](int number) { return wanted_pixels(tool, options, number); };
+  cameras.progress = [&](double done) { tool.progress(done); };
+  cameras.added = [&](int number, std::size_t records) { tool.stats().set("records_added." + std::to_string(number), double(records)); };
+  return cameras;
 }
 
 void count(Tool& tool, std::size_t records, const GatherCounts& counts) {
@@ -145,19 +146,7 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
     history = read_records(tool, options.records, InputRole::replaceable, first, store);
 
   tool.stats().phase("records", true);
-  GatherCounts counts;
-  const int camera = input.scene().camera_node(tool.common().camera);
-  for (int number : frames) {
-    const SceneFrame frame = state(number);
-    check_lit_alike(options, frame, first);
-    const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
-    PlacementOptions placement = options.placement;
-    if (number != frames.front()) placement.min_weight *= kLaterWeight;
-    const PixelViews views = looks_through(tracer, view, wanted_pixels(tool, options, number), options.width);
-    const std::size_t added = place_records(gather, views, options.width, options.height, placement,
-                                            store, counts, [&](double done) { tool.progress(done); });
-    tool.stats().set("records_added." + std::to_string(number), double(added));
-  }
+  const GatherCounts counts = place_for_cameras(gather, tracer, cameras_of(tool, input, options, frames, first, state), options.placement, store);
   tool.stats().phase("write");
   formats::IrradcacheHeader header = cache_header(options, first, frames, store.records(), store.least_cosine());
   if (standing) header.identity.first_frame = first.segment.first, header.identity.last_frame = first.segment.last;
@@ -202,48 +191,14 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   const FinalGather gather(tracer, lights, lookup, gathering);
 
   tool.stats().phase("records", true);
-  cache.changes = record_changes(cache.standing, maps, lookup, options.gather.seed);
-  std::vector<float> influences;
-  for (const RecordChange& change : cache.changes) influences.push_back(change.influence);
-  const InfluenceField field(cache.standing, influences, options.influence);
-  const std::vector<bool> moves = moving_objects(frame);
-  GatherCounts counts;
-  RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
-  const int camera = input.scene().camera_node(tool.common().camera);
-  for (const int f : frames) {
-    const SceneFrame other = f == number ? frame : input.at(f);
-    check_lit_alike(options, other, frame);
-    const CameraView view(other.camera(camera), other.origin, options.width, options.height);
-    const PixelViews all = looks_through(tracer, view, wanted_pixels(tool, options, f), options.width);
-    const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-      all(looks, seen);
-      for (std::optional<SeenPoint>& point : seen.first(looks.size())) {
-        if (!point || (point->surface.object < moves.size() && moves[point->surface.object])) continue;
-        if (!(field.at(point->surface.position, point->normal) > options.influence.low)) point.reset();
-      }
-    };
-    PlacementOptions placement = options.placement;
-    if (f != number) placement.min_weight *= kLaterWeight;
-    // Where E_y counts by the share f < 1, its squared error counts by f^2: f of the rays leave no more of it than all leave where f is 1.
-    const RecordSource source{[&](const SeenPoint& seen, const RecordStore::Expected& expected, std::size_t, GatherCounts& local) {
-      const bool rides = seen.surface.object < moves.size() && moves[seen.surface.object];
-      const float share = rides ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
-      IrradianceRecord record = gather.gather(seen.surface, seen.normal, local, expected.lit_share, share);
-      limit_radius(record, seen.footprint, placement);
-      gather.look_around(seen.surface, record);
-      return record;
-    }, [](std::size_t, std::size_t) {}};
-    const std::size_t added = place_records(gather, views, options.width, options.height, placement, store, counts,
-                                            [&](double done) { tool.progress(done); }, &source);
-    tool.stats().set("records_added." + std::to_string(f), double(added));
-  }
-  cache.gathered.assign(store.records().begin(), store.records().end());
+  const RecordCameras cameras = cameras_of(tool, input, options, frames, frame, [&](int f) { return input.at(f); });
+  const GatherCounts counts = update_for_cameras({gather, tracer, lookup, maps, options.influence, options.gather.seed}, cameras, options.placement, cache);
 
   tool.stats().phase("write");
   std::vector<IrradianceRecord> all = cache.standing;
   all.insert(all.end(), cache.gathered.begin(), cache.gathered.end());
   formats::IrradcacheHeader header =
-      cache_header(options, frame, frames, all, std::max(store.least_cosine(), fixed.least_cosine()));
+      cache_header(options, frame, frames, all, std::max(cache.least_cosine, fixed.least_cosine()));
   header.columns |= formats::column_influence | formats::column_update;
   header.history = cache.history + (frames.size() == 1 ? tool.history_line(number) : tool.history_line());
   formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);

@@ -6,20 +6,10 @@
 #include "formats/error.h"
 #include "lib/density/split_light.h"
 #include "lib/gather/cache_files.h"
-#include "lib/gather/high_shares.h"
 #include "lib/material/surface_material.h"
 
 namespace tempolux::tools {
 namespace {
-
-Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) {
-  return Vec3d{origin[0], origin[1], origin[2]} - frame.origin;
-}
-
-/// Is `kind` among "caustic,indirect"?
-bool holds(const std::string& kinds, const std::string& kind) {
-  return ("," + kinds + ",").find("," + kind + ",") != std::string::npos;
-}
 
 /// Light that the scene has and a file lacks is not left out without a word. `remedy`: how to make a file that has it.
 void check_kinds(Tool& tool, const std::string& file, const std::string& kinds, const std::vector<std::string>& wanted,
@@ -27,7 +17,7 @@ void check_kinds(Tool& tool, const std::string& file, const std::string& kinds, 
   const Lobes lobes = lobes_of(frame);
   if (!lobes.lambert) return;
   for (const std::string& kind : wanted) {
-    if (holds(kinds, kind)) continue;
+    if (holds_kind(kinds, kind)) continue;
     const std::string lacks = file + ": holds no " + kind + " light (its kinds: " + kinds + ")";
     if (kind != "caustic") throw InputError(lacks + ", which this scene has; " + remedy);
     if (lobes.specular)
@@ -148,62 +138,6 @@ formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, cons
   identity.moving_geometry.clear(), identity.lights.clear(), identity.materials.clear();
   check_identity(tool, file, identity, frame);
   return map;
-}
-
-GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
-                         const PointOptions& options) {
-  const SceneFrame& frame = tracer.frame();
-  const bool caustic = holds(map.header.kinds, "caustic") || !lobes_of(frame).specular;
-  PlacedPoints placed = place_points(frame, options);
-  GatherPoints result{std::move(placed.points), placed.spacing,
-                      caustic ? "direct,caustic,indirect" : "direct,indirect", map.header.history,
-                      map.header.emitted_count};
-  estimate_points(tracer, lights, map, shift_of(map.header.origin, frame), options, result.points);
-  tool.stats().count("points", double(result.points.size()));
-  return result;
-}
-
-DividedGatherPoints make_divided_points(Tool& tool, const DividedPhotonMap& map, const Tracer& tracer, const Lights& lights, const PointOptions& options) {
-  DividedGatherPoints divided{make_points(tool, map.whole, tracer, lights, options), {}};
-  divided.high_shares = shares_of_photons(tracer, lights, map.high, options, divided.whole.points);
-  return divided;
-}
-
-void update_points(Tool& tool, const formats::PhotonMap& fixed, const formats::PhotonMap& moved, const Tracer& whole,
-                   const Tracer& standing, const Lights& lights, const PointOptions& options, GatherPoints& points,
-                   PointUpdateCounts& counts) {
-  const SceneFrame& frame = whole.frame();
-  std::vector<bool> moves;   // by object
-  for (std::size_t i = frame.static_count; i < frame.surfaces.size(); ++i) {
-    const std::size_t object = frame.surfaces[i].object;
-    if (object >= moves.size()) moves.resize(object + 1);
-    moves[object] = true;
-  }
-  const auto on_mover = [&moves](std::uint32_t object) { return object < moves.size() && moves[object]; };
-  const PlacedPoints placed = place_points(frame, options);
-  const auto own_points = std::find_if(placed.points.begin(), placed.points.end(), [&](const auto& p) { return on_mover(p.object); });
-  const auto standing_count = std::size_t(own_points - placed.points.begin());
-  if (standing_count != points.points.size() || placed.spacing != points.spacing)
-    throw InputError("--update: its points are not those of --point-count " + std::to_string(options.count) + " (" +
-                     std::to_string(points.points.size()) + ", not " + std::to_string(standing_count) +
-                     "); give the options they were made with, --importance included");
-  // As placed: a file rounds normals, and light sampled by a rounded one is another.
-  for (std::size_t i = 0; i < standing_count; ++i) {
-    points.points[i].position = placed.points[i].position;
-    points.points[i].normal = placed.points[i].normal;
-  }
-  const Vec3d static_shift = shift_of(fixed.header.origin, frame), dynamic_shift = shift_of(moved.header.origin, frame);
-  counts = tempolux::update_points({whole, standing, lights, fixed, moved, static_shift, dynamic_shift}, options,
-                                   points.points);
-  // What moves has its photons in the dynamic map alone.
-  formats::PhotonBlock on_movers;
-  for (std::size_t i = 0; i < moved.photons.size(); ++i)
-    if (on_mover(moved.photons[i].object)) append(moved, i, moved.photons[i], on_movers);
-  points.points.insert(points.points.end(), own_points, placed.points.end());
-  std::vector<std::uint32_t> own;
-  for (std::size_t i = standing_count; i < points.points.size(); ++i) own.push_back(std::uint32_t(i));
-  estimate_points(whole, lights, on_movers, dynamic_shift, options, own, points.points);
-  tool.stats().count("points", double(points.points.size()));
 }
 
 void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output,

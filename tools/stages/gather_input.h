@@ -9,8 +9,7 @@
 
 #include "formats/irradcache/irradcache.h"
 #include "formats/photons/photons.h"
-#include "lib/gather/irradiance_points.h"
-#include "lib/gather/update_points.h"
+#include "lib/gather/gather_points.h"
 #include "lib/irradcache/records.h"
 #include "tools/common/scene_input.h"
 
@@ -29,43 +28,16 @@ formats::PhotonMap read_photons(Tool& tool, const std::string& file, const Scene
 formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed, const std::string& map,
                                 const std::function<bool(Vec3, const formats::Photon&)>& keep);
 
-/// The two parts of photonmap-split: the whole map, bit by bit, checked as read_photons checks it; and the high part.
-struct DividedPhotonMap {
-  formats::PhotonMap whole, high;
-};
-/// InputError if the files are not the two parts of one map.
+/// The two parts of photonmap-split, checked as read_photons checks the whole. InputError if the files are not the two parts of one map.
 DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const std::string& high, const SceneFrame& frame, LightNeeded needed);
 
 /// The dynamic map of another frame of the same segment: what stands must be the same, what moves not.
 formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, const SceneFrame& frame);
 
-/// Points and what they came from.
-struct GatherPoints {
-  std::vector<IrradiancePoint> points;
-  float spacing = 0;                   ///< m
-  std::string kinds;                   ///< that were estimated, or that the scene cannot have: they are 0 then
-  std::string history;                 ///< of the file they came from, or of the photons
-  std::uint64_t emitted_count = 0;
-};
-
 /// Reads a .irradpoints file made for this state of the scene, with the kinds of light it has: as read_photons.
 GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame);
-/// Points of photonmap-split: the whole, and of each point the share that the high part has.
-struct DividedGatherPoints {
-  GatherPoints whole;
-  std::vector<float> high_shares;
-};
 /// Reads the two parts: as read_points; InputError if they are not those of one file.
 DividedGatherPoints read_divided_points(Tool& tool, const std::string& low, const std::string& high, const SceneFrame& frame);
-/// Makes points from the photons of a whole map with all kinds of light (read_photons).
-GatherPoints make_points(Tool& tool, const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights,
-                         const PointOptions& options);
-/// The same from the two parts of a map, and of each point the share that the high part has.
-DividedGatherPoints make_divided_points(Tool& tool, const DividedPhotonMap& map, const Tracer& tracer, const Lights& lights, const PointOptions& options);
-/// Of a frame: from `points` of the standing scene, to which the points on what moves are added (update_points).
-void update_points(Tool& tool, const formats::PhotonMap& fixed, const formats::PhotonMap& moved, const Tracer& whole,
-                   const Tracer& standing, const Lights& lights, const PointOptions& options, GatherPoints& points,
-                   PointUpdateCounts& counts);
 /// Writes them, valid for the frame or for these frames, first and last; counts go to the statistics.
 void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output,
                   std::optional<std::array<int, 2>> frames = {});

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "lib/gather/lamp_light.h"
+#include "lib/gather/localised_file.h"
 #include "lib/gather/whole_photons.h"
 #include "lib/scene/standing.h"
-#include "tools/stages/localised_cache.h"
 
 namespace tempolux::tools {
 

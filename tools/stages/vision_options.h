@@ -5,8 +5,8 @@
 #include <string>
 
 #include "lib/aqm/animation_quality.h"
-#include "tools/stages/compare_inputs.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/compare_inputs.h"
 
 namespace tempolux::tools {
 

@@ -1,12 +1,8 @@
-#include "tools/stages/localised_cache.h"
+#include "lib/gather/localised_file.h"
 
-#include <CLI/CLI.hpp>
-
-#include "formats/error.h"
 #include "lib/gather/cache_files.h"
-#include "tools/common/option_words.h"
 
-namespace tempolux::tools {
+namespace tempolux {
 namespace {
 
 constexpr std::uint32_t kColumns = formats::column_influence | formats::column_update;
@@ -35,43 +31,18 @@ LocalisedRecords localised_records(const formats::IrradcacheFile& file, const Sc
 }
 
 std::vector<formats::IrradianceCacheRecord> to_file(const LocalisedRecords& cache, const SceneFrame& frame) {
-  std::vector<formats::IrradianceCacheRecord> records = tempolux::to_file(cache.standing, frame);
+  std::vector<formats::IrradianceCacheRecord> records = to_file(cache.standing, frame);
   for (std::size_t i = 0; i < records.size(); ++i) {
     const RecordChange& change = cache.changes[i];
     records[i].set = formats::SurfaceSet::static_set;
     records[i].influence = change.influence;
     records[i].update = {change.update.r, change.update.g, change.update.b};
   }
-  for (formats::IrradianceCacheRecord& record : tempolux::to_file(cache.gathered, frame)) {
+  for (formats::IrradianceCacheRecord& record : to_file(cache.gathered, frame)) {
     record.set = formats::SurfaceSet::dynamic_set;
     records.push_back(record);
   }
   return records;
 }
 
-std::vector<bool> moving_objects(const SceneFrame& frame) {
-  std::vector<bool> moves;
-  for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s) {
-    const std::size_t object = frame.surfaces[s].object;
-    if (object >= moves.size()) moves.resize(object + 1);
-    moves[object] = true;
-  }
-  return moves;
-}
-
-void influence_options(Tool& tool, InfluenceThresholds& thresholds) {
-  CLI::App& app = tool.app();
-  app.add_option("--influence-low", thresholds.low,
-                 "up to this influence of what moves, a share of the static irradiance, indirect light is that of records that "
-                 "stand, updated by dynamic photons")
-      ->capture_default_str()->check(number_between(0));
-  app.add_option("--influence-high", thresholds.high, "from this influence on it is gathered anew; blended in between")
-      ->capture_default_str()->check(number_above(0));
-  app.add_flag("--influence-absolute", thresholds.absolute, "thresholds are irradiance, W/m^2, not shares of it");
-}
-
-void check_influence(const InfluenceThresholds& thresholds) {
-  if (!(thresholds.low < thresholds.high)) throw InputError("--influence-low must be below --influence-high");
-}
-
-}  // namespace tempolux::tools
+}  // namespace tempolux

@@ -1,5 +1,4 @@
-// tools/stages/localised_cache.h -- .irradcache files of localised gathering: records that stand, updated for a frame, and those
-// gathered for it.
+// lib/gather/localised_file.h -- .irradcache files of localised gathering: records that stand, updated for a frame, and those gathered for it.
 #pragma once
 
 #include <string>
@@ -8,9 +7,9 @@
 #include "formats/irradcache/irradcache.h"
 #include "lib/gather/localised.h"
 #include "lib/irradcache/records.h"
-#include "tools/common/scene_input.h"
+#include "lib/scene/at_frame.h"
 
-namespace tempolux::tools {
+namespace tempolux {
 
 /// Set static: records of the standing scene, changes[i] of standing[i]. Set dynamic: records of the frame.
 struct LocalisedRecords {
@@ -26,12 +25,5 @@ bool is_localised(const formats::IrradcacheFile& file);
 LocalisedRecords localised_records(const formats::IrradcacheFile& file, const SceneFrame& frame);
 /// Records as a file holds them, columns and sets filled in.
 std::vector<formats::IrradianceCacheRecord> to_file(const LocalisedRecords& cache, const SceneFrame& frame);
-/// By object: does one of its surfaces move in the segment?
-std::vector<bool> moving_objects(const SceneFrame& frame);
 
-/// --influence-low, --influence-high, --influence-absolute.
-void influence_options(Tool& tool, InfluenceThresholds& thresholds);
-/// InputError unless 0 <= low < high.
-void check_influence(const InfluenceThresholds& thresholds);
-
-}  // namespace tempolux::tools
+}  // namespace tempolux
