@@ -34,13 +34,6 @@ CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wis
   return CameraView(frame.camera(source.camera_node), frame.origin, wish.width, wish.height);
 }
 
-std::vector<AimSphere> aim_spheres(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
-  std::vector<AimSphere> spheres;
-  for (const formats::ViewSphere& sphere : view)
-    spheres.push_back({Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
-  return spheres;
-}
-
 /// What one looked frame asks for.
 struct Look {
   IndirectMethod method = IndirectMethod::records;
@@ -55,7 +48,7 @@ struct Look {
 class FramePilot {
  public:
   FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds)
-      : kinds_(kinds), wish_(wish), frame_(source.at(number, true)), table_(source.emission(frame_.frame)),
+      : kinds_(kinds), wish_(wish), camera_(source.camera_node), frame_(source.at(number, true)), table_(source.emission(frame_.frame)),
         view_(view_at(frame_, source, wish)), tracer_(frame_), lights_(frame_, table_) {}
 
   Look look(bool media) {
@@ -105,9 +98,9 @@ class FramePilot {
   const Lights& aimed() {
     if (!aimed_) {
       EmissionTable table = table_;
-      std::vector<WeighedPlace> places;
-      add_seen_places(tracer_, view_, 0, places);
-      table.aim = aim_spheres(spheres_around(places, table.sphere_radius), frame_.origin);
+      SeenAround seen;
+      look_around(tracer_, frame_.camera(camera_), wish_.width, wish_.height, seen);
+      table.aim = spheres_in_scene(spheres_around(seen.places, table.sphere_radius), frame_.origin);
       aimed_.emplace(frame_, table);
     }
     return *aimed_;
@@ -115,6 +108,7 @@ class FramePilot {
 
   std::string kinds_;
   const Wish& wish_;
+  int camera_;
   SceneFrame frame_;
   EmissionTable table_;
   CameraView view_;
@@ -229,7 +223,7 @@ std::string view_of(const PlannedSegment& segment, int width, int height, const 
   const std::vector<int> pictures = segment.pictures();
   const std::size_t count = std::min(kMostViews, pictures.size());
   StandingTree standing;
-  std::vector<WeighedPlace> places;
+  SeenAround seen;
   double radius = 0;
   bool from_afar = false;
   for (std::size_t i = 0; i < count; ++i) {
@@ -237,11 +231,11 @@ std::string view_of(const PlannedSegment& segment, int width, int height, const 
     from_afar = from_afar || shines_from_afar(frame);
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
     const Tracer tracer(frame, standing);
-    add_seen_places(tracer, CameraView(frame.camera(source.camera_node), frame.origin, width, height), i, places);
+    look_around(tracer, frame.camera(source.camera_node), width, height, seen);
     // Under lamps alone photons are not aimed, and in a room points are spread everywhere: one look is enough.
-    if (i == 0 && !from_afar && spheres_around(places, radius).empty()) return "";
+    if (i == 0 && !from_afar && spheres_around(seen.places, radius).empty()) return "";
   }
-  const std::vector<formats::ViewSphere> spheres = spheres_around(places, radius);
+  const std::vector<formats::ViewSphere> spheres = spheres_around(seen.places, radius);
   return spheres.empty() ? "" : formats::view_text(spheres);
 }
 
