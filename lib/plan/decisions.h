@@ -48,7 +48,6 @@ struct Wish {
 /// How the materials of a segment reflect.
 struct MaterialFacts {
   bool lambert = false, other = false;  ///< some reflect by a Lambert lobe; some by a mirror or glossy lobe
-  std::string lambert_words, other_words;   ///< "2 of 3 materials reflect by a Lambert lobe"
 };
 
 /// A fact that decides whether a stage has work.
@@ -66,7 +65,7 @@ struct Decisions {
   bool learn_lights = false;            ///< light from far away comes through openings: it is learned which way
   bool split = false;                   ///< bright points are divided from the others and sampled explicitly
   MovingMethod moving = MovingMethod::anew;
-  MovingCost moving_cost;               ///< of a state of light, for estimates
+  int together = 1;                     ///< pictures, one after the other, whose cameras share records
   bool walk = false;                    ///< key frames and warping pay: METHOD=auto follows it
   std::string view;                     ///< content of the view file by which photons are aimed and points spread; "": none
   std::vector<int> looked;              ///< frames of the pilots

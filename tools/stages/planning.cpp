@@ -45,8 +45,8 @@ void write_if_changed(const std::string& path, const std::string& content) {
 /// Names of the files of a plan, a line each, without extensions: what is beside a file goes with it.
 std::string stems(const Graph& graph, const std::vector<std::string>& others) {
   std::set<std::string> names(others.begin(), others.end());
-  for (const GraphFile& file : graph.files) names.insert(file.name.substr(0, file.name.find('.')));
-  for (const PlanFile& state : graph.states) names.insert(state.name.substr(0, state.name.find('.')));
+  for (const GraphFile& file : graph.files) names.insert(stem_of(file.name));
+  for (const PlanFile& state : graph.states) names.insert(stem_of(state.name));
   std::string text;
   for (const std::string& name : names) text += name + "\n";
   return text;
@@ -78,6 +78,22 @@ void add_lines(const std::string& text, std::set<std::string>& lines) {
   for (std::string line; std::getline(stream, line);) lines.insert(line);
 }
 
+/// Hashes of the programs beside this one, with all modules and with `recipes`.
+ToolHash tool_hashes(Inputs& inputs, const std::vector<std::string>& recipes) {
+  const std::string programs = fs::read_symlink("/proc/self/exe").parent_path().string();
+  Hasher shared;
+  for (const std::string& recipe : recipes) shared.add(std::string_view(inputs.hash_of(recipe)));
+  for (const std::string& folder : default_module_folders()) {
+    std::set<std::string> modules;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (entry.path().filename().string().starts_with("tempolux-")) modules.insert(entry.path().string());
+    for (const std::string& module : modules) shared.add(std::string_view(inputs.hash_of(module)));
+  }
+  inputs.hash_of(programs + "/scene-plan");
+  return [&inputs, programs, common = shared.hex()](const std::string& tool) { return inputs.hash_of(programs + "/" + tool) + common; };
+}
+
 }  // namespace
 
 PlanFolder::PlanFolder(std::string path) : path_(std::move(path)), inputs_(path_ + "/state/inputs") { make_folder(path_ + "/state"); }
@@ -87,7 +103,7 @@ bool PlanFolder::up_to_date(const std::string& wish) {
 }
 
 Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string& key, const std::function<Decisions()>& decide) {
-  const std::string name = "state/" + frame_digits(segment.first) + "-" + key.substr(0, 10);
+  const std::string name = "state/" + frame_digits(segment.first) + "-" + key_of(key);
   decided_.push_back(name);
   const std::string kept = content_of(path_ + "/" + name + ".decided");
   if (!kept.empty()) return read_decisions(kept);
@@ -96,8 +112,7 @@ Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string
   return decided;
 }
 
-void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history,
-                       const std::string& estimate) {
+void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history) {
   for (const char* sub : {"frames", "shown", "report"}) make_folder(path_ + "/" + sub);
   for (const GraphFile& file : planned.graph.files) make_folder(path_ + "/" + file.name.substr(0, file.name.find('/')));
   for (const PlanFile& state : planned.graph.states) write_if_changed(path_ + "/" + state.name, state.content);
@@ -116,90 +131,40 @@ void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const 
   std::string warnings;
   for (const std::string& warning : planned.warnings) warnings += warning.substr(0, warning.find('\n')) + "\n";
   write_if_changed(path_ + "/state/warnings", warnings);
-  write_if_changed(path_ + "/plan.json", plan_json(planned.plan, planned.graph, planned.scene_name, history, estimate));
+  write_if_changed(path_ + "/plan.json", plan_json(planned.plan, planned.graph, planned.scene_name, history));
   write_if_changed(path_ + "/plan.mk", plan_makefile(planned.plan, planned.graph, tool_hash));
   write_whole(path_ + "/state/inputs", inputs_.text(wish));   // last: from here on the plan is up to date
 }
 
-ToolHash tool_hashes(Inputs& inputs, const std::vector<std::string>& recipes) {
-  const std::string programs = fs::read_symlink("/proc/self/exe").parent_path().string();
-  Hasher shared;
-  for (const std::string& recipe : recipes) shared.add(std::string_view(inputs.hash_of(recipe)));
-  for (const std::string& folder : default_module_folders()) {
-    std::set<std::string> modules;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error))
-      if (entry.path().filename().string().starts_with("tempolux-")) modules.insert(entry.path().string());
-    for (const std::string& module : modules) shared.add(std::string_view(inputs.hash_of(module)));
-  }
-  inputs.hash_of(programs + "/scene-plan");
-  return [&inputs, programs, common = shared.hex()](const std::string& tool) { return inputs.hash_of(programs + "/" + tool) + common; };
-}
-
-Planned make_planned(Tool& tool, const std::string& scene_file, Wish& wish, const ToolHash& tool_hash, PlanFolder* folder) {
-  tool.stats().phase("load");
-  SceneInput input(tool, scene_file, SceneInput::light | SceneInput::a_camera);
-  const int camera = input.scene().camera_node(tool.common().camera);
+Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const std::vector<std::string>& recipes, PlanFolder* folder)
+    : tool_hash_(tool_hashes(folder ? folder->inputs() : none_, recipes)), input_(tool, scene, SceneInput::light | SceneInput::a_camera) {
+  const int camera = input_.scene().camera_node(tool.common().camera);
   tool.stats().phase("plan");
-  const MediaHash media = [&](int frame) { return input.media_hash(frame); };
-  const std::vector<int> helpers = helper_frames(tool.common().frames, wish);
-  Planned planned{make_plan(input.scene(), tool.common().frames, camera, input.time(), input.has_media() ? media : MediaHash{}, helpers),
-                  {}, fs::path(scene_file).filename().string(), {}};
-  Plan& plan = planned.plan;
-  const SceneSource source{[&](int frame, bool with_media) { return input.at(frame, with_media); },
-                           [&](int frame) { return input.emission(frame); }, camera};
+  Plan& plan = planned_.plan;
+  planned_.scene_name = fs::path(scene).filename().string();
+  plan = make_plan(input_.scene(), tool.common().frames, camera, input_.time(),
+                   input_.has_media() ? MediaHash([&](int frame) { return input_.media_hash(frame); }) : MediaHash{}, helper_frames(tool.common().frames, wish));
+  const SceneSource source{[&](int frame, bool with_media) { return input_.at(frame, with_media); }, [&](int frame) { return input_.emission(frame); }, camera};
   tool.stats().phase("pilots", true);
   for (PlannedSegment& segment : plan.segments) {
-    const std::string key = hash_hex(decision_key(segment, wish, plan.media) + tool_hash("scene-plan"));
     tool.progress(double(&segment - plan.segments.data()) / double(plan.segments.size()));
     const auto make = [&] { return decide(segment, wish, plan.media, source); };
-    segment.decisions = folder ? folder->decisions(segment, key, make) : make();
+    segment.decisions = folder ? folder->decisions(segment, hash_hex(decision_key(segment, wish, plan.media) + tool_hash_("scene-plan")), make) : make();
   }
   tool.stats().phase("graph");
-  planned.graph = make_graph(plan, wish, tool_hash, [&](int first, int last) { return majorants_text(input.frozen_majorants(first, last)); });
-  for (const std::string& warning : plan.warnings) tool.warn(scene_file + ": " + warning);
-  planned.warnings = tool.warnings();
-  if (folder) {
-    for (const std::string& file : input.scene().files) folder->inputs().hash_of(file);
-    for (const std::string& file : input.media_files()) {
-      folder->inputs().hash_of(file);
-      folder->inputs().hash_of(fs::absolute(file).parent_path().string());   // a file that comes or goes is a change as well
-    }
+  planned_.graph = graph(plan, wish);
+  for (const std::string& warning : plan.warnings) tool.warn(scene + ": " + warning);
+  planned_.warnings = tool.warnings();
+  if (!folder) return;
+  for (const std::string& file : input_.scene().files) folder->inputs().hash_of(file);
+  for (const std::string& file : input_.media_files()) {
+    folder->inputs().hash_of(file);
+    folder->inputs().hash_of(fs::absolute(file).parent_path().string());   // a file that comes or goes is a change as well
   }
-  return planned;
 }
 
-std::vector<std::string> shared_arguments(const Common& c) {
-  std::vector<std::string> words;
-  const auto number = [](double value) {
-    std::ostringstream text;
-    text.precision(17);
-    text << value;
-    return text.str();
-  };
-  const auto add = [&](const char* name, const std::string& value) { words.insert(words.end(), {name, value}); };
-  add("--fps", number(c.fps));
-  add("--segment", std::to_string(c.segment_length));
-  add("--light-units", c.light_units);
-  if (!c.animation.empty()) add("--animation", c.animation);
-  if (!c.environment.empty()) add("--environment", c.environment);
-  const auto color = [&](const std::array<float, 3>& rgb) { return number(rgb[0]) + "," + number(rgb[1]) + "," + number(rgb[2]); };
-  if (c.environment_color) add("--environment-color", color(*c.environment_color));
-  if (!c.environment.empty() || c.environment_color) {
-    add("--environment-strength", number(c.environment_strength));
-    add("--environment-rotation", number(c.environment_rotation_deg));
-  }
-  for (const std::string& file : c.volume.files) add("--volume", file);
-  for (const std::string& grid : c.volume.grids) add("--volume-grid", grid);
-  for (const float sigma : c.volume.sigma_t) add("--sigma-t", number(sigma));
-  for (const auto& albedo : c.volume.albedo) add("--albedo", color(albedo));
-  for (const float g : c.volume.phase_g) add("--phase-g", number(g));
-  if (c.volume.frames) add("--volume-frames", std::to_string(c.volume.frames->first) + "-" + std::to_string(c.volume.frames->second));
-  if (c.reduce_textures > 0) add("--reduce-textures", std::to_string(c.reduce_textures));
-  add("--max-texture", std::to_string(c.max_texture));
-  if (c.allow_outside) words.push_back("--allow-outside");
-  if (c.allow_stale) words.push_back("--allow-stale");
-  return words;
+Graph Planner::graph(const Plan& plan, const Wish& wish) {
+  return make_graph(plan, wish, tool_hash_, [&](int first, int last) { return majorants_text(input_.frozen_majorants(first, last)); });
 }
 
 void check_words(const std::string& option, const std::string& words) {

@@ -1,6 +1,7 @@
 // tools/stages/planning.h -- what scene-plan does: looks whether anything changed, plans, and writes the plan's files.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,7 @@ class PlanFolder {
   /// The decisions for a segment: those that an earlier plan made for the same content, else `decide` makes them and they are kept.
   Decisions decisions(const PlannedSegment& segment, const std::string& key, const std::function<Decisions()>& decide);
   /// Writes plan.json, plan.mk and state/. Removes files that neither this plan nor the two before it name.
-  void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history,
-             const std::string& estimate);
+  void write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history);
 
  private:
   std::string path_;
@@ -39,14 +39,27 @@ class PlanFolder {
   std::vector<std::string> decided_;   ///< files that decisions() has read or written
 };
 
-/// Hashes of the programs beside this one, with all modules and with `recipes`.
-ToolHash tool_hashes(Inputs& inputs, const std::vector<std::string>& recipes);
+/// Plans the frames asked for. The files that it reads become inputs of the folder.
+class Planner {
+ public:
+  /// Reads the scene. `folder`: nullptr if nothing is to be kept. `recipes`: files that hold the rules.
+  Planner(Tool& tool, const std::string& scene, const Wish& wish, const std::vector<std::string>& recipes, PlanFolder* folder);
 
-/// Plans. Reads the scene; the inputs become those of the folder. `folder`: nullptr if nothing is to be kept.
-Planned make_planned(Tool& tool, const std::string& scene, Wish& wish, const ToolHash& tool_hash, PlanFolder* folder);
+  const Planned& planned() const { return planned_; }
+  const ToolHash& tool_hash() const { return tool_hash_; }
+  /// The files for other decisions or another wish.
+  Graph graph(const Plan& plan, const Wish& wish);
 
-/// Options of the command line that all stages share, as words: --fps, --environment ..., each with its value.
-std::vector<std::string> shared_arguments(const Common& common);
+ private:
+  Inputs none_{""};
+  ToolHash tool_hash_;   ///< of the programs beside this one, with all modules and with `recipes`
+  SceneInput input_;
+  Planned planned_;
+};
+
+/// Options that all stages share and that no state of the scene holds: they are a part of what files are made from, as typed. What names of files stand for,
+/// segments and the choice of an animation is in the states.
+inline constexpr std::array kSharedWords{"--fps", "--reduce-textures", "--max-texture", "--allow-outside", "--allow-stale"};
 
 /// Throws InputError, naming the option, unless the words are letters, digits, blanks and . , : + - _ % /: they stand in
 /// plan.mk, where other characters would mean something.

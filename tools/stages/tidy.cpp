@@ -75,26 +75,4 @@ Tidied tidy(const std::string& folder, double other_hosts_s) {
   return tidied;
 }
 
-Tidied tidy_folders(const std::string& stem) {
-  Tidied tidied;
-  std::error_code error;
-  for (fs::directory_iterator entries(fs::path(stem).parent_path(), error), end; !error && entries != end;
-       entries.increment(error)) {
-    const std::string path = entries->path().string();
-    const std::optional<Writer> writer = writer_of(entries->path().filename().string());
-    struct stat status {};
-    if (!writer || path != stem + std::to_string(writer->process) || ::lstat(path.c_str(), &status) != 0) continue;
-    if (!S_ISDIR(status.st_mode) || status.st_uid != ::geteuid()) continue;
-    if (::kill(writer->process, 0) == 0 || errno != ESRCH) {
-      ++tidied.kept;
-      continue;
-    }
-    for (fs::recursive_directory_iterator files(path, error), last; !error && files != last; files.increment(error))
-      if (std::error_code unknown; files->is_regular_file(unknown)) tidied.bytes += files->file_size(unknown);
-    const std::uintmax_t gone = fs::remove_all(path, error);
-    if (!error) tidied.removed += std::size_t(gone) - 1;   // its files
-  }
-  return tidied;
-}
-
 }  // namespace tempolux::tools

@@ -12,10 +12,6 @@ struct Tidied {
   std::uintmax_t bytes = 0;           ///< of the removed
 };
 
-/// Removes folders of this user whose path is `stem` and the number of a process of this host that is gone, with the
-/// files in them. What cannot be read or removed stays.
-Tidied tidy_folders(const std::string& stem);
-
 /// Removes temporary files of our outputs (`.NAME.tmp.HOST.PROCESS`, Output) from a folder and all folders in it:
 /// those of this host whose process is gone and whose lock is free, and those of other hosts not written to for
 /// `other_hosts_s` seconds. Nothing else is touched; symbolic links are not followed. Throws InputError if it is
