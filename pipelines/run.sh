@@ -43,7 +43,7 @@ makes() { goal=$1; shift; ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$
 if [ "$goal" = estimate ]; then   # the first picture, small, at two sizes
   aside
   $RUN "$BIN/scene-plan" "$@" --samples "$aside" || exit
-  for sample in small large; do makes demo -s -C "$aside/$sample" > /dev/null || exit; done
+  for plan in small.mk large.mk; do makes demo -s -C "$aside" > /dev/null || exit; done
   "$BIN/scene-plan" --estimate "$aside"
   exit
 fi

@@ -187,19 +187,16 @@ MovingMethod moving_named(const std::string& name) {
   return MovingMethod(std::ranges::find(kMovingMethods, name) - std::begin(kMovingMethods));
 }
 
-/// Records for the cameras of so many pictures, each of which sees `fresh` that those before do not; in records of one.
-double records_of(int pictures, double fresh) { return 1 + fresh * (pictures - 1); }
-
 /// Records are shared by as many pictures as cost one that is asked for alone at most twice its own: as many as are asked for, or none of them, a frame costs
 /// at most twice what it could. A power of two.
-int pictures_together(std::size_t pictures, double fresh) {
+int pictures_together(std::size_t pictures, const Decisions& d) {
   int together = 1;
-  while (std::size_t(together) < pictures && records_of(2 * together, fresh) <= 2) together *= 2;
+  while (std::size_t(together) < pictures && d.records_of(2 * together) <= 2) together *= 2;
   return together;
 }
 
 /// What of a frame's light follows from that of what stands.
-void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source, double fresh, Decisions& d) {
+void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source, Decisions& d) {
   const std::string name = "photon-trace --map dynamic";
   const auto anew = [&](const std::string& because) { d.reasons.push_back({name, because}); };
   const std::vector<int> states = segment.states();
@@ -208,7 +205,7 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
     throw InputError("--moving " + wish.moving + ": the scene has media, which all light meets: what movers change of it cannot be told apart; use --moving anew");
   if (media) return anew("there are media, which all light meets");
   if (wish.moving == "anew") return anew("--moving anew");
-  const double standing = records_of(d.together, fresh) / std::min(d.together, int(segment.pictures().size()));
+  const double together = std::min(double(d.together), double(segment.pictures().size())), standing = d.records_of(together) / together;
   const MovingChoice choice = wish.moving == "auto" ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds).moving(), states.size(), standing)
                                                     : MovingChoice{moving_named(wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
@@ -280,9 +277,9 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
       if (looks.size() == (d.looked.size() + 1) / 2) middle = std::move(pilot);
     }
     join(looks, wish, d);
-    const double fresh = d.records() ? middle->new_share(segment) : 0;
-    d.together = pictures_together(segment.pictures().size(), fresh);
-    decide_moving(segment, wish, media, source, fresh, d);
+    if (d.records()) d.new_share = middle->new_share(segment);
+    d.together = pictures_together(segment.pictures().size(), d);
+    decide_moving(segment, wish, media, source, d);
     decide_split(*middle, wish, d);
     if (d.photons()) d.view = view_of(segment, wish.width, wish.height, source);
   }

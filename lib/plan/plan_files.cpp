@@ -18,7 +18,7 @@ Json decisions_json(const Decisions& d) {
   Json json = {{"photon_kinds", d.kinds}, {"indirect", kIndirectMethods[std::size_t(d.indirect)]}, {"paths", d.photon_paths},
                {"rays", d.record_rays}, {"learn_lights", d.learn_lights}, {"split", d.split},
                {"moving", kMovingMethods[std::size_t(d.moving)]},
-               {"pictures_together", d.together},
+               {"new_share", d.new_share}, {"pictures_together", d.together},
                {"walkthrough", d.walk}, {"view", d.view}, {"looked_at", d.looked}};
   json["because"] = Json::object();
   for (const Reason& reason : d.reasons) json["because"][reason.stage] = reason.because;
@@ -131,6 +131,7 @@ Decisions read_decisions(const std::string& text) {
     d.learn_lights = json.at("learn_lights");
     d.split = json.at("split");
     d.moving = named<MovingMethod>(kMovingMethods, json.at("moving"));
+    d.new_share = json.at("new_share");
     d.together = json.at("pictures_together");
     d.walk = json.at("walkthrough");
     d.view = json.at("view").get<std::string>();

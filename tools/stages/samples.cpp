@@ -18,23 +18,49 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Sample {
-  const char* name;
-  double scale;   ///< of width and height; its square: of photons
-};
-constexpr std::array kSamples{Sample{"small", 1.0 / 12}, Sample{"large", 1.0 / 6}};
+constexpr double kWidth = 160;        ///< pixels of the larger sample, at most half of the picture
+constexpr int kFewerRays = 4;         ///< of a record
+constexpr std::array kSamples{"small", "large"};
 
-/// How often each stage runs for the frames asked for.
-std::map<std::string, double> runs_by_stage(const Graph& graph) {
+/// How often a stage runs for the frames asked for, and how much more its files take than those of a sample, but for the size of the picture: mean
+/// factors of work and of bytes.
+struct Runs {
+  double count = 0, work = 0, bytes = 0;
+};
+
+bool makes_photons(const GraphFile& file) { return file.name.ends_with(".photons"); }
+bool makes_records(const GraphFile& file) { return file.name.ends_with(".irradcache"); }
+
+/// The value of --rays among words; 0: it is not there.
+double rays_of(const std::string& words) {
+  const std::size_t at = words.find("--rays ");
+  return at == std::string::npos ? 0 : std::stod(words.substr(at + 7));
+}
+
+/// Cameras for which records are placed: frames of --frames.
+double cameras_of(const std::string& words) {
+  const std::size_t at = words.find("--frames ");
+  return at == std::string::npos ? 1 : 1 + double(std::ranges::count(words.substr(at, words.find(' ', at + 9) - at), ','));
+}
+
+std::map<std::string, Runs> runs_by_stage(const Planned& whole, const Graph& sample, double photons) {
+  std::map<std::string, double> sample_rays;
+  for (const GraphFile& file : sample.files) sample_rays[file.stage] = rays_of(file.words);
+  const Decisions& d = whole.plan.segment_of(whole.plan.shows.at(whole.plan.frames.front())).decisions;
   std::set<const GraphFile*> needed;
-  std::map<std::string, double> runs;
+  std::map<std::string, Runs> runs;
   const std::function<void(const std::string&)> need = [&](const std::string& name) {
-    const GraphFile* file = graph.find(name);
+    const GraphFile* file = whole.graph.find(name);
     if (!file || !needed.insert(file).second) return;
-    runs[file->stage] += 1;
+    const double cameras = makes_records(*file) ? d.records_of(cameras_of(file->words)) : 1, bytes = makes_photons(*file) ? photons : cameras;
+    const double rays = makes_records(*file) && sample_rays[file->stage] > 0 ? rays_of(file->words) / sample_rays[file->stage] : 1;
+    Runs& stage = runs[file->stage];
+    stage.count += 1;
+    stage.work += bytes * rays;
+    stage.bytes += bytes;
     for (const std::string& input : file->inputs) need(input);
   };
-  for (const auto& [frame, picture] : graph.pictures) need(picture);
+  for (const auto& [frame, picture] : whole.graph.pictures) need(picture);
   return runs;
 }
 
@@ -51,61 +77,79 @@ struct Cost {
   double fixed_cpu_s = 0, work_cpu_s = 0, bytes = 0;
 };
 
-std::optional<Cost> cost_of(const std::string& sample, const StageInfo& stage) {
+std::set<std::string> work_phases(const StageInfo& stage) {
   std::set<std::string> work;
   std::istringstream names{std::string(stage.work)};
   for (std::string name; std::getline(names, name, ',');) work.insert(name);
-  Cost sum;
-  double files = 0;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(sample + "/" + std::string(stage.folder), error)) {
-    const bool stats = entry.path().extension() == ".json" && entry.path().stem().extension().empty();
-    if (!stats && entry.path().extension() != ".json") sum.bytes += double(entry.file_size());
-    if (!stats) continue;
-    const nlohmann::json json = nlohmann::json::parse(std::ifstream(entry.path()));
+  return work;
+}
+
+/// `stems`: of the files, in `folder`. None: they have no statistics.
+std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage, const std::vector<std::string>& stems) {
+  const std::set<std::string> work = work_phases(stage);
+  Cost mean;
+  for (const std::string& stem : stems) {
+    std::ifstream stream(folder + "/" + stem + ".json");
+    if (!stream) return std::nullopt;
+    const nlohmann::json json = nlohmann::json::parse(stream);
     double in_work = 0;
     for (const auto& phase : json.at("phases"))
       if (work.contains(phase.at("name"))) in_work += phase.at("cpu_s").get<double>();
-    sum.work_cpu_s += in_work;
-    sum.fixed_cpu_s += std::max(0.0, json.at("cpu_s").get<double>() - in_work);
-    files += 1;
+    mean.work_cpu_s += in_work / double(stems.size());
+    mean.fixed_cpu_s += std::max(0.0, json.at("cpu_s").get<double>() - in_work) / double(stems.size());
   }
-  if (files == 0) return std::nullopt;
-  return Cost{sum.fixed_cpu_s / files, sum.work_cpu_s / files, sum.bytes / files};
+  for (const auto& entry : fs::directory_iterator(folder + "/" + std::string(stage.folder)))
+    if (entry.path().extension() != ".json" && std::ranges::find(stems, std::string(stage.folder) + "/" + stem_of(entry.path().filename())) != stems.end())
+      mean.bytes += double(entry.file_size()) / double(stems.size());
+  return stems.empty() ? std::nullopt : std::optional(mean);
 }
 
 }  // namespace
 
 void write_samples(const std::string& folder, Planner& planner, const Wish& wish) {
   const Planned& whole = planner.planned();
-  for (const Sample& sample : kSamples) {
+  const double large = std::min(0.5, kWidth / wish.width);
+  nlohmann::json json = {{"scales", {large / 2, large}}};
+  PlanFolder out(folder);
+  for (std::size_t i = 0; i < kSamples.size(); ++i) {
+    const double scale = json["scales"][i];
     Wish less = wish;
-    less.width = std::max(8, int(wish.width * sample.scale));
-    less.height = std::max(8, int(wish.height * sample.scale));
+    less.width = std::max(8, int(wish.width * scale));
+    less.height = std::max(8, int(wish.height * scale));
     less.report.clear();
     Planned planned = whole;
     planned.plan.frames = sampled_frames(whole);
-    for (PlannedSegment& segment : planned.plan.segments)
-      segment.decisions.photon_paths = std::max<std::uint64_t>(100, std::uint64_t(double(segment.decisions.photon_paths) * sample.scale * sample.scale));
+    for (PlannedSegment& segment : planned.plan.segments) {
+      Decisions& d = segment.decisions;
+      d.photon_paths = std::max<std::uint64_t>(100, std::uint64_t(double(d.photon_paths) * large * large));
+      d.record_rays = std::max(1, d.record_rays / kFewerRays);
+      d.together = 1;
+    }
     planned.graph = planner.graph(planned.plan, less);
-    PlanFolder(folder + "/" + sample.name).write(planned, planner.tool_hash(), "", "");
+    out.write(planned, planner.tool_hash(), "", "");
+    fs::rename(folder + "/plan.mk", folder + "/" + kSamples[i] + ".mk");
+    for (const GraphFile& file : planned.graph.files) json[kSamples[i]][file.stage].push_back(stem_of(file.name));
+    if (i > 0)
+      for (const auto& [stage, runs] : runs_by_stage(whole, planned.graph, 1 / (large * large)))
+        json["runs"][stage] = {runs.count, runs.work / runs.count, runs.bytes / runs.count};
   }
-  std::ofstream(folder + "/runs.json") << nlohmann::json(runs_by_stage(whole.graph));
+  std::ofstream(folder + "/samples.json") << json;
 }
 
 std::vector<StageEstimate> estimate_from(const std::string& folder) {
-  std::ifstream stream(folder + "/runs.json");
+  std::ifstream stream(folder + "/samples.json");
   if (!stream) throw InputError(folder + ": holds no samples; `make -f Makefile.example estimate` makes them");
-  const auto runs = nlohmann::json::parse(stream).get<std::map<std::string, double>>();
+  const nlohmann::json json = nlohmann::json::parse(stream);
   std::vector<StageEstimate> estimates;
-  const auto [small, large] = kSamples;
   for (const StageInfo& stage : kStages) {
-    const auto found = runs.find(std::string(stage.name));
-    if (found == runs.end()) continue;
-    const std::optional<Cost> a = cost_of(folder + "/" + small.name, stage), b = cost_of(folder + "/" + large.name, stage);
-    if (!a || !b) continue;   // it has no statistics
-    const auto whole = [&](double in_small, double in_large) { return power_law(small.scale, in_small, large.scale, in_large, 1); };
-    estimates.push_back({found->first, found->second, b->fixed_cpu_s + whole(a->work_cpu_s, b->work_cpu_s), whole(a->bytes, b->bytes)});
+    const std::string name(stage.name);
+    if (!json.at("runs").contains(name)) continue;
+    const auto cost = [&](const char* sample) { return cost_of(folder, stage, json.at(sample).value(name, std::vector<std::string>{})); };
+    const std::optional<Cost> a = cost(kSamples[0]), b = cost(kSamples[1]);
+    if (!a || !b) continue;
+    const std::array<double, 3> runs = json.at("runs").at(name);
+    const auto whole = [&](double in_small, double in_large) { return power_law(json.at("scales")[0], in_small, json.at("scales")[1], in_large, 1); };
+    estimates.push_back({name, runs[0], b->fixed_cpu_s + runs[1] * whole(a->work_cpu_s, b->work_cpu_s), runs[2] * whole(a->bytes, b->bytes)});
   }
   return estimates;
 }

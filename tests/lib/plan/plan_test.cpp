@@ -323,6 +323,7 @@ TEST(PlanFiles, JsonGivesFactsAndHashesOfEachFrame) {
 TEST(PlanFiles, DecisionsAreReadBackAsTheyWere) {
   Decisions d = records();
   d.moving = MovingMethod::light;
+  d.new_share = 0.125;
   d.together = 8;
   d.photon_paths = 12345678901;
   d.learn_lights = true;
