@@ -31,13 +31,25 @@ done
 case $SURFACES in gather) ;; textures) set -- "$@" --textures ;; *) echo "SURFACES=$SURFACES: gather or textures" >&2; exit 2 ;; esac
 # shellcheck disable=SC2086
 set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes "$TOP/pipelines/walkthrough.sh"
-if [ "$goal" = estimate ]; then exec "$BIN/scene-plan" "$@" --estimate --jobs 2; fi
 
-rules=$TOP/pipelines/stages.mk plan=plan.mk folder=$OUT
-if [ -n "$dry" ]; then   # make -n: plan aside, leave no trace
-  [ -x "$BIN/scene-plan" ] || { echo "$RUN $BIN/scene-plan $* -o $OUT"; exit; }
+export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
+plan=plan.mk folder=$OUT
+aside() {   # a folder that is removed at the end, by a signal too
   aside=$(mktemp -d) || exit 3
   trap 'rm -rf "$aside"' EXIT
+  trap 'exit 130' INT TERM
+}
+makes() { goal=$1; shift; ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"; }
+if [ "$goal" = estimate ]; then   # the first picture, small, at two sizes
+  aside
+  $RUN "$BIN/scene-plan" "$@" --samples "$aside" || exit
+  for plan in small.mk large.mk; do makes demo -s -C "$aside" > /dev/null || exit; done
+  "$BIN/scene-plan" --estimate "$aside"
+  exit
+fi
+if [ -n "$dry" ]; then   # make -n: plan aside, leave no trace
+  [ -x "$BIN/scene-plan" ] || { echo "$RUN $BIN/scene-plan $* -o $OUT"; exit; }
+  aside
   echo "$RUN $BIN/scene-plan $* -o $OUT"
   "$BIN/scene-plan" "$@" -o "$aside" -q || exit
   plan=$aside/plan.mk
@@ -46,5 +58,4 @@ else
   # shellcheck disable=SC2086
   $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
 fi
-export PIPELINES="$TOP/pipelines" RULES="$rules"
-[ "$goal" = plan ] || ${MAKE:-make} --no-print-directory -C "$folder" -f "$rules" PLAN="$plan" "$goal"
+[ "$goal" = plan ] || makes "$goal" -C "$folder"

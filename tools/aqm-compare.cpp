@@ -17,11 +17,11 @@
 #include "lib/aqm/difference.h"
 #include "lib/image/exr_io.h"
 #include "lib/report/comparison.h"
-#include "tools/common/compare_inputs.h"
 #include "tools/common/option_words.h"
 #include "tools/common/percent_option.h"
 #include "tools/common/tool_main.h"
-#include "tools/common/vision_options.h"
+#include "tools/stages/compare_inputs.h"
+#include "tools/stages/vision_options.h"
 
 using namespace tempolux;
 

@@ -15,9 +15,9 @@
 #include "lib/gather/bright_points.h"
 #include "lib/gather/cache_files.h"
 #include "lib/render/known_light.h"
-#include "tools/common/kept_files.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/kept_files.h"
 
 using namespace tempolux;
 

@@ -24,7 +24,7 @@
 #include "tools/common/keep_memory.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
-#include "tools/common/warp_keys.h"
+#include "tools/stages/warp_keys.h"
 
 using namespace tempolux;
 

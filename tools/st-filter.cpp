@@ -2,7 +2,7 @@
 //
 //     st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o 10.exr
 //     st-filter f.####.exr --flow flow.####.exr --frames 0-47 -o filtered.####.exr
-//     st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad          (tools/common/filter_mesh.h)
+//     st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad          (tools/stages/filter_mesh.h)
 //
 // Frames of frame-render --channels halves,... are filtered where their halves prove that it pays. How: docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
 #include <CLI/CLI.hpp>
@@ -20,9 +20,9 @@
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
 #include "tools/common/keep_memory.h"
-#include "tools/common/filter_mesh.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/filter_mesh.h"
 
 using namespace tempolux;
 

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "formats/error.h"
-#include "tools/common/info_facts.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
+#include "tools/info/info_facts.h"
 
 using namespace tempolux;
 using tools::Facts;

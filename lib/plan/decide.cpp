@@ -13,6 +13,7 @@
 #include "lib/render/choose_photons.h"
 #include "lib/render/choose_split.h"
 #include "lib/render/learn_lights.h"
+#include "lib/render/places_seen.h"
 #include "lib/render/seen_spheres.h"
 
 namespace tempolux {
@@ -34,11 +35,12 @@ CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wis
   return CameraView(frame.camera(source.camera_node), frame.origin, wish.width, wish.height);
 }
 
-std::vector<AimSphere> aim_spheres(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
-  std::vector<AimSphere> spheres;
-  for (const formats::ViewSphere& sphere : view)
-    spheres.push_back({Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
-  return spheres;
+/// At most kMostViews of the frames, evenly spread.
+std::vector<int> spread(const std::vector<int>& frames) {
+  const std::size_t count = std::min(kMostViews, frames.size());
+  std::vector<int> some;
+  for (std::size_t i = 0; i < count; ++i) some.push_back(frames[i * frames.size() / count]);
+  return some;
 }
 
 /// What one looked frame asks for.
@@ -55,7 +57,7 @@ struct Look {
 class FramePilot {
  public:
   FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds)
-      : kinds_(kinds), wish_(wish), frame_(source.at(number, true)), table_(source.emission(frame_.frame)),
+      : kinds_(kinds), wish_(wish), camera_(source.camera_node), frame_(source.at(number, true)), table_(source.emission(frame_.frame)),
         view_(view_at(frame_, source, wish)), tracer_(frame_), lights_(frame_, table_) {}
 
   Look look(bool media) {
@@ -73,6 +75,15 @@ class FramePilot {
 
   SplitChoice split() { return choose_split(pilot_split(frame_, table_, view_, 0)); }
   MovingPilot moving() { return pilot_moving(frame_, table_, view_, 0); }
+  /// Of what a picture of the segment shows, the share that pictures before it do not, from one to the next.
+  double new_share(const PlannedSegment& segment) const {
+    const std::vector<int> pictures = spread(segment.pictures());
+    std::vector<PlacedCamera> cameras;
+    for (const int frame : pictures)
+      if (const auto& view = segment.at(frame).view) cameras.push_back(*view);
+    const double steps = double(segment.pictures().size() - 1) / double(std::max<std::size_t>(2, pictures.size()) - 1);
+    return tempolux::new_share(tracer_, cameras, wish_.width, wish_.height) / std::max(1.0, steps);
+  }
 
  private:
   void choose_method(const IndirectPilot& pilot, bool media, Look& look) {
@@ -105,9 +116,9 @@ class FramePilot {
   const Lights& aimed() {
     if (!aimed_) {
       EmissionTable table = table_;
-      std::vector<WeighedPlace> places;
-      add_seen_places(tracer_, view_, 0, places);
-      table.aim = aim_spheres(spheres_around(places, table.sphere_radius), frame_.origin);
+      SeenAround seen;
+      look_around(tracer_, frame_.camera(camera_), wish_.width, wish_.height, seen);
+      table.aim = spheres_in_scene(spheres_around(seen.places, table.sphere_radius), frame_.origin);
       aimed_.emplace(frame_, table);
     }
     return *aimed_;
@@ -115,6 +126,7 @@ class FramePilot {
 
   std::string kinds_;
   const Wish& wish_;
+  int camera_;
   SceneFrame frame_;
   EmissionTable table_;
   CameraView view_;
@@ -175,6 +187,14 @@ MovingMethod moving_named(const std::string& name) {
   return MovingMethod(std::ranges::find(kMovingMethods, name) - std::begin(kMovingMethods));
 }
 
+/// Records are shared by as many pictures as cost one that is asked for alone at most twice its own: as many as are asked for, or none of them, a frame costs
+/// at most twice what it could. A power of two.
+int pictures_together(std::size_t pictures, const Decisions& d) {
+  int together = 1;
+  while (std::size_t(together) < pictures && d.records_of(2 * together) <= 2) together *= 2;
+  return together;
+}
+
 /// What of a frame's light follows from that of what stands.
 void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source, Decisions& d) {
   const std::string name = "photon-trace --map dynamic";
@@ -185,13 +205,11 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
     throw InputError("--moving " + wish.moving + ": the scene has media, which all light meets: what movers change of it cannot be told apart; use --moving anew");
   if (media) return anew("there are media, which all light meets");
   if (wish.moving == "anew") return anew("--moving anew");
-  FramePilot pilot(wish, source, states[states.size() / 2], d.kinds);
-  MovingChoice choice = choose_moving(pilot.moving(), 1, states.size());
-  if (wish.moving != "auto") choice = {moving_named(wish.moving), choice.cost, "--moving " + wish.moving};
+  const double together = std::min(double(d.together), double(segment.pictures().size())), standing = d.records_of(together) / together;
+  const MovingChoice choice = wish.moving == "auto" ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds).moving(), states.size(), standing)
+                                                    : MovingChoice{moving_named(wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
   if (d.moving > MovingMethod::light && !d.records()) d.moving = MovingMethod::light;
-  d.moving_cost = choice.cost;
-  if (d.moving == MovingMethod::time) d.moving_cost.records = records_over_time(1, states.size());
   d.reasons.push_back({name, choice.because});
 }
 
@@ -201,7 +219,7 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
   std::string because;
   if (pictures < kFewestForKeys) because = words(pictures, "different picture") + ": too few to lie between keys";
   else if (pictures == states) because = "light transport differs in all " + words(pictures, "picture") + ": keys lend little light to others";
-  else because = "the camera moves through " + words(pictures, "picture") + " of " + words(states, "state") + " of light; " + segment.materials.other_words;
+  else because = "the camera moves through " + words(pictures, "picture") + " of " + words(states, "state") + " of light";
   d.walk = pictures >= kFewestForKeys && pictures > states;
   d.reasons.push_back({"ibr-warp", because});
 }
@@ -226,22 +244,20 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
 }
 
 std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source) {
-  const std::vector<int> pictures = segment.pictures();
-  const std::size_t count = std::min(kMostViews, pictures.size());
   StandingTree standing;
-  std::vector<WeighedPlace> places;
+  SeenAround seen;
   double radius = 0;
   bool from_afar = false;
-  for (std::size_t i = 0; i < count; ++i) {
-    const SceneFrame frame = source.at(pictures[i * pictures.size() / count], false);
+  for (const int picture : spread(segment.pictures())) {
+    const SceneFrame frame = source.at(picture, false);
     from_afar = from_afar || shines_from_afar(frame);
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
     const Tracer tracer(frame, standing);
-    add_seen_places(tracer, CameraView(frame.camera(source.camera_node), frame.origin, width, height), i, places);
+    look_around(tracer, frame.camera(source.camera_node), width, height, seen);
     // Under lamps alone photons are not aimed, and in a room points are spread everywhere: one look is enough.
-    if (i == 0 && !from_afar && spheres_around(places, radius).empty()) return "";
+    if (picture == segment.first && !from_afar && spheres_around(seen.places, radius).empty()) return "";
   }
-  const std::vector<formats::ViewSphere> spheres = spheres_around(places, radius);
+  const std::vector<formats::ViewSphere> spheres = spheres_around(seen.places, radius);
   return spheres.empty() ? "" : formats::view_text(spheres);
 }
 
@@ -249,7 +265,7 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
   Decisions d;
   d.looked = looked_frames(segment);
   d.kinds = kinds_of(segment.materials, media);
-  d.reasons.push_back({"photon-trace", segment.materials.lambert ? segment.materials.lambert_words : "nothing reflects by a Lambert lobe"});
+  d.reasons.push_back({"photon-trace", segment.materials.lambert ? "some material reflects by a Lambert lobe" : "nothing reflects by a Lambert lobe"});
   if (d.photons()) {
     if (wish.indirect == "paths" && media)
       throw InputError("--indirect paths: the scene has media, which photons light; choose records or gather");
@@ -261,6 +277,8 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
       if (looks.size() == (d.looked.size() + 1) / 2) middle = std::move(pilot);
     }
     join(looks, wish, d);
+    if (d.records()) d.new_share = middle->new_share(segment);
+    d.together = pictures_together(segment.pictures().size(), d);
     decide_moving(segment, wish, media, source, d);
     decide_split(*middle, wish, d);
     if (d.photons()) d.view = view_of(segment, wish.width, wish.height, source);

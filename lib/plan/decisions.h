@@ -48,7 +48,6 @@ struct Wish {
 /// How the materials of a segment reflect.
 struct MaterialFacts {
   bool lambert = false, other = false;  ///< some reflect by a Lambert lobe; some by a mirror or glossy lobe
-  std::string lambert_words, other_words;   ///< "2 of 3 materials reflect by a Lambert lobe"
 };
 
 /// A fact that decides whether a stage has work.
@@ -66,7 +65,11 @@ struct Decisions {
   bool learn_lights = false;            ///< light from far away comes through openings: it is learned which way
   bool split = false;                   ///< bright points are divided from the others and sampled explicitly
   MovingMethod moving = MovingMethod::anew;
-  MovingCost moving_cost;               ///< of a state of light, for estimates
+  double new_share = 0;                 ///< of what a picture shows, that the pictures of the segment before it do not
+  int together = 1;                     ///< pictures, one after the other, whose cameras share records
+
+  /// Records for the cameras of so many pictures, one after the other; in records of one.
+  double records_of(double pictures) const { return 1 + new_share * (pictures - 1); }
   bool walk = false;                    ///< key frames and warping pay: METHOD=auto follows it
   std::string view;                     ///< content of the view file by which photons are aimed and points spread; "": none
   std::vector<int> looked;              ///< frames of the pilots

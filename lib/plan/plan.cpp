@@ -44,7 +44,8 @@ PlannedFrame planned_frame(const SceneFrame& state, int number, int camera_node,
   frame.lights = state.hashes.lights;
   frame.materials = state.hashes.materials;
   try {
-    frame.camera = camera_hash(state.camera(camera_node));
+    frame.view = state.camera(camera_node);
+    frame.camera = camera_hash(*frame.view);
   } catch (const InputError&) {   // a camera without direction: the tools say so if this frame is asked for
   }
   if (media) frame.media = media(number);
@@ -97,17 +98,6 @@ std::set<std::uint32_t> used_materials(const Scene& scene) {
   return used;
 }
 
-/// "1 frame", "3 frames".
-std::string counted(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
-/// "12 of 14 materials reflect ...".
-std::string share(std::size_t count, std::size_t of, const std::string& how) {
-  const std::string verb = count == 1 ? " reflects " : " reflect ";
-  return std::to_string(count) + " of " + counted(of, "material") + verb + how;
-}
-
 /// The materials at all frames of the segment; once if no animation changes them.
 std::vector<std::vector<Material>> material_states(const Scene& scene, const PlannedSegment& segment, const TimeOptions& options) {
   const Animator animator(scene);
@@ -118,16 +108,15 @@ std::vector<std::vector<Material>> material_states(const Scene& scene, const Pla
 }
 
 MaterialFacts material_facts(const Scene& scene, const PlannedSegment& segment, const TimeOptions& options) {
-  const std::set<std::uint32_t> used = used_materials(scene);
+  MaterialFacts facts;
   const std::vector<std::vector<Material>> at_frames = material_states(scene, segment, options);
-  std::size_t diffuse = 0, specular = 0;
-  for (const std::uint32_t material : used) {
-    Lobes lobes;
-    for (const std::vector<Material>& materials : at_frames) lobes |= lobes_of(materials[material]);
-    diffuse += lobes.lambert;
-    specular += lobes.specular;
-  }
-  return {diffuse > 0, specular > 0, share(diffuse, used.size(), "by a Lambert lobe"), share(specular, used.size(), "by a mirror or glossy lobe")};
+  for (const std::uint32_t material : used_materials(scene))
+    for (const std::vector<Material>& materials : at_frames) {
+      const Lobes lobes = lobes_of(materials[material]);
+      facts.lambert |= lobes.lambert;
+      facts.other |= lobes.specular;
+    }
+  return facts;
 }
 
 PlannedSegment plan_segment(const Scene& scene, const Segment& segment, int camera_node, const TimeOptions& options, const MediaHash& media) {
@@ -221,7 +210,7 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   for (const int frame : needed)
     if (plan.segments.empty() || frame > plan.segments.back().last)
       plan.segments.push_back(plan_segment(scene, segment_of(scene, frame, options), camera_node, options, media));
-  if (beyond > 0) plan.warnings.push_back(counted(beyond, "frame") + " outside the animation: the nearest end is shown");
+  if (beyond > 0) plan.warnings.push_back(std::to_string(beyond) + (beyond == 1 ? " frame" : " frames") + " outside the animation: the nearest end is shown");
   return plan;
 }
 

@@ -21,7 +21,7 @@ ArrivalPilot pilot_arrivals(const RenderScene& scene, const std::string& kinds, 
 
 std::uint64_t photon_paths(const ArrivalPilot& pilot, std::uint64_t usual) {
   const double times = double(pilot.paths) / (kPathsAPhoton * std::max(1.0, double(pilot.photons)));
-  return std::uint64_t(std::llround(double(usual) * std::clamp(times, 1.0, kMost)));
+  return usual << int(std::ceil(std::log2(std::clamp(times, 1.0, kMost))));
 }
 
 }  // namespace tempolux

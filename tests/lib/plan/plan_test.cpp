@@ -323,7 +323,8 @@ TEST(PlanFiles, JsonGivesFactsAndHashesOfEachFrame) {
 TEST(PlanFiles, DecisionsAreReadBackAsTheyWere) {
   Decisions d = records();
   d.moving = MovingMethod::light;
-  d.moving_cost = {0.25, 0.5, 0.125};
+  d.new_share = 0.125;
+  d.together = 8;
   d.photon_paths = 12345678901;
   d.learn_lights = true;
   d.view = "tempolux view 1.0\n1 2 3 4 5\n";
