@@ -38,7 +38,7 @@ class Candidates {
     const Plane variance = smoothed(group_.surfaces, group_.variance);
     std::vector<BothHalves> fitted;
     const Surfaces& on = group_.surfaces;
-    if (scales_ > 0) fitted.push_back(fit(on, collected, nullptr, kSmall, variance));
+    if (scales_ > 0) fitted.push_back(fit(on, collected, nullptr, frames == 1 ? kSmallAlike : kSmall, variance));
     if (scales_ > 1) fitted.push_back(fit(on, fitted[0], &fitted[0], kLarge, variance));
     std::array<std::vector<ColourPlane>, 2> other;
     for (std::size_t h = 0; h < 2 && !fitted.empty(); ++h) other[h] = unmix(group_, h, collected[h], coverage_, frames, fitted.back()[h]);
@@ -103,9 +103,9 @@ Halves raw_halves(const Image& image, const LightGroup& group, std::size_t l) {
 
 }  // namespace
 
-WindowLight::WindowLight(const Image& image) : light(image) {
-  if (const auto& matte = light.group(0))
-    guides = fit(matte->surfaces, matte->raw, nullptr, kSmall, smoothed(matte->surfaces, matte->variance));
+WindowLight::WindowLight(const Image& image, bool alone) : light(image) {
+  if (const auto& matte = light.group(0); matte && !alone)
+    guides = fit(matte->surfaces, matte->raw, nullptr, kSmallAlike, smoothed(matte->surfaces, matte->variance));
 }
 
 struct FrameFilter::State {
@@ -201,7 +201,7 @@ Image cut_out(const Image& image, int left, int top, int width, int height) {
 }  // namespace
 
 Image filter_alone(Image image, const FilterOptions& options) {
-  constexpr int kWide = 640, kHigh = 360;
+  constexpr int kWide = 480, kHigh = 270;
   FilterOptions of_tile = options;
   for (const char* layer : {"", "emission", "specular", "direct", "caustic", "indirect"})
     if (holds(image, channel_name(layer, 0)) && holds(image, channel_name(layer, 1)) && holds(image, channel_name(layer, 2)))
@@ -212,7 +212,7 @@ Image filter_alone(Image image, const FilterOptions& options) {
       const int x0 = std::max(0, left - reach()), y0 = std::max(0, top - reach());
       const int x1 = std::min(image.width, left + kWide + reach()), y1 = std::min(image.height, top + kHigh + reach());
       Image tile = cut_out(image, x0, y0, x1 - x0, y1 - y0);
-      const WindowLight light(tile);
+      const WindowLight light(tile, true);
       const FlowFrame flow;
       tile = FrameFilter(light, flow, 0, 0, of_tile).finish(std::move(tile));
       for (const Channel& channel : tile.channels) {

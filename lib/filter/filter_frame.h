@@ -14,7 +14,7 @@
 namespace tempolux {
 
 /// Fits in space. The large windows take what small ones have found that do not overlap, and reach 7 pixels.
-inline constexpr FitOptions kSmall{2, 1}, kLarge{1, 5};
+inline constexpr FitOptions kSmall{2, 1, false}, kSmallAlike{2, 1, true}, kLarge{1, 5, false};
 inline constexpr int kMostScales = 2;
 
 struct FilterOptions {
@@ -25,8 +25,8 @@ struct FilterOptions {
 /// A frame of a window: its light, and the first fits of its matte light.
 struct WindowLight {
   FrameLight light;
-  std::optional<BothHalves> guides;  ///< none without matte light
-  explicit WindowLight(const Image& image);
+  std::optional<BothHalves> guides;  ///< none without matte light, nor for a frame that is filtered alone
+  WindowLight(const Image& image, bool alone);
 };
 
 /// Filters a frame with those around it. Each half of the light is fitted by itself at each scale (fit.h), alone and with what was

@@ -36,12 +36,14 @@ class StripFit {
       const SurfaceEight row(surfaces_, y, dy * options_.stride, x0);
       for (int dx = -options_.radius; dx <= options_.radius; ++dx) *same++ = row.surface(dx * options_.stride);
     }
+    alignas(32) std::array<float, kEight> support;
     for (std::size_t h = 0; h < 2; ++h) {
-      const Moments moments = weigh(h);
-      alignas(32) std::array<float, kEight> support;
-      store8(moments.one, support.data());
+      if (h == 0 || !options_.alike) {
+        const Moments moments = weigh(h);
+        store8(moments.one, support.data());
+        to_kernel(moments);
+      }
       std::copy_n(support.begin(), count_, out_[h].weight.row(y_) + x0_);
-      to_kernel(moments);
       for (std::size_t l = 0; l < from_[h].layers.size(); ++l)
         if (!from_[h].layers[l][0].empty()) apply(from_[h].layers[l], out_[h].layers[l]);
     }
@@ -105,23 +107,13 @@ class StripFit {
   ///     weight (1 / one + to_x (dx - mx) + to_y (dy - my)),   their sum is 1.
   /// Coordinates are counted from the window's centre of weight: two slopes are left to solve for.
   void to_kernel(const Moments& moments) {
-    alignas(32) std::array<float, kEight> flat{}, slope_x{}, slope_y{};
-    per_weight_ = {};
-    for (std::size_t i = 0; i < kEight; ++i) {
-      const double one = double(moments.one[i]);
-      if (!(one > 0)) continue;
-      const double per_weight = 1 / one, mx = double(moments.x[i]) * per_weight, my = double(moments.y[i]) * per_weight,
-                   pull = double(kPull) * one;
-      const double xx = double(moments.xx[i]) - one * mx * mx + pull, yy = double(moments.yy[i]) - one * my * my + pull,
-                   xy = double(moments.xy[i]) - one * mx * my;
-      const double determinant = xx * yy - xy * xy;  // positive: pull is
-      const double to_x = -(mx * yy - my * xy) / determinant, to_y = -(my * xx - mx * xy) / determinant;
-      flat[i] = float(per_weight - to_x * mx - to_y * my);
-      slope_x[i] = float(to_x);
-      slope_y[i] = float(to_y);
-      per_weight_[i] = float(per_weight);
-    }
-    const Float8 a = load8(flat.data()), b = load8(slope_x.data()), c = load8(slope_y.data());
+    const Int8 any = moments.one > 0;
+    const Float8 one = where(any, moments.one) + where(~any, all8(1)), per_weight = where(any, 1 / one);
+    const Float8 mx = moments.x / one, my = moments.y / one, pull = kPull * one;
+    const Float8 xx = moments.xx - moments.x * mx + pull, yy = moments.yy - moments.y * my + pull, xy = moments.xy - moments.x * my;
+    const Float8 determinant = xx * yy - xy * xy;   // positive: pull is
+    const Float8 b = (my * xy - mx * yy) / determinant, c = (mx * xy - my * xx) / determinant, a = per_weight - b * mx - c * my;
+    store8(per_weight, per_weight_.data());
     std::size_t tap = 0;
     for (int dy = -options_.radius; dy <= options_.radius; ++dy) {
       const Float8 of_row = multiply_add(c, all8(float(dy)), a);

@@ -8,6 +8,7 @@ namespace tempolux {
 struct FitOptions {
   int radius = 2;  ///< windows have 2 radius + 1 places a side, at most kMostPlaces
   int stride = 1;  ///< pixels from one place to the next; radius * stride is at most kMargin
+  bool alike = false;  ///< both halves have the same weights, and there are no guides
 };
 inline constexpr int kMostPlaces = 5;
 

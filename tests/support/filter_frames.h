@@ -55,7 +55,7 @@ inline void tell_noise(Image& image, const std::string& layer, const OfPixel& no
 inline Image filtered(const std::vector<Image>& frames, const FilterOptions& options = {}) {
   std::vector<WindowLight> light;
   std::vector<FlowFrame> flow(frames.size());
-  for (const Image& frame : frames) light.emplace_back(frame);
+  for (const Image& frame : frames) light.emplace_back(frame, frames.size() == 1);
   for (std::size_t i = 0; i < frames.size(); ++i)
     if (frames[i].find("forward.u")) flow[i] = FlowFrame(frames[i], frames[i].width, frames[i].height, "flow");
   const std::size_t middle = (frames.size() - 1) / 2;
