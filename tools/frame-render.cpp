@@ -267,11 +267,6 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--pixel-error 0: --seen-error needs it to share samples out; leave it out");
   if (halves) options.frame.pixel_error = 0;
   options.frame.sample_halves = wants_sample_halves(options.channels);
-  options.frame.independent_halves = wants_independent_halves(options.channels);
-  if (options.frame.independent_halves && options.frame.samples % 2 != 0)
-    throw InputError("--spp " + std::to_string(options.frame.samples) + ": the channels halves need an even number of samples");
-  if (options.frame.independent_halves && halves)
-    throw InputError("--channels halves and --halves or --target-error: halves are channels or files; leave out one");
   check_channels(options.channels);
 }
 
