@@ -67,11 +67,10 @@ void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const
 }
 
 /// What the camera sees, but for pixels that are not wanted.
-PixelViews looks_through(const Tracer& tracer, const CameraView& view, std::vector<std::uint8_t> wanted, int width) {
-  return [&tracer, &view, wanted = std::move(wanted), width](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-    seen_through(tracer, view, looks, seen);
-    for (std::size_t i = 0; i < looks.size() && !wanted.empty(); ++i)
-      if (!wanted[std::size_t(looks[i].y) * std::size_t(width) + std::size_t(looks[i].x)]) seen[i].reset();
+PixelView looks_through(const Tracer& tracer, const CameraView& view, std::vector<std::uint8_t> wanted, int width) {
+  return [&tracer, &view, wanted = std::move(wanted), width](const Look& look) -> std::optional<SeenPoint> {
+    if (!wanted.empty() && !wanted[std::size_t(look.y) * std::size_t(width) + std::size_t(look.x)]) return std::nullopt;
+    return seen_through(tracer, view, look);
   };
 }
 
@@ -153,8 +152,8 @@ void build_records(Tool& tool, SceneInput& input, CacheOptions options, const st
     const CameraView view(frame.camera(camera), frame.origin, options.width, options.height);
     PlacementOptions placement = options.placement;
     if (number != frames.front()) placement.min_weight *= kLaterWeight;
-    const PixelViews views = looks_through(tracer, view, wanted_pixels(tool, options, number), options.width);
-    const std::size_t added = place_records(gather, views, options.width, options.height, placement,
+    const PixelView wanted = looks_through(tracer, view, wanted_pixels(tool, options, number), options.width);
+    const std::size_t added = place_records(gather, wanted, options.width, options.height, placement,
                                             store, counts, [&](double done) { tool.progress(done); });
     tool.stats().set("records_added." + std::to_string(number), double(added));
   }
@@ -214,26 +213,25 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
     const SceneFrame other = f == number ? frame : input.at(f);
     check_lit_alike(options, other, frame);
     const CameraView view(other.camera(camera), other.origin, options.width, options.height);
-    const PixelViews all = looks_through(tracer, view, wanted_pixels(tool, options, f), options.width);
-    const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-      all(looks, seen);
-      for (std::optional<SeenPoint>& point : seen.first(looks.size())) {
-        if (!point || (point->surface.object < moves.size() && moves[point->surface.object])) continue;
-        if (!(field.at(point->surface.position, point->normal) > options.influence.low)) point.reset();
-      }
+    const PixelView all = looks_through(tracer, view, wanted_pixels(tool, options, f), options.width);
+    const PixelView influenced = [&](const Look& look) {
+      std::optional<SeenPoint> point = all(look);
+      const bool rides = point && point->surface.object < moves.size() && moves[point->surface.object];
+      if (point && !rides && !(field.at(point->surface.position, point->normal) > options.influence.low)) point.reset();
+      return point;
     };
     PlacementOptions placement = options.placement;
     if (f != number) placement.min_weight *= kLaterWeight;
     // Where E_y counts by the share f < 1, its squared error counts by f^2: f of the rays leave no more of it than all leave where f is 1.
-    const RecordSource source{[&](const SeenPoint& seen, const RecordStore::Expected& expected, std::size_t, GatherCounts& local) {
+    const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
       const bool rides = seen.surface.object < moves.size() && moves[seen.surface.object];
       const float share = rides ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
-      IrradianceRecord record = gather.gather(seen.surface, seen.normal, local, expected.lit_share, share);
+      IrradianceRecord record = gather.gather(seen.surface, seen.normal, local, share);
       limit_radius(record, seen.footprint, placement);
       gather.look_around(seen.surface, record);
       return record;
-    }, [](std::size_t, std::size_t) {}};
-    const std::size_t added = place_records(gather, views, options.width, options.height, placement, store, counts,
+    }, [](std::size_t) {}};
+    const std::size_t added = place_records(gather, influenced, options.width, options.height, placement, store, counts,
                                             [&](double done) { tool.progress(done); }, &source);
     tool.stats().set("records_added." + std::to_string(f), double(added));
   }
