@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "lib/gather/bright_points.h"
 #include "lib/gather/final_gather.h"
@@ -56,9 +55,8 @@ class KnownLight {
   float left(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
 };
 
-/// What up to kLooksTogether raster positions see: the first surface with a Lambert lobe, through mirrors and glass by the
+/// What a raster position sees: the first surface with a Lambert lobe, through mirrors and glass by the
 /// likelier of reflection and transmission, or by one drawn from Look::random.
-void seen_through(const Tracer& tracer, const CameraView& view, std::span<const Look> looks,
-                  std::span<std::optional<SeenPoint>> seen);
+std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, const Look& look);
 
 }  // namespace tempolux

@@ -99,8 +99,7 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
     const Vec2 within = random.get2(0, Purpose::place);
     const Look look{(float(i % kColumns) + within.x) * float(view.width()) / kColumns,
                     (float(i / kColumns) + within.y) * float(view.height()) / kRows, random};
-    std::optional<SeenPoint> seen;
-    seen_through(tracer, view, {&look, 1}, {&seen, 1});
+    const std::optional<SeenPoint> seen = seen_through(tracer, view, look);
     if (!seen) continue;
     add(seen->surface.position, 1, length(Vec3d(seen->surface.position) - Vec3d(view.eye())));
     SurfacePoint at = seen->surface;

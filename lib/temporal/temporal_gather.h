@@ -75,7 +75,7 @@ class TemporalGather {
   void advance(KeptHemispheres& kept, TemporalCounts& counts) const;
   /// The records of a store, and then new ones where they do not cover what the camera sees; those are kept, too. After a change records
   /// fade away, in four frames, where those before them weigh by a whole record more than when they were placed.
-  void place(const PixelViews& views, int width, int height, KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts,
+  void place(const PixelView& view, int width, int height, KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts,
              const std::function<void(double)>& progress = {}) const;
 
  private:
@@ -89,7 +89,7 @@ class TemporalGather {
              std::span<const std::uint8_t> marks, GatherCounts& counts) const;
   void finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born, GatherCounts& counts) const;
   void sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const;
-  KeptHemisphere birth(const SeenPoint& seen, const RecordStore::Expected& expected, GatherCounts& counts) const;
+  KeptHemisphere birth(const SeenPoint& seen, float further_share, GatherCounts& counts) const;
   SurfacePoint place_of(const KeptHemisphere& kept) const;
   void ride(KeptHemisphere& kept) const;
   void fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const;

@@ -37,7 +37,6 @@ struct Spot {
 PlacementOptions each_place_its_own() {
   PlacementOptions options;
   options.error_bound = 1e-6f;
-  options.clamp_neighbours = false;
   return options;
 }
 
@@ -88,7 +87,6 @@ TEST(DividedLight, TheHighPartIsThatOfTheFrame) {
     TemporalCounts a, b, c;
     KeptHemispheres kept = spot_frame(first, nullptr, high[0], {}, a);
     ASSERT_EQ(kept.records.size(), 100u);
-    const float expected_share = kept.records[0].record.expected_share;
     const auto tolerance = [&](float share) { return share == 1 ? 0.02 : 0.2; };   // 3 s.e. of rays alone
     EXPECT_NEAR(mean_of(kept) / (100 * form), 1, tolerance(high[0])) << high[0];
     kept = spot_frame(second, &first, high[1], std::move(kept), b);
@@ -97,7 +95,6 @@ TEST(DividedLight, TheHighPartIsThatOfTheFrame) {
     EXPECT_NEAR(mean_of(kept) / (60 * form), 1, tolerance(high[2])) << high[2];
     for (const KeptHemisphere& k : kept.records)
       EXPECT_TRUE(high[2] == 0 || std::ranges::find(k.anchors, 0u) == k.anchors.end()) << "an anchor of a bright point";
-    EXPECT_EQ(kept.records[0].record.expected_share, expected_share) << "what the explicit part adds must not add up";
   }
   // Nothing moves: nothing is sampled.
   Spot same(100);

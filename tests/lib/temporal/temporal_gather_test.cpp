@@ -52,14 +52,11 @@ struct Gathering {
         gather({tracer, lights, lookup, points, anchored_points(frame, points), before, {}, {}, std::move(eye)}, rays, placement, options, 8) {}
 
   /// What pixel (x, y) of a picture of the floor near the origin sees: places `step` m apart.
-  PixelViews floor(float step) const {
-    return [this, step](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-      for (std::size_t i = 0; i < looks.size(); ++i) {
-        Hit hit;
-        seen[i].reset();
-        if (tracer.intersect({{0.3f + step * looks[i].x, 0.1f, step * looks[i].y}, {0, -1, 0}}, hit))
-          seen[i] = SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
-      }
+  PixelView floor(float step) const {
+    return [this, step](const Look& look) -> std::optional<SeenPoint> {
+      Hit hit;
+      if (!tracer.intersect({{0.3f + step * look.x, 0.1f, step * look.y}, {0, -1, 0}}, hit)) return std::nullopt;
+      return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
     };
   }
 };
@@ -68,7 +65,6 @@ struct Gathering {
 PlacementOptions everywhere() {
   PlacementOptions options;
   options.error_bound = 1e-6f;
-  options.clamp_neighbours = false;
   return options;
 }
 
