@@ -242,7 +242,7 @@ class Pilots {
     if (!decided_.learn_lights) std::erase(words, "--learn-lights");
     if (decided_.points()) words.insert(words.end(), {"--points", folder_.file("p.irradpoints")});
     if (decided_.records()) words.insert(words.end(), {"--irradcache", folder_.file("p.irradcache")});
-    if (decided_.caustics()) words.insert(words.end(), {"--photons", folder_.file("p.photons")});
+    if (decided_.caustic_map) words.insert(words.end(), {"--photons", folder_.file("p.photons")});
     return run(folder_, "frame-render", words, output);
   }
   /// A larger picture has less to see in each pixel, which then needs fewer samples: its time grows more slowly than
