@@ -9,7 +9,7 @@
 #include "formats/error.h"
 #include "formats/hash.h"
 #include "lib/plan/stages.h"
-#include "lib/render/choose_caustics.h"
+#include "lib/render/choose_light.h"
 #include "lib/render/choose_photons.h"
 #include "lib/render/choose_split.h"
 #include "lib/render/learn_lights.h"
@@ -45,13 +45,9 @@ std::vector<int> spread(const std::vector<int>& frames) {
 
 /// What one looked frame asks for.
 struct Look {
-  IndirectMethod method = IndirectMethod::records;
-  bool caustic_map = false;      ///< with paths
-  bool dark = false;             ///< surfaces scatter no light
-  int rays = 0;
-  std::uint64_t paths = 0;
+  std::vector<Way> ways;
+  std::uint64_t paths = 0;       ///< of light
   bool learn = false;
-  std::string because;
 };
 
 class FramePilot {
@@ -60,16 +56,13 @@ class FramePilot {
       : kinds_(kinds), wish_(wish), camera_(source.camera_node), frame_(source.at(number, true)), table_(source.emission(frame_.frame)),
         view_(view_at(frame_, source, wish)), tracer_(frame_), lights_(frame_, table_) {}
 
-  Look look(bool media) {
+  Look look() {
+    const Lights& aimed_lights = aimed();
+    const RoughFrame rough = rough_frame({tracer_, lights_}, aimed_lights, view_, {kinds_, wish_.pixel_error, wish_.photons, spheres_, 0});
     Look look;
-    const IndirectPilot pilot = pilot_indirect({tracer_, lights_}, view_, wish_.pixel_error, 0);
-    look.dark = !(pilot.scattered > 0);
-    look.rays = record_rays(pilot, wish_.rays);
-    look.learn = lights_.has_distant() && pilot.open_share <= kMostOpen;
-    if (wish_.indirect == "auto") choose_method(pilot, media, look);
-    look.paths = wish_.photons;
-    if (look.method != IndirectMethod::paths && lights_.has_distant())
-      look.paths = photon_paths(pilot_arrivals({tracer_, aimed()}, kinds_, 0), wish_.photons);
+    look.learn = lights_.has_distant() && rough.open_share <= kMostOpen;
+    look.paths = lights_.has_distant() && rough.places > 0 ? photon_paths(rough.photons_per_path, wish_.photons) : wish_.photons;
+    look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays}, kinds_.find("caustic") != std::string::npos);
     return look;
   }
 
@@ -86,39 +79,13 @@ class FramePilot {
   }
 
  private:
-  void choose_method(const IndirectPilot& pilot, bool media, Look& look) {
-    const IndirectChoice choice = choose_indirect(pilot);
-    look.method = choice.method;
-    look.because = choice.because;
-    if (choice.method != IndirectMethod::paths) return;
-    if (media) {
-      look.method = IndirectMethod::gather;
-      look.because = "photons light the media, points read them, too";
-    } else if (kinds_.find("caustic") != std::string::npos) {
-      choose_beside_paths(pilot, look);
-    }
-  }
-
-  /// Paths, beside a map of caustic photons if that pays, or what photons ask for if paths do not find what indirect light there is.
-  void choose_beside_paths(const IndirectPilot& paths, Look& look) {
-    const SeenPhotons caustic = see_photons({tracer_, aimed()}, view_, "caustic", 0);
-    const CausticChoice map = choose_caustics(paths, caustic);
-    look.caustic_map = map.map;
-    look.because += "; " + map.because;
-    if (!map.map) return;
-    const IndirectChoice beside = choose_beside_caustics(paths, caustic, see_photons({tracer_, aimed()}, view_, "indirect", 0));
-    if (beside.method == IndirectMethod::paths) return;
-    look.method = beside.method;
-    look.because = beside.because;
-  }
-
   /// Lights that aim photons where the camera looks, as those of photon-trace.
   const Lights& aimed() {
     if (!aimed_) {
       EmissionTable table = table_;
       SeenAround seen;
       look_around(tracer_, frame_.camera(camera_), wish_.width, wish_.height, seen);
-      table.aim = spheres_in_scene(spheres_around(seen.places, table.sphere_radius), frame_.origin);
+      table.aim = spheres_ = spheres_in_scene(spheres_around(seen.places, table.sphere_radius), frame_.origin);
       aimed_.emplace(frame_, table);
     }
     return *aimed_;
@@ -133,6 +100,7 @@ class FramePilot {
   Tracer tracer_;
   Lights lights_;
   std::optional<Lights> aimed_;
+  std::vector<AimSphere> spheres_;
 };
 
 std::string words(std::size_t count, const std::string& what) { return std::to_string(count) + " " + what + (count == 1 ? "" : "s"); }
@@ -143,35 +111,29 @@ std::string kinds_of(const MaterialFacts& materials, bool media) {
   return kinds;
 }
 
-/// Joins what the looked frames ask for.
-void join(const std::vector<std::pair<int, Look>>& looks, const Wish& wish, Decisions& d) {
-  d.record_rays = 0;
-  d.photon_paths = 0;
-  d.indirect = IndirectMethod::paths;
-  bool map = false, any = false;
-  std::string because;
-  for (const auto& [frame, look] : looks) {
-    d.record_rays = std::max(d.record_rays, look.rays);
+IndirectMethod method_named(const std::string& name) { return IndirectMethod(std::ranges::find(kIndirectMethods, name) - std::begin(kIndirectMethods)); }
+
+/// Joins what the looked frames ask for; media are lit by photons, which points read, too.
+void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
+  std::vector<std::vector<Way>> of_frames;
+  for (const Look& look : looks) {
     d.photon_paths = std::max(d.photon_paths, look.paths);
     d.learn_lights |= look.learn;
-    map |= look.caustic_map;
-    if (look.dark && looks.size() > 1) continue;
-    if (!any || look.method < d.indirect) {
-      d.indirect = look.method;
-      because = "frame " + std::to_string(frame) + ": " + look.because;
-    }
-    any = true;
+    of_frames.push_back(look.ways);
   }
-  if (!any) {
-    d.indirect = looks.front().second.method;
-    because = looks.front().second.because;
-  }
-  if (wish.indirect != "auto") {
-    d.indirect = IndirectMethod(std::ranges::find(kIndirectMethods, wish.indirect) - std::begin(kIndirectMethods));
-    because = "--indirect " + wish.indirect;
-  }
-  if (d.indirect == IndirectMethod::paths) d.kinds = map ? "caustic" : "";
-  d.reasons.push_back({"irradcache-build records", because});
+  std::vector<Way> ways = joined(of_frames);
+  std::string words = because(ways);
+  std::erase_if(ways, [&](const Way& way) {
+    return (media && way.method == IndirectMethod::paths) || (wish.indirect != "auto" && kIndirectMethods[std::size_t(way.method)] != wish.indirect);
+  });
+  if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
+  // Where no surface with a Lambert lobe is seen paths are the one way there is.
+  const Way way = !ways.empty() ? ways.front() : Way{wish.indirect != "auto" ? method_named(wish.indirect) : IndirectMethod::gather, false, wish.rays, 0, 0};
+  d.indirect = way.method;
+  d.caustic_map = way.map;
+  d.record_rays = way.rays;
+  if (d.indirect == IndirectMethod::paths) d.kinds = way.map ? "caustic" : "";
+  d.reasons.push_back({"irradcache-build records", words});
 }
 
 void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
@@ -269,14 +231,15 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
   if (d.photons()) {
     if (wish.indirect == "paths" && media)
       throw InputError("--indirect paths: the scene has media, which photons light; choose records or gather");
-    std::vector<std::pair<int, Look>> looks;
+    std::vector<Look> looks;
+    d.photon_paths = 0;
     std::unique_ptr<FramePilot> middle;
     for (const int frame : d.looked) {
       auto pilot = std::make_unique<FramePilot>(wish, source, frame, d.kinds);
-      looks.emplace_back(frame, pilot->look(media));
+      looks.push_back(pilot->look());
       if (looks.size() == (d.looked.size() + 1) / 2) middle = std::move(pilot);
     }
-    join(looks, wish, d);
+    join(looks, wish, media, d);
     if (d.records()) d.new_share = middle->new_share(segment);
     d.together = pictures_together(segment.pictures().size(), d);
     decide_moving(segment, wish, media, source, d);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/render/choose_indirect.h"
+#include "lib/render/choose_light.h"
 #include "lib/render/choose_moving.h"
 
 namespace tempolux {
@@ -60,6 +60,7 @@ struct Reason {
 struct Decisions {
   std::string kinds;                    ///< of photons that later stages read: "caustic,indirect"; "": no photons
   IndirectMethod indirect = IndirectMethod::records;
+  bool caustic_map = false;             ///< caustic light where the eye looks is read from photons; else paths find it
   std::uint64_t photon_paths = 700'000; ///< of a photon map
   int record_rays = 500;
   bool learn_lights = false;            ///< light from far away comes through openings: it is learned which way
@@ -78,7 +79,6 @@ struct Decisions {
   bool photons() const { return !kinds.empty(); }
   bool points() const { return photons() && indirect != IndirectMethod::paths; }
   bool records() const { return photons() && indirect == IndirectMethod::records; }
-  bool caustics() const { return kinds.find("caustic") != std::string::npos; }
 };
 
 }  // namespace tempolux

@@ -326,7 +326,7 @@ class Builder {
         add_points(lit, c);
       }
     }
-    if (d.caustics()) {
+    if (d.caustic_map) {
       if (moved(lit)) c.file("--photons", stands_photons(lit));
       c.file(moved(lit) ? "--dynamic" : "--photons", photons(lit));
     }

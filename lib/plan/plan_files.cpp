@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json decisions_json(const Decisions& d) {
-  Json json = {{"photon_kinds", d.kinds}, {"indirect", kIndirectMethods[std::size_t(d.indirect)]}, {"paths", d.photon_paths},
+  Json json = {{"photon_kinds", d.kinds}, {"indirect", kIndirectMethods[std::size_t(d.indirect)]}, {"caustic_map", d.caustic_map}, {"paths", d.photon_paths},
                {"rays", d.record_rays}, {"learn_lights", d.learn_lights}, {"split", d.split},
                {"moving", kMovingMethods[std::size_t(d.moving)]},
                {"new_share", d.new_share}, {"pictures_together", d.together},
@@ -126,6 +126,7 @@ Decisions read_decisions(const std::string& text) {
     Decisions d;
     d.kinds = json.at("photon_kinds").get<std::string>();
     d.indirect = named<IndirectMethod>(kIndirectMethods, json.at("indirect"));
+    d.caustic_map = json.at("caustic_map");
     d.photon_paths = json.at("paths");
     d.record_rays = json.at("rays");
     d.learn_lights = json.at("learn_lights");

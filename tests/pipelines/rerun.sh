@@ -14,7 +14,7 @@ make_runs() {
   what=$1 expected=$2; shift 2
   : > "$log"
   if ! make -f Makefile.example --no-print-directory $target BIN="$bin" RUN="sh $PWD/tests/pipelines/record.sh $log" \
-      OUT="$work/out" SCENE="$scene" FRAMES=0-3 TIME="--segment $segment" SIZE=32x18 PHOTONS=2k PATHS=2 \
+      OUT="$work/out" SCENE="$scene" FRAMES=0-3 TIME="--segment $segment" INDIRECT=records SIZE=32x18 PHOTONS=2k PATHS=2 \
       POINTS='--point-count 1k' CACHE='--rays 20 --error-bound 1' PIXELS='--spp 1 --pixel-error 0' "$@" \
       > "$work/make.txt" 2>&1; then
     echo "FAILED: $what: make failed:"; cat "$work/make.txt"; exit 1

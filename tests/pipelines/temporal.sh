@@ -10,7 +10,7 @@ bad() { echo "FAILED: $*"; failed=1; }
 edit() { python3 -B tests/pipelines/edit_gltf.py "$@" || exit 1; }
 planned() { python3 -B tests/pipelines/planned.py "$@"; }
 make_it() {
-  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0-7 TIME='--segment 4' SIZE=48x27 PHOTONS=10k POINTS='--point-count 1k' \
+  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0-7 TIME='--segment 4' INDIRECT=records SIZE=48x27 PHOTONS=10k POINTS='--point-count 1k' \
     CACHE='--rays 50 --error-bound 0.5' PIXELS='--spp 2 --pixel-error 0' CHANNELS=RGBA,layers "$@"
 }
 run() { make_it "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }; }

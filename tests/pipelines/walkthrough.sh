@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 bad() { echo "FAILED: $*"; failed=1; }
 python3 -B pipelines/scenes/make_walkthrough.py pan pipelines/scenes/S3_indirect_room.glb "$work/pan.glb" || exit 1
 run() {
-  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
+  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 INDIRECT=records SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
     CACHE='--rays 20 --error-bound 1' PIXELS='--spp 2 --pixel-error 0' KEY_DISTANCE=4 "$@" > "$work/log" 2>&1
 }
 digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
@@ -55,7 +55,7 @@ done
 
 # Killed after a while, ever longer, with all it has started.
 for moment in $(seq 1 "$moments"); do
-  setsid make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
+  setsid make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 INDIRECT=records SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
     CACHE='--rays 20 --error-bound 1' PIXELS='--spp 2 --pixel-error 0' KEY_DISTANCE=4 METHOD=walkthrough OUT="$work/k" > "$work/log" 2>&1 &
   group=$!
   sleep "$(awk "BEGIN { print 0.3 + 3 * ($moment - 1) / $moments }")"

@@ -1,29 +1,22 @@
-#include "lib/render/choose_caustics.h"
+#include "lib/render/see_photons.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "lib/core/frame.h"
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
 #include "lib/material/bsdf.h"
 #include "lib/material/surface_material.h"
-#include "lib/render/photon_light.h"
-#include "lib/render/pilot_photons.h"
+#include "lib/gather/footprint_density.h"
 #include "lib/render/shading.h"
 
 namespace tempolux {
 namespace {
 
-constexpr std::uint64_t kPaths = 1 << 15;
 constexpr int kColumns = 32, kRows = 18;   ///< of the picture, by which the mean square is told
 constexpr float kSame = 1e-3f;   ///< of the distance: the camera sees the photon's place, not one before it
-/// Squared error of a density estimate by k photons is 1 / k of its square.
-constexpr double kMapError2 = 1.0 / PhotonLightOptions{}.caustic_neighbours;
-constexpr double kSure = 3;      ///< standard errors
-constexpr double kCosts = 2.5;   ///< times as much CPU, with a map: docs/methods/caustics.md
 
 /// Share of the picture that 1 m^2 of the plane through `point` (normal: unit) takes up; 0 where it cannot be told.
 double picture_share(const CameraView& view, Vec3 point, Vec3 normal, const std::array<double, 2>& at) {
@@ -70,19 +63,13 @@ SeenFlux seen_flux(const RenderScene& scene, const CameraView& view, const Photo
           cell((*at)[1], view.height(), kRows) * kColumns + cell((*at)[0], view.width(), kColumns)};
 }
 
-/// Of one path's light of a kind, of which paths found the mean `found` with the variance `seen`: at least that of light that none of them met.
-double variance(const IndirectPilot& paths, double found, double seen, const SeenPhotons& photons) {
-  const double missed = photons.mean - found;
-  return std::max(seen, missed > 0 ? paths.paths * std::max(0.0, missed * missed - kSure * kSure * photons.mean_error * photons.mean_error) : 0);
-}
-
 }  // namespace
 
-SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const char* kind, std::uint64_t seed) {
-  const formats::PhotonBlock photons = pilot_photons(scene.tracer, scene.lights, kind, kPaths, seed ^ 0x63617573746963ull);
+SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const PhotonView& photons, formats::PathKind kind) {
   std::vector<SeenFlux> seen(photons.photons.size());
   parallel_chunks(photons.photons.size(), 64, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) seen[i] = seen_flux(scene, view, photons, i);
+    for (std::size_t i = first; i < last; ++i)
+      if (photons.photons[i].kind == kind) seen[i] = seen_flux(scene, view, photons, i);
   });
   SeenPhotons pilot;
   std::vector<double> cells(kRows * kColumns, 0.0);
@@ -95,30 +82,6 @@ SeenPhotons see_photons(const RenderScene& scene, const CameraView& view, const 
   pilot.mean_error = std::sqrt(squares);
   for (const double cell : cells) pilot.square += cell * cell * double(cells.size());
   return pilot;
-}
-
-CausticChoice choose_caustics(const IndirectPilot& paths, const SeenPhotons& photons) {
-  const double by_paths = variance(paths, paths.caustic, paths.caustic_variance, photons) / std::max(1.0, paths.samples);
-  const double left = paths.rest_noise + by_paths, with_map = paths.rest_noise + kMapError2 * photons.square;
-  char text[200];
-  if (!(left > 0)) return {false, "no light is seen that mirrors, glass or gloss send onto matte surfaces"};
-  std::snprintf(text, sizeof text, "of the squared error that paths would leave %.0f %% is light that mirrors, glass and gloss send onto matte surfaces",
-                100 * by_paths / left);
-  return {left > kCosts * with_map, text};
-}
-
-IndirectChoice choose_beside_caustics(const IndirectPilot& paths, const SeenPhotons& caustic, const SeenPhotons& indirect) {
-  const double found = paths.indirect_share * paths.scattered, samples = std::max(1.0, paths.samples);
-  const double noise = variance(paths, found, paths.indirect_variance, indirect) / samples;
-  const double other = std::max(0.0, paths.rest_noise - paths.indirect_variance / samples) + kMapError2 * caustic.square;
-  const double sure = std::max(0.0, indirect.mean - kSure * indirect.mean_error);
-  const double share = sure / std::max(1e-300, std::max(0.0, paths.scattered - found - paths.caustic) + caustic.mean + sure);
-  char text[200];
-  std::snprintf(text, sizeof text, "photons show indirect light, at least %.0f %% of what surfaces scatter; paths find %.0f %% of what photons do", 100 * share,
-                100 * std::min(1.0, found / std::max(1e-300, indirect.mean)));
-  if (share < kLittleIndirect) return {IndirectMethod::paths, text};
-  if (paths.open_share <= kOpenScene) return {IndirectMethod::records, text};
-  return {noise > kIndirectPays * other ? IndirectMethod::gather : IndirectMethod::paths, text};
 }
 
 }  // namespace tempolux
