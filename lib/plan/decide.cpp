@@ -206,6 +206,21 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
   d.reasons.push_back({"ibr-warp", because});
 }
 
+/// Light textures need to know how many photons to start, and whether light from far away is learned.
+void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, Decisions& d) {
+  Wish known = wish;
+  known.indirect = "records";                // no pilot of how indirect light is found
+  d.indirect = IndirectMethod::paths;
+  d.photon_paths = 0;
+  for (const int frame : d.looked) {
+    const Look look = FramePilot(known, source, frame, d.kinds).look(false);
+    d.photon_paths = std::max(d.photon_paths, look.paths);
+    d.learn_lights |= look.learn;
+  }
+  d.view = view_of(segment, wish.width, wish.height, source);
+  d.reasons.push_back({"gather-temporal density", words(segment.states().size(), "state") + " of light in the segment"});
+}
+
 }  // namespace
 
 std::vector<int> looked_frames(const PlannedSegment& segment) {
@@ -250,7 +265,9 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
   d.looked = looked_frames(segment);
   d.kinds = kinds_of(segment.materials, media);
   d.reasons.push_back({"photon-trace", segment.materials.lambert ? segment.materials.lambert_words : "nothing reflects by a Lambert lobe"});
-  if (d.photons()) {
+  if (d.photons() && wish.method == FrameMethod::preview) {
+    decide_preview(segment, wish, source, d);
+  } else if (d.photons()) {
     if (wish.indirect == "paths" && media)
       throw InputError("--indirect paths: the scene has media, which photons light; choose records or gather");
     std::vector<std::pair<int, Look>> looks;
@@ -277,6 +294,7 @@ std::string decision_key(const PlannedSegment& segment, const Wish& wish, bool m
   }
   hasher.add(std::string_view(segment.standing));
   for (const std::string& word : {wish.indirect, wish.moving, wish.split, wish.common}) hasher.add(std::string_view(word));
+  hasher.add(double(wish.method == FrameMethod::preview));
   for (const double number : {double(wish.width), double(wish.height), double(wish.photons), double(wish.rays), wish.pixel_error, double(media)})
     hasher.add(number);
   return hasher.hex();

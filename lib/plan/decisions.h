@@ -13,8 +13,8 @@ namespace tempolux {
 enum class Quality : std::uint8_t { draft, final };
 inline constexpr const char* kQualities[] = {"draft", "final"};
 
-enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic };
-inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto"};
+enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic, preview };
+inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto", "preview"};
 
 /// What the user asks for. Words are options as on a command line, separated by blanks.
 struct Wish {
