@@ -256,8 +256,11 @@ Rgbd put_window(std::span<const FrameCounts* const> frames, std::span<const HitT
 }  // namespace
 
 double block_contrast(const HitBlock& old, int old_frames, const HitBlock& added, int added_frames) {
-  const double p = double(added_frames) / (old_frames + added_frames), squares = old.squares + added.squares;
-  return squares > 0 ? (added.flux - p * (old.flux + added.flux)) / std::sqrt(p * (1 - p) * squares) : 0;
+  const double p = double(added_frames) / (old_frames + added_frames), flux = old.flux + added.flux, squares = old.squares + added.squares;
+  if (!(squares > 0)) return 0;
+  const double z = (added.flux - p * flux) / std::sqrt(p * (1 - p) * squares);
+  const double skewness = (1 - 2 * p) / std::sqrt(p * (1 - p)) * std::sqrt(squares) / flux;
+  return z - skewness * (z * z - 1) / 6;
 }
 
 WindowThresholds::WindowThresholds(const WindowOptions& options) : reach_(options.reach) {

@@ -18,7 +18,7 @@ inline constexpr double kPhotonsInWindow = 2500;
 
 struct WindowOptions {
   int reach = 16;                  ///< frames to each side at most
-  double false_alarms = 0.01;      ///< share of the windows that close early though light is stationary
+  double false_alarms = 0.005;     ///< share of the windows that close early though light is stationary
   double width = 1;                ///< m: least deviation of the Gaussian by which irradiance is smoothed afterwards
 };
 
@@ -42,7 +42,8 @@ struct HitBlock {
 
 /// Is the light of `added` frames that of `old` ones? Standard deviations by which the flux of the added frames differs from their share
 /// of all photons: each photon of both falls into an added frame with probability p = added / (old + added), so the flux there has
-/// mean p S and variance p (1 - p) Q, S and Q sums over both. 0 if there are no photons.
+/// mean p S and variance p (1 - p) Q, S and Q sums over both, and skewness g = (1 - 2 p) / sqrt(p (1 - p)) sqrt(Q) / S, exactly so for photons
+/// of equal power. The deviation z is made that of a Gaussian by z - g (z^2 - 1) / 6 (Cornish and Fisher). 0 if there are no photons.
 double block_contrast(const HitBlock& old, int old_frames, const HitBlock& added, int added_frames);
 
 /// Deviations beyond which a test rejects, so that all tests of a window together reject stationary light with probability

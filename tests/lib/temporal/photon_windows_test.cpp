@@ -41,8 +41,8 @@ struct Simulated {
 double still(int) { return 1; }
 
 TEST(BlockContrast, IsThatOfPhotonsDealtToBlocksAtRandom) {
-  // 9 photons of 1 in one frame, 27 in two: of 36, 2/3 belong there, 24 with variance 36 x 2/9 = 8.
-  EXPECT_NEAR(block_contrast({9, 9, 9}, 1, {27, 27, 27}, 2), 3 / std::sqrt(8.0), 1e-12);
+  // 9 photons of 1 in one frame, 27 in two: of 36, 2/3 belong there, 24 with variance 36 x 2/9 = 8 and skewness (1 - 4/3) / sqrt(2/9) / 6.
+  EXPECT_NEAR(block_contrast({9, 9, 9}, 1, {27, 27, 27}, 2), 3 / std::sqrt(8.0) + 1 / std::sqrt(2.0) / 6 * (9.0 / 8 - 1) / 6, 1e-12);
   EXPECT_EQ(block_contrast({}, 1, {}, 2), 0);
   // Photons of other power: one of 3 beside three of 1: S = 6, Q = 12.
   EXPECT_NEAR(block_contrast({1, 3, 9}, 1, {3, 3, 3}, 1), 0, 1e-12);
