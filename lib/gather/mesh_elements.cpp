@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <unordered_map>
 
 #include "formats/error.h"
@@ -83,65 +82,77 @@ float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
   return d2 > kReach * kReach ? 0 : std::exp(-0.5f * d2);
 }
 
-/// Irradiance of some samples: flux over area of the donors under the kernel; `alike` (may be empty): ln of the irradiance of samples, which are
-/// then the donors, by which these are weighed.
-void smooth(const std::vector<Sample>& samples, std::span<const std::uint32_t> which, const std::vector<Sample>& donors, const MeshFilter& filter,
-            const Neighbours& neighbours, const std::vector<float>& alike, std::vector<Rgbd>& result) {
-  parallel_chunks(which.size(), kChunk, [&](std::size_t first, std::size_t last) {
-    for (std::size_t k = first; k < last; ++k) {
-      const std::uint32_t i = which[k];
+/// Irradiance of the samples that have a width: flux over area under the kernel; `alike` (may be empty): ln of irradiance by which
+/// neighbours are weighed.
+void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours, const std::vector<float>& alike,
+            std::vector<Rgbd>& result) {
+  parallel_chunks(samples.size(), kChunk, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (!(samples[i].width > 0)) continue;
       Rgbd flux{0.0};
       double area = 0;
       neighbours.around(samples[i].position, [&](std::uint32_t j) {
-        float w = weight(filter, samples[i], donors[j]);
+        float w = weight(filter, samples[i], samples[j]);
         if (w > 0 && !alike.empty()) {
           const float difference = (alike[j] - alike[i]) / filter.range;
           w *= std::exp(-0.5f * difference * difference);
         }
         if (!(w > 0)) return;
-        flux += donors[j].flux * double(w);
-        area += double(w) * double(donors[j].area);
+        flux += samples[j].flux * double(w);
+        area += double(w) * double(samples[j].area);
       });
       if (area > 0) result[i] = flux * (1 / area);
     }
   });
 }
 
-/// Elements joined to what a filter of this width cannot tell apart: those in a cube of its edge that face alike and have one material.
-std::vector<Sample> joined(const std::vector<Sample>& samples, float width) {
-  std::unordered_map<std::uint64_t, std::uint32_t> numbers;
+/// Elements joined to what a filter cannot tell apart: those in a cube of this edge [m] that face alike and have one material.
+struct Joined {
   std::vector<Sample> cubes;
+  std::vector<std::uint32_t> of;             ///< of each element its cube
+};
+Joined join(const std::vector<Sample>& samples, float edge) {
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers;
+  Joined joined;
   for (const Sample& s : samples) {
-    if (!(s.area > 0)) continue;
     const auto code = formats::encode_normal({s.normal.x, s.normal.y, s.normal.z});
     std::uint64_t key = mix64(std::uint64_t(s.material) << 32 | std::uint64_t(code[0] >> kNormalBits) << 16 | std::uint64_t(code[1] >> kNormalBits));
-    for (int c = 0; c < 3; ++c) key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(s.position[c]) / double(width)))));
-    const auto [found, is_new] = numbers.try_emplace(key, std::uint32_t(cubes.size()));
-    if (is_new) cubes.push_back({Vec3(0, 0, 0), Vec3(0, 0, 0), Rgbd{0.0}, 0, 0, s.material});
-    Sample& cube = cubes[found->second];
+    for (int c = 0; c < 3; ++c) key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(s.position[c]) / double(edge)))));
+    const auto [found, is_new] = numbers.try_emplace(key, std::uint32_t(joined.cubes.size()));
+    if (is_new) joined.cubes.push_back({Vec3(0, 0, 0), Vec3(0, 0, 0), Rgbd{0.0}, 0, 0, s.material});
+    joined.of.push_back(found->second);
+    Sample& cube = joined.cubes[found->second];
     cube.position = cube.position + s.position * s.area;
     cube.normal = cube.normal + s.normal * s.area;
     cube.flux += s.flux;
     cube.area += s.area;
   }
-  for (Sample& cube : cubes) {
+  for (Sample& cube : joined.cubes) {
+    if (!(cube.area > 0)) continue;
     cube.position = cube.position * (1 / cube.area);
     cube.normal = normalize(cube.normal);
   }
-  return cubes;
+  return joined;
 }
 
-/// Smooths each sample by its own width: widths within a factor of two together, wide ones over joined elements.
+/// Smooths each sample by its own width, those within a factor of two together. Small ones are joined first: the cost follows from the
+/// widths and not from the number of triangles.
 void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, std::vector<Rgbd>& result) {
   std::map<int, std::vector<std::uint32_t>> levels;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (samples[i].width > 0) levels[std::max(0, std::ilogb(samples[i].width / float(filter.width) * 1.0001f))].push_back(std::uint32_t(i));
+    if (samples[i].width > 0 && samples[i].area > 0) levels[std::max(0, std::ilogb(samples[i].width / float(filter.width) * 1.0001f))].push_back(std::uint32_t(i));
   for (const auto& [level, which] : levels) {
+    Joined joined = join(samples, std::ldexp(float(filter.width), level - 1));
     float widest = 0;
-    for (const std::uint32_t i : which) widest = std::max(widest, samples[i].width);
-    const std::vector<Sample> cubes = level > 0 ? joined(samples, std::ldexp(float(filter.width), level)) : std::vector<Sample>();
-    const std::vector<Sample>& donors = level > 0 ? cubes : samples;
-    smooth(samples, which, donors, filter, Neighbours(donors, widest * (filter.kind == MeshFilter::Kind::box ? 1 : kReach)), {}, result);
+    for (const std::uint32_t i : which) {
+      float& width = joined.cubes[joined.of[i]].width;
+      width = std::max(width, samples[i].width);
+      widest = std::max(widest, width);
+    }
+    const Neighbours neighbours(joined.cubes, widest * (filter.kind == MeshFilter::Kind::box ? 1 : kReach));
+    std::vector<Rgbd> smoothed(joined.cubes.size(), Rgbd(0.0));
+    smooth(joined.cubes, filter, neighbours, {}, smoothed);
+    for (const std::uint32_t i : which) result[i] = smoothed[joined.of[i]];
   }
 }
 
@@ -171,6 +182,14 @@ std::uint32_t MeshCuts::operator()(std::uint32_t surface, std::uint32_t triangle
 }
 
 double kernel_width(double area, double photons, double in_kernel) { return std::sqrt(in_kernel * area / (4 * std::numbers::pi * photons)); }
+
+MeshOptions window_widths(double area, double photons) {
+  const double width = kernel_width(area, std::max(1.0, photons), kPhotonsInWindow);
+  MeshOptions result;
+  result.filter.width = width > 0 ? width : 1;   // of a scene without surfaces
+  result.cell = kCellOfWindows * result.filter.width;
+  return result;
+}
 
 double surface_area(const SceneFrame& frame) {
   double area = 0;
@@ -308,9 +327,7 @@ void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const 
     if (filter.kind == MeshFilter::Kind::bilateral) {
       std::vector<float> alike;
       for (const Rgbd& e : irradiance) alike.push_back(float(std::log(std::max(1e-30, (e.r + e.g + e.b) / 3))));
-      std::vector<std::uint32_t> all(samples.size());
-      std::iota(all.begin(), all.end(), 0u);
-      smooth(samples, all, samples, filter, Neighbours(samples, float(filter.width) * kReach), alike, irradiance);
+      smooth(samples, filter, Neighbours(samples, float(filter.width) * kReach), alike, irradiance);
     }
     put_right(samples, elements, irradiance);
   }

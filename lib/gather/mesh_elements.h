@@ -78,6 +78,13 @@ inline constexpr double kPhotonsInKernel = 256;
 /// 4 pi deviations squared.
 double kernel_width(double area, double photons, double in_kernel = kPhotonsInKernel);
 
+/// Light textures of windows, the photons of many frames. Photons that the filter counts in the mean of a full one: noise of 1/50.
+inline constexpr double kPhotonsInWindow = 2500;
+/// Edge of their elements, in deviations of the filter: light is read linearly between elements, so that smaller ones would show no more.
+inline constexpr double kCellOfWindows = 2;
+/// Their widths where so many photons arrive in all frames of a full window at surfaces of this area.
+MeshOptions window_widths(double area, double photons);
+
 /// Area of all surfaces of the frame, one side [m^2].
 double surface_area(const SceneFrame& frame);
 

@@ -9,6 +9,7 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/gather/mesh_elements.h"
 
 namespace tempolux {
 namespace {
@@ -280,20 +281,29 @@ class Builder {
   }
 
   // ---- previews -------------------------------------------------------------------------------------------------
-  /// Frames before and after one whose photons its elements may take.
-  static constexpr int kReach = 16;
+  static constexpr int kReach = kPreviewWindow / 2;
   /// Photons of a frame: its own, whatever frames have the same light, so that windows collect different ones. In a segment of one state of light one
   /// map has as many as a window.
   std::string preview_photons(int frame, bool still) {
     const Decisions& d = decided(frame);
     Command c{"--frame " + std::to_string(frame) + (still ? "" : " --seed-mode frame"), {}, state(frame).light};
     add_view(frame, c);
-    c.option("--photons " + std::to_string(d.photon_paths * (still ? 2 * kReach + 1 : 1)) + " --kinds " + d.kinds);
+    c.option("--photons " + std::to_string(d.photon_paths * (still ? kPreviewWindow : 1)) + " --kinds " + d.kinds);
     return add(stage::photons, frame, c);
+  }
+  std::string texture_words_of(int frame) const {
+    std::ostringstream words;
+    words << "--kinds " << decided(frame).kinds << " --cell " << kCellOfWindows * decided(frame).texture_width;
+    return words.str();
+  }
+  std::string filter_words_of(int frame) const {
+    std::ostringstream words;
+    words << "--filter-width " << decided(frame).texture_width;
+    return words.str();
   }
   std::string counts(int frame) {
     const PlannedSegment& s = segment(frame);
-    Command c{"--frame " + std::to_string(frame) + " --counts --kinds " + decided(frame).kinds, {}, ""};
+    Command c{"--frame " + std::to_string(frame) + " --counts " + texture_words_of(frame), {}, ""};
     // What moves is cut by its size in these frames, and jumps are seen beside the frames around.
     for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last, frame - 2, frame - 1, frame, frame + 1})
       c.content += state(std::clamp(f, s.first, s.last)).light;
@@ -305,11 +315,11 @@ class Builder {
     const PlannedSegment& s = segment(lit);
     Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
     if (s.states().size() == 1) {
-      c.option("--kinds " + s.decisions.kinds);
+      c.option(texture_words_of(lit) + " " + filter_words_of(lit));
       c.file("--photons", preview_photons(lit, true));
       return add(stage::textures, lit, c);
     }
-    c.option("--counts");
+    c.option(filter_words_of(lit) + " --counts");
     for (int f = std::max(s.first, lit - kReach); f <= std::min(s.last, lit + kReach); ++f) c.file("", counts(f));
     return add(stage::windows, lit, c);
   }

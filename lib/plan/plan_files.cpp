@@ -20,6 +20,7 @@ Json decisions_json(const Decisions& d) {
                {"moving", kMovingMethods[std::size_t(d.moving)]},
                {"moving_cost", {d.moving_cost.light, d.moving_cost.records, d.moving_cost.photon_bytes}},
                {"walkthrough", d.walk}, {"view", d.view}, {"looked_at", d.looked}};
+  if (d.texture_width > 0) json["texture_width"] = d.texture_width;
   json["because"] = Json::object();
   for (const Reason& reason : d.reasons) json["because"][reason.stage] = reason.because;
   return json;
@@ -128,6 +129,7 @@ Decisions read_decisions(const std::string& text) {
     d.indirect = named<IndirectMethod>(kIndirectMethods, json.at("indirect"));
     d.photon_paths = json.at("paths");
     d.record_rays = json.at("rays");
+    d.texture_width = json.value("texture_width", 0.0);
     d.learn_lights = json.at("learn_lights");
     d.split = json.at("split");
     d.moving = named<MovingMethod>(kMovingMethods, json.at("moving"));

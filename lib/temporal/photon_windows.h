@@ -12,14 +12,11 @@
 
 namespace tempolux {
 
-/// Photons that the spatial filter counts in a window's mean: noise of 1/50. In a short window fewer: no filter is wider than one that counts
-/// kPhotonsInKernel photons of a single frame.
-inline constexpr double kPhotonsInWindow = 2500;
-
 struct WindowOptions {
   int reach = 16;                  ///< frames to each side at most
   double false_alarms = 0.005;     ///< share of the windows that close early though light is stationary
-  double width = 1;                ///< m: least deviation of the Gaussian by which irradiance is smoothed afterwards
+  double width = 1;                ///< m: least deviation of the Gaussian by which irradiance is smoothed afterwards; where photons are few, or
+                                   ///< windows short, it is wider, up to what counts kPhotonsInKernel photons of a single frame
 };
 
 /// Photons of one frame, counted by element.

@@ -135,10 +135,10 @@ def period():
         single, window, hits = [], [], []
         for f in (20, 35, 50, 64, 80, 95, 110):
             photons(folder, scene, f, "1M", "many.####.photons", "--segment", 129)
-            words = ("--segment", 129, "--cell", 0.9)
-            run(folder, "gather-temporal", "density", scene, "--frame", f, "--photons", "many.####.photons", *words, "--filter-width", 0.35, "-o", "many.meshirrad")
-            run(folder, "gather-temporal", "density", scene, "--frame", f, "--photons", "p.####.photons", *words, "--filter-width", 0.35, "-o", "one.meshirrad")
-            run(folder, "gather-temporal", "density", scene, "--frames", f"{f - 16}-{f + 16}", "--photons", "p.####.photons", *words, "--filter-width", 0.35, "-o", "w.####.meshirrad")
+            words = ("--segment", 129, "--cell", 0.68)   # 30 photons an element and frame
+            run(folder, "gather-temporal", "density", scene, "--frame", f, "--photons", "many.####.photons", *words, "--filter-width", 0.135, "-o", "many.meshirrad")
+            run(folder, "gather-temporal", "density", scene, "--frame", f, "--photons", "p.####.photons", *words, "--filter-width", 0.135, "-o", "one.meshirrad")
+            run(folder, "gather-temporal", "density", scene, "--frames", f"{f - 16}-{f + 16}", "--photons", "p.####.photons", *words, "--filter-width", 0.135, "-o", "w.####.meshirrad")
             reference = elements(folder, "many.meshirrad")
             single.append(error(elements(folder, "one.meshirrad"), reference) ** 2)
             window.append(error(elements(folder, f"w.{f:04}.meshirrad"), reference) ** 2)
@@ -202,7 +202,7 @@ def equal():
         folder = f"equal-{name}"
         photons(folder, file, "0-47", "25k", "p.####.photons", *words)
         run(folder, "gather-temporal", "density", file, "--frames", "0-47", "--photons", "p.####.photons", *words, "-o", "windows.####.meshirrad")
-        for count, kind in (("845k", "many"), ("25k", "few"), ("20M", "true")):
+        for count, kind in (("845k", "many"), ("25k", "few"), ("6M", "true")):
             own = "p.####.photons"
             if kind != "few":
                 own = f"{kind}.####.photons"

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "lib/temporal/light_jumps.h"
-#include "lib/temporal/photon_windows.h"
 #include "tools/common/option_words.h"
 
 namespace tempolux::tools {
@@ -68,10 +67,12 @@ class SegmentFrames {
   std::map<int, SceneFrame> others_;
 };
 
-/// Of windows: the same in all frames of a segment, so it follows from the paths and not from the photons that were stored.
-void set_window_widths(const CountOptions& options, double width, MeshOptions& mesh) {
-  mesh.filter.width = options.mesh.filter.width > 0 ? options.mesh.filter.width : width > 0 ? width : 1;
-  mesh.cell = options.mesh.cell > 0 ? options.mesh.cell : kCellOfWindows * mesh.filter.width;
+/// Of windows: the same in all frames of a segment, so they follow from the paths and not from the photons that were stored.
+MeshOptions widths_of_windows(const CountOptions& options, const SceneFrame& first, std::uint64_t paths) {
+  MeshOptions mesh = window_widths(surface_area(first), double(paths) * options.frames);
+  if (options.mesh.filter.width > 0) mesh.filter.width = options.mesh.filter.width, mesh.cell = kCellOfWindows * mesh.filter.width;
+  if (options.mesh.cell > 0) mesh.cell = options.mesh.cell;
+  return mesh;
 }
 
 }  // namespace
@@ -96,8 +97,7 @@ formats::MeshirradFile count_photons(Tool& tool, SceneInput& input, const CountO
   formats::MeshirradFile file;
   std::vector<const SceneFrame*> measured{&frame};
   if (options.for_windows) measured = segment.measured();
-  mesh = with_widths(options.mesh, *measured.front(), map.photons.size());
-  if (options.for_windows) set_window_widths(options, kernel_width(surface_area(*measured.front()), double(map.header.emitted_count) * options.frames, kPhotonsInWindow), mesh);
+  mesh = options.for_windows ? widths_of_windows(options, *measured.front(), map.header.emitted_count) : with_widths(options.mesh, frame, map.photons.size());
   const auto& o = map.header.origin;
   MeshSums sums(tracer, MeshCuts(mesh.cell, measured), unit_of(map.totals.emitted_flux[0] + map.totals.emitted_flux[1] + map.totals.emitted_flux[2]));
   sums.add(map.photons, Vec3(Vec3d{o[0], o[1], o[2]} - frame.origin));

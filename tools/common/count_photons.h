@@ -9,9 +9,6 @@
 
 namespace tempolux::tools {
 
-/// Edge of an element for windows, in deviations of the filter: light is linear between elements when it is read, so that more would show no more.
-inline constexpr double kCellOfWindows = 2;
-
 struct CountOptions {
   std::string photons;                        ///< file, or a pattern
   std::vector<std::string> kinds{"indirect"};
