@@ -59,6 +59,15 @@ done
 "$info" --sheet $out/light-textures.png --columns 1 --tile 160 "$work/counted.exr" "$work/smoothed.exr"
 "$info" --sheet $out/light-textures-beside.png --columns 3 --tile 240 "$work/counted.exr" "$work/smoothed.exr" "$work/f.exr"
 
+# Photons over time: of this frame alone, and of the frames of its segment.
+"$bin/photon-trace" $scene --frames 0-23 --photons 25k --seed-mode frame --kinds indirect -o "$work/few.##.photons"
+"$bin/gather-temporal" density $scene --frame 12 --photons "$work/few.##.photons" -o "$work/alone.12.meshirrad"
+"$bin/gather-temporal" density $scene --frames 0-23 --photons "$work/few.##.photons" -o "$work/windows.##.meshirrad"
+for textures in alone windows; do
+  "$bin/frame-render" $scene --frame 12 --size 320x180 --meshirrad "$work/$textures.12.meshirrad" -o "$work/$textures.exr"
+done
+"$info" --sheet $out/density.png --columns 1 --tile 160 "$work/alone.exr" "$work/windows.exr"
+
 # A walk: every fourth frame, keys marked; one frame as it was warped, and what of it is traced.
 tools=$(realpath "$bin") top=$PWD
 make -f Makefile.example --no-print-directory demo BIN="$tools" METHOD=walkthrough SCENE=pipelines/scenes/S4_atrium.glb SIZE=320x180 OUT="$work/walk"

@@ -45,9 +45,13 @@ stands_cache/%.irradcache:
 	$(run)/irradcache-build records $(seen) -o $@ --stats stands_cache/$*.json
 kept/%.irradcache kept/%.radsamples:
 	$(run)/gather-temporal final $(seen) -o kept/$*.radsamples --cache kept/$*.irradcache --stats kept/$*.json
-# In smoke: light textures, photons counted in elements of the surfaces and smoothed.
+# In smoke and previews: light textures, photons counted in elements of the surfaces and smoothed; windows: those of many frames.
 textures/%.meshirrad:
 	$(run)/st-filter mesh $(scene) -o $@ --stats textures/$*.json
+counts/%.meshirrad:
+	$(run)/st-filter mesh $(scene) -o $@ --stats counts/$*.json
+windows/%.meshirrad:
+	$(run)/gather-temporal density $(scene) -o $@ --stats windows/$*.json
 # From where light of sky and suns reaches what the cameras of a segment see.
 lights/%.lightgrid:
 	$(run)/frame-render $(seen) -o $@ --stats lights/$*.json

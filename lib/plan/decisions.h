@@ -13,8 +13,11 @@ namespace tempolux {
 enum class Quality : std::uint8_t { draft, final };
 inline constexpr const char* kQualities[] = {"draft", "final"};
 
-enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic };
-inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto"};
+enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic, preview };
+inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto", "preview"};
+
+/// A preview's elements collect photons over this many frames at most, those before, at and after a frame.
+inline constexpr int kPreviewWindow = 33;
 
 /// What the user asks for. Words are options as on a command line, separated by blanks.
 struct Wish {
@@ -63,6 +66,7 @@ struct Decisions {
   bool caustic_map = false;             ///< caustic light where the eye looks is read from photons; else paths find it
   std::uint64_t photon_paths = 700'000; ///< of a photon map
   int record_rays = 500;
+  double texture_width = 0;             ///< of a preview's light textures, m: deviation of their filter; 0: no preview
   bool learn_lights = false;            ///< light from far away comes through openings: it is learned which way
   bool split = false;                   ///< bright points are divided from the others and sampled explicitly
   MovingMethod moving = MovingMethod::anew;

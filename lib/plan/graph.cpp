@@ -9,6 +9,7 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
+#include "lib/gather/mesh_elements.h"
 
 namespace tempolux {
 namespace {
@@ -75,6 +76,7 @@ class Builder {
       : plan_(plan), wish_(wish), tool_hash_(tool_hash), majorants_(majorants) {
     size_ = "--size " + std::to_string(wish.width) + "x" + std::to_string(wish.height);
     pixels_ = without(wish.pixels, "--learn-lights");
+    preview_ = wish.method == FrameMethod::preview;
   }
 
   Graph build() {
@@ -298,6 +300,50 @@ class Builder {
     return add(stage::textures, lit, c);
   }
 
+  // ---- previews -------------------------------------------------------------------------------------------------
+  static constexpr int kReach = kPreviewWindow / 2;
+  /// Photons of a frame: its own, whatever frames have the same light, so that windows collect different ones. In a segment of one state of light one
+  /// map has as many as a window.
+  std::string preview_photons(int frame, bool still) {
+    const Decisions& d = decided(frame);
+    Command c{"--frame " + std::to_string(frame) + (still ? "" : " --seed-mode frame"), {}, state(frame).light};
+    add_view(frame, c);
+    c.option("--photons " + std::to_string(d.photon_paths * (still ? kPreviewWindow : 1)) + " --kinds " + d.kinds);
+    return add(stage::photons, frame, c);
+  }
+  std::string texture_words_of(int frame) const {
+    std::ostringstream words;
+    words << "--kinds " << decided(frame).kinds << " --cell " << kCellOfWindows * decided(frame).texture_width;
+    return words.str();
+  }
+  std::string filter_words_of(int frame) const {
+    std::ostringstream words;
+    words << "--filter-width " << decided(frame).texture_width;
+    return words.str();
+  }
+  std::string counts(int frame) {
+    const PlannedSegment& s = segment(frame);
+    Command c{"--frame " + std::to_string(frame) + " --counts " + texture_words_of(frame), {}, ""};
+    // What moves is cut by its size in these frames, and jumps are seen beside the frames around.
+    for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last, frame - 2, frame - 1, frame, frame + 1})
+      c.content += state(std::clamp(f, s.first, s.last)).light;
+    c.file("--photons", preview_photons(frame, false));
+    return add(stage::counts, frame, c);
+  }
+  /// Light textures of a state of light.
+  std::string preview_light(int lit) {
+    const PlannedSegment& s = segment(lit);
+    Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
+    if (s.states().size() == 1) {
+      c.option(texture_words_of(lit) + " " + filter_words_of(lit));
+      c.file("--photons", preview_photons(lit, true));
+      return add(stage::textures, lit, c);
+    }
+    c.option(filter_words_of(lit) + " --counts");
+    for (int f = std::max(s.first, lit - kReach); f <= std::min(s.last, lit + kReach); ++f) c.file("", counts(f));
+    return add(stage::windows, lit, c);
+  }
+
   /// What light from far away reaches what the cameras of the segment see, learned once.
   std::string lights(int frame) {
     if (!decided(frame).learn_lights || !has_word(wish_.pixels, "--learn-lights")) return "";
@@ -316,7 +362,9 @@ class Builder {
     const Decisions& d = decided(frame);
     const int lit = state(frame).lit_frame;
     c.content += state(frame).light;
-    if (plan_.media && wish_.textures && d.photons()) {
+    if (preview_ && d.photons()) {
+      c.file("--meshirrad", preview_light(lit));
+    } else if (plan_.media && wish_.textures && d.photons()) {
       c.file("--meshirrad", textures(lit));
     } else if (d.points()) {
       if (d.records()) {
@@ -326,7 +374,7 @@ class Builder {
         add_points(lit, c);
       }
     }
-    if (d.caustic_map) {
+    if (d.caustic_map && !preview_) {
       if (moved(lit)) c.file("--photons", stands_photons(lit));
       c.file(moved(lit) ? "--dynamic" : "--photons", photons(lit));
     }
@@ -479,6 +527,7 @@ class Builder {
   const ToolHash& tool_hash_;
   const MajorantsText& majorants_;
   std::string size_, pixels_;
+  bool preview_ = false;
   Graph graph_;
   std::map<int, std::string> majorants_known_, records_;
   std::map<long long, std::string> intervals_;
@@ -516,7 +565,7 @@ std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish)
   for (const int frame : frames) {
     add(frame - wish.filter / 2, frame + wish.filter / 2);
     const int first = frame - frame % wish.key_distance;
-    if (wish.method != FrameMethod::frames) add(first, first + wish.key_distance);
+    if (wish.method != FrameMethod::frames && wish.method != FrameMethod::preview) add(first, first + wish.key_distance);
   }
   return {helpers.begin(), helpers.end()};
 }
@@ -524,6 +573,8 @@ std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish)
 Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, const MajorantsText& majorants) {
   if (plan.media && wish.method == FrameMethod::walkthrough)
     throw InputError("METHOD=walkthrough: the scene has media, which warping between keys does not know; use METHOD=frames");
+  if (plan.media && wish.method == FrameMethod::preview)
+    throw InputError("METHOD=preview: the scene has media, which light textures leave out; use METHOD=frames SURFACES=textures");
   if (!plan.media && !(wish.update.empty() && wish.refine.empty()))
     throw InputError("UPDATE and REFINE are for maps of scenes with media; this scene has none");
   if (wish.filter > 0 && wish.method == FrameMethod::walkthrough)

@@ -20,6 +20,7 @@ Json decisions_json(const Decisions& d) {
                {"moving", kMovingMethods[std::size_t(d.moving)]},
                {"new_share", d.new_share}, {"pictures_together", d.together},
                {"walkthrough", d.walk}, {"view", d.view}, {"looked_at", d.looked}};
+  if (d.texture_width > 0) json["texture_width"] = d.texture_width;
   json["because"] = Json::object();
   for (const Reason& reason : d.reasons) json["because"][reason.stage] = reason.because;
   return json;
@@ -129,6 +130,7 @@ Decisions read_decisions(const std::string& text) {
     d.caustic_map = json.at("caustic_map");
     d.photon_paths = json.at("paths");
     d.record_rays = json.at("rays");
+    d.texture_width = json.value("texture_width", 0.0);
     d.learn_lights = json.at("learn_lights");
     d.split = json.at("split");
     d.moving = named<MovingMethod>(kMovingMethods, json.at("moving"));

@@ -16,13 +16,14 @@ struct Preset {
   double threshold;         ///< of a walkthrough, relMSE
 };
 constexpr Preset kDraft{100'000, "--point-count 10k --light-samples 2", 150, "--error-bound 0.3", 0.05, 2, 0.035};
+constexpr std::uint64_t kPreviewPhotons = 25'000;   ///< of a frame, as in the paper
 constexpr Preset kFinal{700'000, "", 500, "", 0.016, 4, 0.01};
 
 }  // namespace
 
 Wish with_preset(Wish wish) {
   const Preset& preset = wish.quality == Quality::draft ? kDraft : kFinal;
-  if (wish.photons == 0) wish.photons = preset.photons;
+  if (wish.photons == 0) wish.photons = wish.method == FrameMethod::preview ? kPreviewPhotons : preset.photons;
   if (wish.rays == 0) wish.rays = preset.rays;
   if (wish.pixel_error == 0) wish.pixel_error = preset.pixel_error;
   if (wish.points.empty()) wish.points = preset.points;

@@ -77,16 +77,24 @@ constexpr ManualText kTexts[] = {
      "\n"
      "A range of frames keeps the samples in memory and writes those of each frame; --resume goes on after the last one that is whole. Each frame alone, "
      "with --previous, gives the same files. Points of all frames must be made with the same options: those on what stands have the "
-     "same places then.",
+     "same places then.\n"
+     "\n"
+     "gather-temporal density SCENE --photons FILE -o FILE makes light textures from the photons of many frames instead: each element of the surfaces takes "
+     "those of as many frames before and after as its light stands still (docs/methods/density.md). Its options: gather-temporal density --help.",
      ".irradpoints: light on all surfaces, read (formats/irradpoints/irradpoints.md)\n"
      ".radsamples: records with their samples (formats/radsamples/radsamples.md)\n"
-     ".irradcache: the records of a frame (formats/irradcache/irradcache.md)",
+     ".irradcache: the records of a frame (formats/irradcache/irradcache.md)\n"
+     ".photons, .meshirrad: read and written by gather-temporal density (formats/meshirrad/meshirrad.md)",
      "gather-temporal final room.glb --frames 0-23 --points p.####.irradpoints --size 640x360 -o s.####.radsamples "
      "--cache c.####.irradcache\n"
      "# One frame after the other, as make does.\n"
      "gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 640x360 -o s.0000.radsamples --cache c.0000.irradcache\n"
      "gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 640x360 --previous s.0000.radsamples -o s.0001.radsamples "
-     "--cache c.0001.irradcache",
+     "--cache c.0001.irradcache\n"
+     "# From the photons of many frames: quick and quiet previews.\n"
+     "photon-trace room.glb --frames 0-47 --photons 25k --seed-mode frame --kinds indirect -o p.####.photons\n"
+     "gather-temporal density room.glb --frames 0-47 --photons p.####.photons -o d.####.meshirrad\n"
+     "frame-render room.glb --frames 0-47 --size 640x360 --meshirrad d.####.meshirrad -o f.####.exr",
      "irradcache-build frame-render tempolux-info"},
     {"frame-render",
      "Traces the pixels of a frame: direct light is sampled at the lights, indirect light is read from an irradiance "
