@@ -34,6 +34,16 @@ std::string without(const std::string& words, const std::string& word) {
 
 bool has_word(const std::string& words, const std::string& word) { return without(words, word).size() != without(words, "").size(); }
 
+bool has_channel(const std::string& channels, const std::string& name) { return ("," + channels + ",").find("," + name + ",") != std::string::npos; }
+
+/// Both lists of channels as one.
+std::string with_channels(std::string channels, const std::string& more) {
+  std::istringstream stream(more);
+  for (std::string name; std::getline(stream, name, ',');)
+    if (!has_channel(channels, name)) channels += "," + name;
+  return channels;
+}
+
 /// Options of a command, and the files among them.
 struct Command {
   std::string words;
@@ -333,32 +343,32 @@ class Builder {
     return add(stage::smoke, frame, c);
   }
   std::string clear_picture(int frame) {
-    const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk));
+    const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk && wish_.filter <= 1));
     if (walk) return walked_picture(frame);
-    if (wish_.filter > 0) return filtered_picture(frame);
+    if (wish_.filter > 0) return filtered_picture(frame, wish_.channels);
     return add(stage::pictures, frame, frame_command(frame, pixels_, wish_.channels));
   }
 
+  /// Channels of a frame that is filtered to these.
+  std::string raw_channels(const std::string& shown) const {
+    return with_channels(std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish_.filter > 1 ? ",motion" : ""), shown);
+  }
   /// A frame with the halves of its samples, filtered alone or with those around it. The window ends at the animation's ends.
-  std::string filtered_picture(int frame) {
+  std::string filtered_picture(int frame, const std::string& shown) {
     // Frames around it must have noise of their own.
     const std::string pixels = pixels_ + (wish_.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
-    std::string channels = std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish_.filter > 1 ? ",motion" : "");
-    std::istringstream asked(wish_.channels);
-    for (std::string name; std::getline(asked, name, ',');)
-      if (("," + channels + ",").find("," + name + ",") == std::string::npos) channels += "," + name;
     Command c;
     std::size_t position = 0;
     for (int f = frame - wish_.filter / 2; f <= frame + wish_.filter / 2; ++f) {
       if (f != clamped(f)) continue;
-      const int shown = state(f).picture;
-      const std::string raw = add(stage::raw, shown, frame_command(shown, pixels, channels));
+      const int pictured = state(f).picture;
+      const std::string raw = add(stage::raw, pictured, frame_command(pictured, pixels, raw_channels(shown)));
       if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
       if (f == frame) position = c.inputs.size();
     }
     if (wish_.filter == 1)
       for (GraphFile& file : graph_.files) file.passing |= file.name == c.inputs.front();
-    c.option("--position " + std::to_string(position) + " --channels " + wish_.channels);
+    c.option("--position " + std::to_string(position) + " --channels " + shown);
     return add(stage::filtered, frame, c);
   }
 
@@ -371,12 +381,9 @@ class Builder {
   }
   std::string key_picture(int frame) {
     frame = state(frame).picture;
-    std::string channels = wish_.channels;
-    const auto add_channel = [&](const std::string& name) {
-      if (("," + channels + ",").find("," + name + ",") == std::string::npos) channels += "," + name;
-    };
-    for (const char* name : {"Z", "N", "id"}) add_channel(name);
-    if (("," + channels + ",").find(",layers,") == std::string::npos) add_channel("specular");
+    const bool layers = wish_.filter > 0 || has_channel(wish_.channels, "layers");
+    const std::string channels = with_channels(wish_.channels, layers ? "Z,N,id,layers" : "Z,N,id,specular");
+    if (wish_.filter > 0) return filtered_picture(frame, channels);
     return add(stage::keys, frame, frame_command(frame, pixels_, channels));
   }
   /// The interval of equal light between first keys that holds a frame strictly inside, or none: then the frame is a key.
@@ -402,8 +409,7 @@ class Builder {
     c.file("", key_picture(i.last));
     std::ostringstream words;
     words << c.words << " " << frame_digits(i.middle()) << " " << key_picture(i.middle()) << " "
-          << (wish_.threshold_of_seen ? 100 * wish_.threshold : wish_.threshold) << (wish_.threshold_of_seen ? "% " : " ")
-          << (left.empty() ? "-" : left) << " " << (right.empty() ? "-" : right);
+          << wish_.threshold << " " << (left.empty() ? "-" : left) << " " << (right.empty() ? "-" : right);
     c.words = words.str();
     c.content = tool_hash_("aqm-compare") + cameras({i.middle()});
     const std::string name = add(stage::walk, interval_name(i), c);
@@ -417,10 +423,12 @@ class Builder {
     if (std::ranges::find(graph_.intervals, decided_by) == graph_.intervals.end()) graph_.intervals.push_back(decided_by);
     Command light{"", {}, ""};
     add_light(frame, light);
-    Command c{"", {}, tool_hash_("ibr-warp") + light.content + cameras({frame})};
+    Command c{"", {}, tool_hash_("ibr-warp") + (wish_.filter > 0 ? tool_hash_("st-filter") : "") + light.content + cameras({frame})};
     c.file("", decided_by);
     c.option(frame_digits(frame));
-    for (const std::string& words : {light.words, size_, pixels_, "--channels " + wish_.channels}) c.option(words);
+    c.option(wish_.filter > 0 ? wish_.channels : "-");
+    for (const std::string& words : {light.words, size_, pixels_, "--channels " + (wish_.filter > 0 ? raw_channels(wish_.channels) : wish_.channels)})
+      c.option(words);
     c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());
     return add(stage::walked, frame, c);
   }
@@ -487,8 +495,9 @@ Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, 
     throw InputError("METHOD=walkthrough: the scene has media, which warping between keys does not know; use METHOD=frames");
   if (!plan.media && !(wish.update.empty() && wish.refine.empty()))
     throw InputError("UPDATE and REFINE are for maps of scenes with media; this scene has none");
-  if (wish.filter > 0 && wish.method == FrameMethod::walkthrough)
-    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=walkthrough: keys are not filtered; use one or the other");
+  if (wish.filter > 1 && wish.method == FrameMethod::walkthrough)
+    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=walkthrough: what is warped has its keys' noise in all frames, so that "
+                     "frames around it know nothing more; use FILTER=1");
   return Builder(plan, wish, tool_hash, majorants).build();
 }
 
