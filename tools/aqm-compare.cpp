@@ -46,7 +46,7 @@ void declare(tools::Tool& tool, Options& o) {
   app.add_option("reference", o.reference, "its reference, unless --reference-halves is given");
   app.add_option("--reference-halves", o.halves, "two independent halves of the reference: no noise floor")
       ->expected(2)->type_name("FILE");
-  app.add_flag("--halves", o.own_halves, "the two frames are halves of one image: report its noise");
+  app.add_flag("--halves", o.own_halves, "the two frames are halves of one image, which is their mean: report how noisy it is, and whether that is seen");
   app.add_option("--layer", o.layer, "layer or channel, such as indirect, N, Z; RGB without")
       ->type_name("NAME");
   app.add_option("--mask", o.mask, "EXR; pixels where all its channels are 0 do not count")
@@ -189,7 +189,7 @@ Comparison compare_frames(tools::Tool& tool, const Options& o, const std::vector
     builder.add(pair, frames[i].value_or(loaded.frame_number()), loaded.inputs().test.name);
     if (o.needs_vision()) {
       tool.stats().phase("vision");
-      if (!viewing) viewing = tools::vision_options(o.vision, loaded);
+      if (!viewing) viewing = tools::vision_options(o.vision, loaded), viewing->of_mean = o.own_halves;
       const JudgedFrame judged = judge_frame(pair, loaded.flow(), *viewing, loaded.inputs().test.name);
       builder.add(judged.quality, *viewing);
       outputs.write(judged, loaded, *viewing, frames[i]);

@@ -120,8 +120,8 @@ void add_wishes(tools::Tool& tool, Options& options) {
       ->type_name("SHARE");
   app.add_option("--strategy", wish.strategy, "which groups of photons --update takes, as photon-trace --strategy")->capture_default_str();
   app.add_option("--key-distance", wish.key_distance, "frames between the first keys of a walkthrough")->capture_default_str()->check(tools::number_between(2, 1000));
-  app.add_option("--halve-above", wish.threshold, "relMSE between two keys above which an interval is halved; 5%: AQM, the share seen to differ; 0: the preset's")
-      ->capture_default_str()->check(tools::number_between(0, 100))->transform(tools::percent([&] { wish.threshold_of_seen = true; }));
+  app.add_option("--halve-above", wish.threshold, "an interval between keys is halved if a viewer sees in more than this share of its pixels, such as 5%, that "
+                 "they are wrong (AQM)")->capture_default_str()->check(tools::number_between(0, 1))->transform(tools::percent([] {}));
   app.add_option("--report", options.report, "frames to compare with path tracing; ends: the first and the last")->type_name("FRAMES");
   app.add_option("--reference-samples", wish.reference_samples, "samples of a pixel of what they are compared with")->capture_default_str()
       ->check(tools::number_between(2, 1 << 20));

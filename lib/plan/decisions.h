@@ -40,8 +40,7 @@ struct Wish {
   std::string refine;                   ///< further paths for what smoke shows of a map, as a share of its paths, "5%"; "": none
   std::string strategy = "census";      ///< which groups, as photon-trace --strategy
   int key_distance = 16;                ///< frames between the first keys of a walkthrough
-  double threshold = 0;                 ///< relMSE above which an interval is halved; 0: the preset's
-  bool threshold_of_seen = false;       ///< the threshold is a share of pixels that a viewer sees to differ (AQM), not relMSE
+  double threshold = 0.05;              ///< an interval of a walkthrough is halved if a viewer sees in a larger share of its pixels that they are wrong (AQM)
   int reference_samples = 64;           ///< of a pixel of the reference that a report compares with
   std::vector<int> report;              ///< frames to compare with path tracing
   std::string common;                   ///< words of all stages that shape content: --fps, --volume ... (they are hashed, not used)

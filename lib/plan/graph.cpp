@@ -43,9 +43,9 @@ std::string with_channels(std::string channels, const std::string& more) {
   return channels;
 }
 
-/// Channels of raw frames. A window of several frames is laid along their motion.
-std::string raw_channels(const Wish& wish) {
-  return with_channels(std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish.filter > 1 ? ",motion" : ""), wish.channels);
+/// Channels of a raw frame that is filtered to these. A window of several frames is laid along their motion.
+std::string raw_channels(const Wish& wish, const std::string& filtered) {
+  return with_channels(std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish.filter > 1 ? ",motion" : ""), filtered);
 }
 
 /// Options of a command, and the files among them.
@@ -417,28 +417,28 @@ class Builder {
     return add(stage::smoke, frame, c);
   }
   std::string clear_picture(int frame) {
-    const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk));
+    const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk && wish_.filter <= 1));
     if (walk) return walked_picture(frame);
-    if (wish_.filter > 0) return filtered_picture(frame);
+    if (wish_.filter > 0) return filtered_picture(frame, wish_.channels);
     return add(stage::pictures, frame, frame_command(frame, pixels_, wish_.channels));
   }
 
   /// A frame with the halves of its samples, filtered alone or with those around it. The window ends at the animation's ends.
-  std::string filtered_picture(int frame) {
+  std::string filtered_picture(int frame, const std::string& channels) {
     // Frames around it must have noise of their own.
     const std::string pixels = pixels_ + (wish_.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
-    const std::string channels = raw_channels(wish_);
+    const std::string raw_names = raw_channels(wish_, channels);
     Command c;
     std::size_t position = 0;
     for (int f = frame - wish_.filter / 2; f <= frame + wish_.filter / 2; ++f) {
       if (f != clamped(f)) continue;
-      const int like = shown(f, channels);
-      const std::string raw = add(stage::raw, like, frame_command(like, pixels, channels));
+      const int like = shown(f, raw_names);
+      const std::string raw = add(stage::raw, like, frame_command(like, pixels, raw_names));
       if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
       if (f == frame) position = c.inputs.size();
     }
     if (wish_.filter == 1) graph_.files[graph_.by_name.at(c.inputs.front())].passing = true;
-    c.option("--position " + std::to_string(position) + " --channels " + wish_.channels);
+    c.option("--position " + std::to_string(position) + " --channels " + channels);
     return add(stage::filtered, frame, c);
   }
 
@@ -450,9 +450,10 @@ class Builder {
     return true;
   }
   std::string key_picture(int frame) {
-    std::string channels = with_channels(wish_.channels, "Z,N,id");
-    if (!has_channel(channels, "layers")) channels = with_channels(channels, "specular");
+    const bool layers = wish_.filter > 0 || has_channel(wish_.channels, "layers");
+    const std::string channels = with_channels(wish_.channels, layers ? "Z,N,id,layers" : "Z,N,id,specular");
     frame = shown(frame, channels);
+    if (wish_.filter > 0) return filtered_picture(frame, channels);
     return add(stage::keys, frame, frame_command(frame, pixels_, channels));
   }
   /// The interval of equal light between first keys that holds a frame strictly inside, or none: then the frame is a key.
@@ -477,7 +478,7 @@ class Builder {
     c.file("", key_picture(i.first));
     c.file("", key_picture(i.last));
     std::ostringstream threshold;
-    threshold << (wish_.threshold_of_seen ? 100 * wish_.threshold : wish_.threshold) << (wish_.threshold_of_seen ? "%" : "");
+    threshold << wish_.threshold;
     for (const std::string& word : {frame_digits(i.middle()), key_picture(i.middle()), threshold.str(), left.empty() ? "-" : left, right.empty() ? "-" : right})
       c.option(word);
     c.content = tool_hash_("aqm-compare") + cameras({i.middle()});
@@ -492,10 +493,12 @@ class Builder {
     if (std::ranges::find(graph_.intervals, decided_by) == graph_.intervals.end()) graph_.intervals.push_back(decided_by);
     Command light{"", {}, ""};
     add_light(frame, light);
-    Command c{"", {}, tool_hash_("ibr-warp") + light.content + cameras({frame}) + in_motion(frame, wish_.channels)};
+    Command c{"", {}, tool_hash_("ibr-warp") + (wish_.filter > 0 ? tool_hash_("st-filter") : "") + light.content + cameras({frame}) + in_motion(frame, wish_.channels)};
     c.file("", decided_by);
     c.option(frame_digits(frame));
-    for (const std::string& words : {light.words, size_, pixels_, "--channels " + wish_.channels}) c.option(words);
+    c.option(wish_.filter > 0 ? wish_.channels : "-");
+    for (const std::string& words : {light.words, size_, pixels_, "--channels " + (wish_.filter > 0 ? raw_channels(wish_, wish_.channels) : wish_.channels)})
+      c.option(words);
     c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());
     return add(stage::walked, frame, c);
   }
@@ -558,7 +561,7 @@ std::string frame_digits(int frame) {
 
 std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish) {
   std::set<int> helpers;
-  const int beside = has_channel(raw_channels(wish), "motion");
+  const int beside = has_channel(raw_channels(wish, wish.channels), "motion");
   const auto add = [&](int first, int last) {
     for (int f = first - beside; f <= last + beside; ++f) helpers.insert(f);
   };
@@ -577,8 +580,9 @@ Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, 
     throw InputError("METHOD=preview: the scene has media, which light textures leave out; use METHOD=frames SURFACES=textures");
   if (!plan.media && !(wish.update.empty() && wish.refine.empty()))
     throw InputError("UPDATE and REFINE are for maps of scenes with media; this scene has none");
-  if (wish.filter > 0 && wish.method == FrameMethod::walkthrough)
-    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=walkthrough: keys are not filtered; use one or the other");
+  if (wish.filter > 1 && wish.method == FrameMethod::walkthrough)
+    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=walkthrough: what is warped has its keys' noise in all frames, so that "
+                     "frames around it know nothing more; use FILTER=1");
   return Builder(plan, wish, tool_hash, majorants).build();
 }
 

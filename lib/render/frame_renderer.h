@@ -64,9 +64,10 @@ struct RenderedFrame {
 /// number of threads.
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options);
 
-/// Puts pixels that the mask leaves out (0) back to those of `base`, bit for bit, in every channel of `image`.
+/// Puts pixels that the mask leaves out (0) back to those of `base`, bit for bit, in every channel of `image`. The first `data_channels` of them hold
+/// for every pixel and stay where `base` lacks them. Where it lacks halves of a layer both are the layer: nothing is known of its noise.
 /// Throws InputError naming what differs if sizes or channels do not fit.
-void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, Image& image);
+void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, std::size_t data_channels, Image& image);
 
 /// Adds to `image` the colour channels asked for: "RGBA", "layers" or a layer's name. The sum of the layers
 /// in the order of kLayerNames, in float32, is R G B exactly. Also what add_variance_channels() adds.
