@@ -5,7 +5,7 @@
 
 namespace tempolux {
 
-/// What the filter takes where nothing is known of noise: as much as cannot be seen (docs/methods/st-filter.md, algorithms.md 1.5, 1.6).
+/// What the filter takes where nothing is known of noise: as much as cannot be seen (docs/methods/st-filter.md).
 class VisibleBlur {
  public:
   /// pixels_per_degree: of visual angle, > 0.

@@ -1,4 +1,4 @@
-// Contrast sensitivity, eye movement and the blur that follows from them, against the table of algorithms.md 1.5 and 1.6.
+// Contrast sensitivity, eye movement and the blur that follows from them, against docs/methods/formulas.md.
 #include "lib/filter/visible_blur.h"
 
 #include <gtest/gtest.h>
