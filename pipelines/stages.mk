@@ -15,7 +15,7 @@ scene  = "$$SCENE" $(words) $(shared)
 seen   = $(scene) --camera "$$CAMERA"
 quiet  = $(if $V,,@)
 run    = $(quiet)$(say)$(RUN) "$$BIN"
-say    = $(if $V,,echo "$(or $(notdir $@),$@)" &&)
+say    = $(if $V,,sh "$$PIPELINES/progress.sh" say $@ &&)# counted by run.sh before
 .SUFFIXES:
 .PHONY: demo report
 demo: $(frames) $(previews) sheet.png $(log)
@@ -70,9 +70,12 @@ keys/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats keys/$*.json
 # Between keys: an interval is warped or halved (walkthrough.sh says how); then each of its frames is warped and completed.
 walk/%.done:
-	+$(quiet)MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
+	$(walk_rule)
 walked/%.exr:
-	$(quiet)RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
+	$(quiet)$(say)RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
+# make runs a line that names $(MAKE) even for -n: here it stands in a variable.
+walk_rule = $(if $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS)))),,+)$(quiet)$(say)MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' RUN='$(RUN)' \
+  SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
 
 # A frame shows a picture; shown/FRAME-KEY says which. Frames that show the same are copies of one.
 picture = $(filter-out shown/%,$|)

@@ -17,9 +17,9 @@ namespace tempolux {
 /// its neighbours' should be. Nothing seen: w = 0.
 class PixelSurfaces {
  public:
-  /// Cosine of the largest angle (26 degrees) between normals of one surface; algorithms.md 1.6.
+  /// Cosine of the largest angle (26 degrees) between normals of one surface (docs/methods/formulas.md).
   static constexpr float kSameNormal = 0.9f;
-  /// Relative error of depth that is always allowed; algorithms.md 1.4.
+  /// Relative error of depth that is always allowed (docs/methods/formulas.md).
   static constexpr float kSameDepth = 1e-3f;
 
   explicit PixelSurfaces(const Image& image);

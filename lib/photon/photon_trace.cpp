@@ -24,7 +24,7 @@ constexpr float kInPlane = 0.25f;
 constexpr int kMostPlanes = 8;               ///< that a light may be in, one upon the other
 constexpr float kStepsPerCrossing = 10;      ///< tentative collisions in a mean crossing of the media's box, at least
 
-/// Kind of a photon by the events so far (architecture.md 3).
+/// Kind of a photon by the events so far (formats/conventions.md).
 PathKind kind_after(bool diffuse_seen, bool specular_seen) {
   return diffuse_seen ? PathKind::indirect : specular_seen ? PathKind::caustic : PathKind::direct;
 }

@@ -12,7 +12,7 @@
 
 namespace tempolux {
 
-/// Layers of a frame (architecture.md 3); their sum, in this order, is the image.
+/// Layers of a frame (formats/conventions.md); their sum, in this order, is the image.
 enum class Layer : std::uint8_t { emission, specular, direct, caustic, indirect, volume };
 inline constexpr std::size_t kLayerCount = 6;
 inline constexpr std::array<const char*, kLayerCount> kLayerNames{"emission", "specular", "direct", "caustic", "indirect", "volume"};

@@ -44,7 +44,7 @@ struct WantedPoints {
 struct FoundPoints {
   std::array<LookUp, WantedPoints::kMost> result;
   std::array<Taps, WantedPoints::kMost> taps;
-  std::array<float, WantedPoints::kMost> magnification;   ///< area of target pixels per pixel of the key (algorithms.md 1.3)
+  std::array<float, WantedPoints::kMost> magnification;   ///< area of target pixels per pixel of the key (docs/methods/formulas.md)
 };
 
 /// One key as a target camera at another frame makes use of it.

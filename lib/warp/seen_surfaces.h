@@ -36,13 +36,13 @@ struct FacePoint {
 };
 
 /// How far two depths of one smooth surface may be apart within a pixel, as a share of the depth: two pixels' width along the
-/// surface, at least a thousandth. `facing` is |n . r| of the surface, `pixel_angle` a pixel's width at depth 1 (algorithms.md
-/// 1.3); of facing at least .05 counts, as normals interpolated over a mesh turn away farther than its triangles do.
+/// surface, at least a thousandth. `facing` is |n . r| of the surface, `pixel_angle` a pixel's width at depth 1 (docs/methods/
+/// formulas.md); of facing at least .05 counts, as normals interpolated over a mesh turn away farther than its triangles do.
 inline float depth_tolerance(float pixel_angle, float facing) {
   return std::max(1e-3f, 2 * pixel_angle / std::max(facing, 0.05f));
 }
 
-/// Cosine below which two normals belong to two faces: their irradiance differs (algorithms.md 1.6).
+/// Cosine below which two normals belong to two faces: their irradiance differs (docs/methods/formulas.md).
 inline constexpr float kSameFace = 0.9f;
 
 /// May two pictures' objects be one? What is not known agrees with all.
