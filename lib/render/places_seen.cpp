@@ -34,8 +34,7 @@ double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, in
     for (std::uint32_t i = 0; i < kLooks && !views.empty(); ++i) {
       const Vec2 u = sobol_owen_2d(i, 0);
       const Look look{u.x * float(width), u.y * float(height), {}};
-      std::optional<SeenPoint> point;
-      seen_through(tracer, view, {&look, 1}, {&point, 1});
+      const std::optional<SeenPoint> point = seen_through(tracer, view, look);
       if (!point || !sees(tracer, view, point->surface.position)) continue;
       all += 1;
       fresh += std::ranges::none_of(views, [&](const CameraView& before) { return sees(tracer, before, point->surface.position); });

@@ -197,8 +197,7 @@ void measure_records(const RenderScene& scene, const CameraView& view, const Rou
     const int place = int(i) * (kPlaces / kRecords);
     const Where at = where(place, view, options.seed);
     const Look look{at.x + 0.5f, at.y + 0.5f, {}};
-    std::optional<SeenPoint> seen;
-    seen_through(scene.tracer, view, {&look, 1}, {&seen, 1});
+    std::optional<SeenPoint> seen = seen_through(scene.tracer, view, look);
     if (!seen) return;
     const PlacementOptions placement;
     std::array<IrradianceRecord, 2> records{one.gather(seen->surface, seen->normal, counts[i]), two.gather(seen->surface, seen->normal, counts[i])};
