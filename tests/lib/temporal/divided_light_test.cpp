@@ -59,13 +59,10 @@ KeptHemispheres spot_frame(Spot& now, Spot* before, float high, KeptHemispheres 
   const TemporalGather gather(scene, {.rays = 500, .bright = high > 0 ? &bright : nullptr, .bright_samples = 16}, each_place_its_own(), {}, 8);
   if (before) gather.advance(kept, counts);
   RecordStore store;
-  gather.place([&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-    for (std::size_t i = 0; i < looks.size(); ++i) {
-      Hit hit;
-      seen[i].reset();
-      if (!before && tracer.intersect({{0.02f * looks[i].x, 0.1f, 0.02f * looks[i].y}, {0, -1, 0}}, hit))
-        seen[i] = SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
-    }
+  gather.place([&](const Look& look) -> std::optional<SeenPoint> {
+    Hit hit;
+    if (before || !tracer.intersect({{0.02f * look.x, 0.1f, 0.02f * look.y}, {0, -1, 0}}, hit)) return std::nullopt;
+    return SeenPoint{tracer.surface_point(hit), {0, 1, 0}, 1e-9f, false};
   }, 10, 10, kept, store, counts);
   return kept;
 }
