@@ -2,17 +2,16 @@
 #include "lib/plan/decide.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <set>
 
 #include "formats/error.h"
 #include "formats/hash.h"
-#include "lib/gather/mesh_elements.h"
 #include "lib/plan/stages.h"
 #include "lib/render/choose_caustics.h"
 #include "lib/render/choose_photons.h"
+#include "lib/render/choose_preview.h"
 #include "lib/render/choose_split.h"
 #include "lib/render/learn_lights.h"
 #include "lib/render/seen_spheres.h"
@@ -20,8 +19,6 @@
 namespace tempolux {
 namespace {
 
-/// So many times the paths where few of them leave a photon, as choose_photons.h has it for maps that are gathered from.
-constexpr double kMostPathsOfPreview = 16;
 constexpr std::size_t kMostEvents = 4, kMostViews = 16;
 /// A state of light that follows from what stands needs what stands to be computed once: less than three states do not pay for it.
 constexpr std::size_t kFewestStates = 3;
@@ -75,11 +72,7 @@ class FramePilot {
     return look;
   }
 
-  /// Photons of a path, and the area that they arrive at [m^2].
-  std::pair<double, double> arrivals() {
-    const ArrivalPilot pilot = pilot_arrivals({tracer_, aimed()}, kinds_, 0);
-    return {double(pilot.photons) / double(pilot.paths), surface_area(frame_)};
-  }
+  PreviewPilot preview() { return pilot_preview({tracer_, aimed()}, kinds_, 0); }
   SplitChoice split() { return choose_split(pilot_split(frame_, table_, view_, 0)); }
   MovingPilot moving() { return pilot_moving(frame_, table_, view_, 0); }
 
@@ -216,22 +209,20 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
 }
 
 /// Light textures need to know how many paths bring the photons that are asked for, how wide the filter is then, and whether light
-/// from far away is learned. Means over the looked frames: all frames of a segment have the same elements.
+/// from far away is learned.
 void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, Decisions& d) {
   Wish known = wish;
   known.indirect = "records";                // no pilot of how indirect light is found
   d.indirect = IndirectMethod::paths;
-  double share = 0, area = 0;
+  std::vector<PreviewPilot> pilots;
   for (const int frame : d.looked) {
     FramePilot pilot(known, source, frame, d.kinds);
     d.learn_lights |= pilot.look(false).learn;
-    const auto [photons, surface] = pilot.arrivals();
-    share += photons / double(d.looked.size());
-    area += surface / double(d.looked.size());
+    pilots.push_back(pilot.preview());
   }
-  const double more = share > 0 ? std::clamp(1 / share, 1.0, kMostPathsOfPreview) : 1;
-  d.photon_paths = std::uint64_t(std::llround(double(wish.photons) * more));
-  d.texture_width = window_widths(area, share * double(d.photon_paths) * kPreviewWindow).filter.width;
+  const PreviewChoice choice = choose_preview(pilots, wish.photons, kPreviewWindow);
+  d.photon_paths = choice.paths;
+  d.texture_width = choice.width;
   d.view = view_of(segment, wish.width, wish.height, source);
   d.reasons.push_back({"gather-temporal density", words(segment.states().size(), "state") + " of light in the segment"});
 }
