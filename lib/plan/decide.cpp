@@ -2,17 +2,16 @@
 #include "lib/plan/decide.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <set>
 
 #include "formats/error.h"
 #include "formats/hash.h"
-#include "lib/gather/mesh_elements.h"
 #include "lib/plan/stages.h"
 #include "lib/render/choose_light.h"
 #include "lib/render/choose_photons.h"
+#include "lib/render/choose_preview.h"
 #include "lib/render/choose_split.h"
 #include "lib/render/learn_lights.h"
 #include "lib/render/places_seen.h"
@@ -21,8 +20,6 @@
 namespace tempolux {
 namespace {
 
-/// So many times the paths where few of them leave a photon, as choose_photons.h has it for maps that are gathered from.
-constexpr double kMostPathsOfPreview = 16;
 constexpr std::size_t kMostEvents = 4, kMostViews = 16;
 /// A state of light that follows from what stands needs what stands to be computed once: less than three states do not pay for it.
 constexpr std::size_t kFewestStates = 3;
@@ -51,7 +48,6 @@ std::vector<int> spread(const std::vector<int>& frames) {
 struct Look {
   std::vector<Way> ways;
   std::uint64_t paths = 0;       ///< of light
-  double photons_per_path = 0;
   bool learn = false;
 };
 
@@ -67,12 +63,11 @@ class FramePilot {
     Look look;
     look.learn = lights_.has_distant() && rough.open_share <= kMostOpen;
     look.paths = lights_.has_distant() && rough.places > 0 ? photon_paths(rough.photons_per_path, wish_.photons) : wish_.photons;
-    look.photons_per_path = rough.photons_per_path;
     look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays}, kinds_.find("caustic") != std::string::npos);
     return look;
   }
 
-  double area() const { return surface_area(frame_); }   ///< of the scene, m^2
+  PreviewPilot preview() { return pilot_preview({tracer_, aimed()}, kinds_, 0); }
   SplitChoice split() { return choose_split(pilot_split(frame_, table_, view_, 0)); }
   MovingPilot moving() { return pilot_moving(frame_, table_, view_, 0); }
   /// Of what a picture of the segment shows, the share that pictures before it do not, from one to the next.
@@ -194,20 +189,18 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
 }
 
 /// Light textures need to know how many paths bring the photons that are asked for, how wide the filter is then, and whether light
-/// from far away is learned. Means over the looked frames: all frames of a segment have the same elements.
+/// from far away is learned.
 void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, Decisions& d) {
   d.indirect = IndirectMethod::paths;
-  double share = 0, area = 0;
+  std::vector<PreviewPilot> pilots;
   for (const int frame : d.looked) {
     FramePilot pilot(wish, source, frame, d.kinds);
-    const Look look = pilot.look();
-    d.learn_lights |= look.learn;
-    share += look.photons_per_path / double(d.looked.size());
-    area += pilot.area() / double(d.looked.size());
+    d.learn_lights |= pilot.look().learn;
+    pilots.push_back(pilot.preview());
   }
-  const double more = share > 0 ? std::clamp(1 / share, 1.0, kMostPathsOfPreview) : 1;
-  d.photon_paths = std::uint64_t(std::llround(double(wish.photons) * more));
-  d.texture_width = window_widths(area, share * double(d.photon_paths) * kPreviewWindow).filter.width;
+  const PreviewChoice choice = choose_preview(pilots, wish.photons, kPreviewWindow);
+  d.photon_paths = choice.paths;
+  d.texture_width = choice.width;
   d.view = view_of(segment, wish.width, wish.height, source);
   d.reasons.push_back({"gather-temporal density", words(segment.states().size(), "state") + " of light in the segment"});
 }

@@ -9,7 +9,6 @@
 
 #include "formats/error.h"
 #include "formats/hash.h"
-#include "lib/gather/mesh_elements.h"
 
 namespace tempolux {
 namespace {
@@ -311,19 +310,14 @@ class Builder {
     c.option("--photons " + std::to_string(d.photon_paths * (still ? kPreviewWindow : 1)) + " --kinds " + d.kinds);
     return add(stage::photons, frame, c);
   }
-  std::string texture_words_of(int frame) const {
-    std::ostringstream words;
-    words << "--kinds " << decided(frame).kinds << " --cell " << kCellOfWindows * decided(frame).texture_width;
-    return words.str();
-  }
-  std::string filter_words_of(int frame) const {
+  std::string width_words(int frame) const {
     std::ostringstream words;
     words << "--filter-width " << decided(frame).texture_width;
     return words.str();
   }
   std::string counts(int frame) {
     const PlannedSegment& s = segment(frame);
-    Command c{"--frame " + std::to_string(frame) + " --counts " + texture_words_of(frame), {}, ""};
+    Command c{"--frame " + std::to_string(frame) + " --counts --kinds " + decided(frame).kinds + " " + width_words(frame), {}, ""};
     // What moves is cut by its size in these frames, and jumps are seen beside the frames around.
     for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last, frame - 2, frame - 1, frame, frame + 1})
       c.content += state(std::clamp(f, s.first, s.last)).light;
@@ -335,11 +329,11 @@ class Builder {
     const PlannedSegment& s = segment(lit);
     Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
     if (s.states().size() == 1) {
-      c.option(texture_words_of(lit) + " " + filter_words_of(lit));
+      c.option("--kinds " + s.decisions.kinds + " " + width_words(lit));
       c.file("--photons", preview_photons(lit, true));
       return add(stage::textures, lit, c);
     }
-    c.option(filter_words_of(lit) + " --counts");
+    c.option(width_words(lit) + " --counts");
     for (int f = std::max(s.first, lit - kReach); f <= std::min(s.last, lit + kReach); ++f) c.file("", counts(f));
     return add(stage::windows, lit, c);
   }
