@@ -19,7 +19,6 @@ constexpr float kWorth = [] {
   const float n = 2 * kAround + 1, line = 3 * n * n * n / (2 * n * n + 1);
   return line * line;
 }();
-constexpr float kLeastRest = 0.5f;  ///< of the weight of what is around a pixel
 
 float squared(float v) { return v * v; }
 
@@ -63,11 +62,10 @@ class Choice {
   Colours run() {
     take_scale();
     take_best();
-    const std::array<float, 2> errors = tolerated_errors();
     Colours out;
     for (std::vector<float>& plane : out) plane.resize(count_);
     for_each_pixel([&](std::size_t p, int x, int y) {
-      const float w = share(mean_at(x, y), errors[near_.kind(p)]);
+      const float w = share(p, x, y);
       for (std::size_t c = 0; c < 3; ++c) {
         const float m = (raw_.a[c][p] + raw_.b[c][p]) / 2, f = (best_.a[c][p] + best_.b[c][p]) / 2;
         out[c][p] = counts_[p] ? m + w * (f - m) : std::isfinite(m) ? m : (candidates_.back().a[c][p] + candidates_.back().b[c][p]) / 2;
@@ -170,39 +168,13 @@ class Choice {
     e.square = squared(e.gain);
     return e;
   }
-  Estimate mean_at(int x, int y) const { return {gain_.at(x, y), square_.at(x, y), apart_.at(x, y)}; }
 
-  /// w where the gain may be so many standard errors more than is found. What is around is worth kWorth pixels; with noise alone (F - M)^2
-  /// is as uncertain as V - C.
-  static float share(const Estimate& mean, float errors) {
-    const float error = std::sqrt(2 * std::max(0.0f, mean.square - squared(mean.gain)) / kWorth);
-    return mean.apart > 0 ? std::clamp((mean.gain + errors * error) / mean.apart, 0.0f, 1.0f) : 0.0f;
-  }
-
-  /// By kind the number of standard errors that leaves the least error over the picture. Each pixel judges the share that others find: own
-  /// estimates are taken out of the means.
-  std::array<float, 2> tolerated_errors() const {
-    constexpr std::array<float, 5> kErrors{0, 0.5f, 1, 2, 4};
-    std::vector<std::array<std::array<double, kErrors.size()>, 2>> rows(std::size_t(near_.height()));
-    for_each_pixel([&](std::size_t p, int x, int y) {
-      const Estimate own = estimate(p), all = mean_at(x, y);
-      const float part = near_.own_part(x, y), rest = 1 - part;
-      if (!counts_[p] || !(rest > kLeastRest)) return;
-      const Estimate others{(all.gain - part * own.gain) / rest, (all.square - part * own.square) / rest,
-                            (all.apart - part * own.apart) / rest};
-      for (std::size_t k = 0; k < kErrors.size(); ++k) {
-        const float w = share(others, kErrors[k]);
-        rows[std::size_t(y)][near_.kind(p)][k] += double(w) * (double(w) * double(own.apart) - 2 * double(own.gain));
-      }
-    });
-    std::array<float, 2> best{};
-    for (std::size_t kind = 0; kind < 2; ++kind) {
-      std::array<double, kErrors.size()> sums{};
-      for (const auto& row : rows)
-        for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += row[kind][k];
-      best[kind] = kErrors[std::size_t(std::min_element(sums.begin(), sums.end()) - sums.begin())];
-    }
-    return best;
+  /// w. Inside surfaces the gain may be a standard error more than is found: what is around is worth kWorth pixels, and with noise alone (F - M)^2 is as
+  /// uncertain as V - C.
+  float share(std::size_t p, int x, int y) const {
+    const float gain = gain_.at(x, y), apart = apart_.at(x, y);
+    const float error = near_.kind(p) == 1 ? std::sqrt(2 * std::max(0.0f, square_.at(x, y) - squared(gain)) / kWorth) : 0;
+    return apart > 0 ? std::clamp((gain + error) / apart, 0.0f, 1.0f) : 0.0f;
   }
 
   const Halves& raw_;
@@ -225,9 +197,6 @@ Neighbourhood::Neighbourhood(std::vector<std::uint8_t> kinds, int width, int hei
   share_ = sums(ones);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) share_.at(x, y) = 1 / share_.at(x, y);
-  own_part_ = sums(share_);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) own_part_.at(x, y) *= share_.at(x, y);
 }
 
 /// Sums over the pixels of the same kind in the window.

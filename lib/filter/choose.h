@@ -25,8 +25,6 @@ class Neighbourhood {
   /// Weighted means of values over what is around.
   Plane mean(const Plane& values) const;
   std::size_t kind(std::size_t pixel) const { return kinds_[pixel]; }
-  /// Weight that a pixel's own value has in the mean.
-  float own_part(int x, int y) const { return own_part_.at(x, y); }
   int width() const { return width_; }
   int height() const { return height_; }
   std::size_t count() const { return kinds_.size(); }
@@ -37,24 +35,23 @@ class Neighbourhood {
   std::vector<std::uint8_t> kinds_;
   int width_, height_;
   Plane share_;  ///< 1 / number of pixels of the kind within 9 x 9
-  Plane own_part_;
 };
 
 /// The mixture of a raw layer and its filtered candidates that has the least squared error, by pixel.
 ///
-/// With A, B the raw halves, f, g a candidate of A alone and of B alone, M = (A + B) / 2 and F = (f + g) / 2, unbiased estimates at a pixel
-/// are
+/// With A, B the raw halves, f, g a candidate of A alone and of B alone, M = (A + B) / 2 and F = (f + g) / 2, unbiased estimates at a pixel are
 ///     of the squared error of M:   V = (A - B)^2 / 4
 ///     of the covariance of both:   C = (f - g) (A - B) / 4
 ///     of the squared error of F:   (F - M)^2 - V + 2 C   [Stein: Estimation of the mean of a multivariate normal distribution, 1981].
 /// Each is divided by the square of the light around (at least `dark`) plus a quarter of the pixel's own noise, summed over colours and
 /// averaged over what is around. A pixel's own noise lowers its weight alike in all three: a lone bright sample does not decide for what is
-/// around it. The candidate of the least error is taken; shares of candidates are averaged likewise. Rousselle, Knaus, Zwicker: Adaptive
-/// rendering with non-local means filtering, 2012. Then that F counts by w = (V - C + z s) / (mean of (F - M)^2), from 0 to 1, and M by 1 -
-/// w. s is the standard error of V - C - (F - M)^2 if there is noise alone. z is chosen for the picture, apart inside surfaces and at
-/// edges: each pixel judges by w^2 (F - M)^2 - 2 w (V - C) the shares w that its neighbours find without it. Where both halves are equal M
-/// is the answer, to the bit if (A + B) / 2 is. Pixels with a half that is not finite, or too bright for squares in float32, decide
-/// nothing: they are M, or the last candidate where M is not finite.
+/// around it. The candidate of the least error is taken; shares of candidates are averaged likewise.
+/// Rousselle, Knaus, Zwicker: Adaptive rendering with non-local means filtering, 2012.
+///
+/// Then that F counts by w = (V - C + s) / (mean of (F - M)^2), from 0 to 1, and M by 1 - w. Inside surfaces s is the standard error of
+/// V - C - (F - M)^2 if there is noise alone; at edges 0. Where both halves are equal M is the answer, to the bit if (A + B) / 2 is.
+/// Pixels with a half that is not finite, or too bright for squares in float32, decide nothing: they are M, or the last candidate where M
+/// is not finite.
 ///
 /// All planes have as many elements as there are pixels; `candidates` is not empty. Thread-safe; the same result for any number of threads.
 Colours choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark);

@@ -92,34 +92,47 @@ class MadeUpNoise {
 
 LightGroup::LightGroup(const Image& image, bool seen, std::vector<std::string> names)
     : surfaces(image, seen), layers(std::move(names)), variance(image.width, image.height) {
-  const int width = image.width;
+  take_light(image);
+  take_noise(image);
+  for (Light& half : raw) {
+    half.weight = Plane::unset(image.width, image.height);
+    for_each_row(image.height, [&](int y) { std::copy_n(surfaces.use.row(y), image.width, half.weight.row(y)); });
+  }
+}
+
+/// Into the first half.
+void LightGroup::take_light(const Image& image) {
   for (Light& half : raw) half.layers.resize(layers.size());
   for (std::size_t l = 0; l < layers.size(); ++l)
     for (std::size_t c = 0; c < 3 && !is_black(image, layers[l]); ++c) {
-      Plane& light = raw[0].layers[l][c] = Plane::unset(width, image.height);
-      light.take(image.find(channel_name(layers[l], c))->values, width);
+      Plane& light = raw[0].layers[l][c] = Plane::unset(image.width, image.height);
+      light.take(image.find(channel_name(layers[l], c))->values, image.width);
       for_each_row(image.height, [&](int y) {
-        for (int x = 0; x < width; ++x) {
+        for (int x = 0; x < image.width; ++x) {
           float& value = light.at(x, y);
           value /= surfaces.albedo_at(c, x, y);
           if (!(std::abs(value) < kLargestLight)) value = surfaces.use.at(x, y) = 0;
         }
       });
     }
+}
+
+/// The second half, and the first one: light less and plus noise.
+void LightGroup::take_noise(const Image& image) {
+  const auto has_noise = [&](const std::string& layer) { return holds(image, layer + ".noise.R"); };
   std::optional<MadeUpNoise> made_up;
-  if (std::none_of(layers.begin(), layers.end(), [&](const std::string& layer) { return holds(image, layer + ".noise.R"); }))
-    made_up.emplace(image, *this);
+  if (std::none_of(layers.begin(), layers.end(), has_noise)) made_up.emplace(image, *this);
   for (std::size_t c = 0; c < 3; ++c) {
-    Plane total(width, image.height);
+    Plane total(image.width, image.height);
     for (std::size_t l = 0; l < layers.size(); ++l) {
       Plane &a = raw[0].layers[l][c], &b = raw[1].layers[l][c];
-      const Channel* channel = made_up ? nullptr : image.find(channel_name(layers[l] + ".noise", c));
       if (a.empty()) continue;
-      b = Plane::unset(width, image.height);
+      b = Plane::unset(image.width, image.height);
+      const Channel* channel = made_up ? nullptr : image.find(channel_name(layers[l] + ".noise", c));
       for_each_row(image.height, [&](int y) {
-        for (int x = 0; x < width; ++x) {
+        for (int x = 0; x < image.width; ++x) {
           float noise = made_up ? made_up->of(l, c).at(x, y) : 0;
-          if (channel) noise = channel->values[std::size_t(y) * std::size_t(width) + std::size_t(x)] / surfaces.albedo_at(c, x, y);
+          if (channel) noise = channel->values[std::size_t(y) * std::size_t(image.width) + std::size_t(x)] / surfaces.albedo_at(c, x, y);
           if (!(std::abs(noise) < kLargestLight)) noise = surfaces.use.at(x, y) = 0;
           b.at(x, y) = a.at(x, y) - noise;
           a.at(x, y) += noise;
@@ -128,12 +141,8 @@ LightGroup::LightGroup(const Image& image, bool seen, std::vector<std::string> n
       });
     }
     for_each_row(image.height, [&](int y) {
-      for (int x = 0; x < width; ++x) variance.at(x, y) += 2 * total.at(x, y) * total.at(x, y);
+      for (int x = 0; x < image.width; ++x) variance.at(x, y) += 2 * total.at(x, y) * total.at(x, y);
     });
-  }
-  for (Light& half : raw) {
-    half.weight = Plane::unset(width, image.height);
-    for_each_row(image.height, [&](int y) { std::copy_n(surfaces.use.row(y), width, half.weight.row(y)); });
   }
 }
 

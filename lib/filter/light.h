@@ -29,6 +29,10 @@ struct LightGroup {
   Plane variance;                   ///< of one half, of the sum of the layers, summed over channels
 
   LightGroup(const Image& image, bool seen, std::vector<std::string> names);
+
+ private:
+  void take_light(const Image& image);
+  void take_noise(const Image& image);
 };
 
 /// A frame as the filter sees it.
