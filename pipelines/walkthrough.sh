@@ -22,13 +22,13 @@ warp() { tool ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA"; }
 
 sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$name" "$file"))); done; echo "$total"; }
 
-# Both keys warped to frame $1 in folder $2: exit 1 if a viewer sees in more than the share $threshold of what is not masked that they differ. Adds the share
+# Both keys warped to frame $1 in folder $2: exit 1 if a viewer sees in more than the share $threshold of what is not masked what either errs by. Adds the share
 # to $seen, in percent.
 differ() {
   warp "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none --stats "$2/$1.warp.json" || exit
   [ "$(count_of traced "$2/$1.warp.json")" -lt "$(count_of pixels "$2/$1.warp.json")" ] || return 0
   code=0
-  $RUN "$BIN/aqm-compare" "$2/w_1.exr" "$2/w_2.exr" --flow "$2/flow.exr" --except "$2/why.exr" --fail-by aqm --fail-above "$threshold" \
+  $RUN "$BIN/aqm-compare" "$2/w_1.exr" "$2/w_2.exr" --either --flow "$2/flow.exr" --except "$2/why.exr" --fail-by aqm --fail-above "$threshold" \
     --quiet --json "$2/compare.json" || code=$?
   [ $code -le 1 ] || exit $code
   seen="$seen $(count_of percent "$2/compare.json")"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "formats/error.h"
 #include "lib/aqm/display_speed.h"
@@ -68,7 +69,7 @@ JudgedFrame judge_frame(const Compared& pair, const PixelFlow* flow, const Visio
                      " pixels, but its flow has " + std::to_string(flow->width) + "x" +
                      std::to_string(flow->height) + "; give the flow of this frame");
   const double exposure = std::exp2(options.exposure_stops), ppd = options.display.pixels_per_degree;
-  const double share = options.of_mean ? 0.75 : 1;  // half the difference lies between the two
+  const double share = options.of_either ? 0.5 + 0.5 * std::numbers::sqrt2 / 2 : 1;
   const vision::DisplayedPair shown{pair.width, pair.height,
                                     shown_luminance(pair, share, options.display, exposure),
                                     shown_luminance(pair, 1 - share, options.display, exposure), pair.counted};

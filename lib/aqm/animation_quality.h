@@ -23,9 +23,9 @@ struct VisionOptions {
   vision::Gaze gaze = vision::Gaze::track;
   double frames_per_second = 24;
   double exposure_stops = 0;  ///< linear values times 2^stops are what the display gets
-  /// Frame and reference are two independent estimates of one picture, and their mean is shown. It errs by half
-  /// of their difference (root mean square): that is what is judged, around the mean.
-  bool of_mean = false;
+  /// Frame and reference are estimates of one picture that err alike and independently. Then either errs by their
+  /// difference over sqrt(2) (root mean square): that is what is judged, around their mean.
+  bool of_either = false;
 };
 
 /// Of `pixels` that count, `seen` have a probability above kSeenProbability.

@@ -48,6 +48,8 @@ bool Masking::specular_matters(std::size_t pixel, const float* colour, const flo
 }
 
 void Masking::mark_seen_gloss(const std::vector<std::vector<float>>& colour, std::array<std::vector<float>, 3>&& error, std::vector<std::uint32_t>& why) const {
+  const auto dark = [](const std::vector<float>& plane) { return std::all_of(plane.begin(), plane.end(), [](float e) { return e == 0; }); };
+  if (std::all_of(error.begin(), error.end(), dark)) return;   // nothing shines: no viewer is asked
   GlossInDoubt doubt{{}, std::move(error), std::vector<std::uint8_t>(why.size())};
   for (std::size_t c = 0; c < 3; ++c) doubt.picture[c] = colour[std::size_t(rgb_[c])];
   for (std::size_t p = 0; p < why.size(); ++p) doubt.counted[p] = why[p] == 0;
