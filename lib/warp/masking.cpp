@@ -11,7 +11,7 @@ namespace {
 // Beyond which a difference is not noise: three, and half as much again as interpolated pixels share their neighbours' noise: linear
 // interpolation leaves each (2/3)^2 of the variance on the average, and the mean over all of them the whole.
 constexpr double kStandardErrors = 3 * 1.5;
-constexpr int kReach = 2;               // pixels on each side over which light is averaged, and chance is told
+constexpr int kReach = 2;               // pixels on each side over which light is averaged, and chance is estimated
 
 std::array<int, 3> place_of(const std::vector<std::string>& names, const std::string& prefix) {
   std::array<int, 3> at{};

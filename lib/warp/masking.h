@@ -21,7 +21,7 @@ class Masking {
   /// give the whole pixel.
   std::uint32_t of_moved_pixel(std::size_t pixel, const float* colour, const float* first, const float* second) const;
 
-  /// Is so much of this light given by mirrors, glass or gloss that it counts? False if the keys do not tell.
+  /// Is so much of this light given by mirrors, glass or gloss that it counts? False if the keys do not have the layer.
   bool shines(const float* colour) const;
   /// Masks pixels that shine where most of those around are masked for it: that the keys agree there is chance, as light in a mirror that is now brighter, now
   /// darker than in the other key is equal to it in between. shines: by pixel, 1 if it does and was moved.
@@ -37,7 +37,7 @@ class Masking {
   Spread spread(const float* mean, const float* square) const;
   /// At how many positions a pixel composed of several surfaces must be known for its error to be WarpOptions::edge_share of its light: n positions in
   /// rows and columns of their own err by sigma n^(-5/6) (docs/pixels.md), sigma the standard deviation of what they show. `at`: of the `count`
-  /// positions tried. What they all missed has a share of 1 / (2 count), about; how it differs is told by the centres of the 3 x 3 pixels
+  /// positions tried. What they all missed has a share of 1 / (2 count), about; how it differs is estimated from the centres of the 3 x 3 pixels
   /// `around`, of which an edge leaves a third on its other side.
   std::size_t edge_positions(Spread at, std::size_t count, Spread around) const;
 
