@@ -56,12 +56,18 @@ export RULES="$rules"
 make_goal() { ${MAKE:-make} --no-print-directory -C "$folder" -f "$rules" PLAN="$plan" "$@"; }
 if [ -n "$dry" ]; then make_goal "$goal"; exit; fi
 
-# How many commands will run: those that make -n shows. progress.sh counts them.
-TOTAL=$(MAKEFLAGS='' V='' make_goal -n "$goal" 2> /dev/null | grep -c '/progress[.]sh" say ')
+# Which commands will run: those that make -n shows. progress.sh counts them.
 PROGRESS=$(mktemp) BEGAN=$(date +%s)
-export TOTAL PROGRESS BEGAN
 trap 'rm -f "$PROGRESS"' EXIT
+MAKEFLAGS='' V='' make_goal -n "$goal" 2> /dev/null | sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' > "$PROGRESS"
+TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
+: > "$PROGRESS"
+export TOTAL WEIGHT PROGRESS BEGAN
 [ "$TOTAL" = 0 ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" begin)
+if [ "$TOTAL" -ge 500 ]; then   # hours and disk are worth short runs of each stage
+  "$BIN/scene-plan" "$@" --estimate --jobs 2
+  df -h "$OUT" | awk 'NR == 2 { print "free where OUT is: " $4 }'
+fi
 make_goal "$goal" || exit
 [ "$TOTAL" = 0 ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
 [ -z "$film" ] || { cd "$OUT" && sh "$PIPELINES/film.sh"; }
