@@ -5,8 +5,8 @@
 #     progress.sh say FILE     before the command that makes FILE:  [12/97] 0:41, about 4:50 left: frame 3, pixels
 #     progress.sh end          after the last one: what the frames cost, how noisy they are, where to look
 #
-# The environment has PROGRESS, a file that gets a byte for each command begun; TOTAL, how many commands there will be; BEGAN, when
-# the first one did (date +%s).
+# The environment has PROGRESS, a file that gets a line for each command begun; TOTAL, how many commands there will be; WEIGHT, what they
+# weigh together (progress.sh weigh); BEGAN, when the first one did (date +%s).
 clock() { if [ "$1" -lt 3600 ]; then printf '%d:%02d' $(($1 / 60)) $(($1 % 60)); else printf '%d h %02d min' $(($1 / 3600)) $(($1 % 3600 / 60)); fi; }
 
 stage() {   # a file inside OUT in words
@@ -20,13 +20,23 @@ stage() {   # a file inside OUT in words
   esac
 }
 
+# What commands cost beside each other, from names of files on standard input: CPU seconds of a frame of the demo.
+weigh() {
+  awk -F / 'BEGIN { w["stands_cache"] = 16; w["raw"] = w["pictures"] = w["keys"] = w["walked"] = 7; w["path"] = 60; w["cache"] = 5; w["kept"] = 5
+                    w["photons"] = w["stands"] = w["points"] = w["stands_points"] = w["filtered"] = w["textures"] = w["lights"] = w["smoky"] = 1 }
+            { sum += $1 in w ? w[$1] : .2 } END { printf "%.1f", sum }'
+}
+
 say() {
   [ -n "$PROGRESS" ] || return 0   # not begun: an estimate, or rules of stages.mk by hand
-  printf . >> "$PROGRESS"
-  n=$(wc -c < "$PROGRESS")
+  echo "$1" >> "$PROGRESS"
+  n=$(wc -l < "$PROGRESS")
   [ "$n" -le "$TOTAL" ] || TOTAL=$n   # a walkthrough adds keys as it goes
   passed=$(($(date +%s) - BEGAN))
-  left=; [ "$n" -lt 8 ] || [ "$passed" -lt 5 ] || left=", about $(clock $((passed * (TOTAL - n + 1) / (n - 1)))) left"
+  left=
+  [ "$passed" -lt 10 ] || left=$(sed '$d' "$PROGRESS" | weigh | awk -v passed="$passed" -v all="$WEIGHT" \
+    '$1 > .02 * all && $1 < all { printf "%d", passed * (all - $1) / $1 }')
+  [ -z "$left" ] || left=", about $(clock "$left") left"
   name=${1##*/} folder=${1%/*}
   frame=${name%%[-.]*}
   case $frame in
@@ -53,7 +63,7 @@ end() {
     /"cpu_s":/ && !seen { split($0, word, ": *"); cpu += word[2]; seen = 1 }
     /"noise.codes":/ { split($0, word, ": *"); noise[folder] += word[2]; counted[folder]++ }
     END {
-      printf "%d frames of %s: %.0f CPU s in all, %.1f a frame", frames, size, cpu, cpu / frames
+      printf "%d frames of %s: %.*f CPU s in all, %.1f a frame", frames, size, cpu < 10, cpu, cpu / frames
       last = counted["filtered"] ? "filtered" : counted["pictures"] ? "pictures" : counted["raw"] ? "raw" : "keys"
       if (counted[last]) printf "; noise %.1f codes%s", noise[last] / counted[last], last == "raw" ? " before the filter" : ""
       printf "; %s/sheet.png\n", out
@@ -62,6 +72,6 @@ end() {
 
 case $1 in
   say) say "$2";;
-  begin | end) $1;;
-  *) echo "progress.sh: '$1' is none of begin, say, end" >&2; exit 2;;
+  begin | weigh | end) $1;;
+  *) echo "progress.sh: '$1' is none of begin, say, weigh, end" >&2; exit 2;;
 esac

@@ -45,13 +45,13 @@ aside() {   # a folder that is removed at the end, by a signal too
   trap 'exit 130' INT TERM
 }
 makes() { goal=$1; shift; ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"; }
-if [ "$goal" = estimate ]; then   # the first picture, small, at two sizes
+estimate() {   # options of scene-plan: the first picture, small, at two sizes
   aside
   $RUN "$BIN/scene-plan" "$@" --samples "$aside" || exit
-  for plan in small.mk large.mk; do makes demo -s -C "$aside" > /dev/null || exit; done
+  for plan in small.mk large.mk; do PROGRESS='' makes demo -s -C "$aside" > /dev/null || exit; done
   "$BIN/scene-plan" --estimate "$aside"
-  exit
-fi
+}
+if [ "$goal" = estimate ]; then estimate "$@"; exit; fi
 if [ -n "$dry" ]; then   # make -n: plan aside, leave no trace
   [ -x "$BIN/scene-plan" ] || { echo "$RUN $BIN/scene-plan $* -o $OUT"; exit; }
   aside
@@ -66,12 +66,18 @@ fi
 [ "$goal" = plan ] && exit
 if [ -n "$dry" ]; then makes "$goal" -C "$folder"; exit; fi
 
-# How many commands will run: those that make -n shows. progress.sh counts them.
-TOTAL=$(MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n 2> /dev/null | grep -c '/progress[.]sh" say ')
+# Which commands will run: those that make -n shows. progress.sh counts them.
 PROGRESS=$(mktemp) BEGAN=$(date +%s)
-export TOTAL PROGRESS BEGAN
 trap 'rm -f "$PROGRESS"' EXIT
+MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n 2> /dev/null | sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' > "$PROGRESS"
+TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
+: > "$PROGRESS"
+export TOTAL WEIGHT PROGRESS BEGAN
 [ "$TOTAL" = 0 ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" begin)
+if [ "$TOTAL" -ge 500 ]; then   # hours and disk are worth short runs of each stage
+  (estimate "$@")
+  df -h "$OUT" | awk 'NR == 2 { print "free where OUT is: " $4 }'
+fi
 makes "$goal" -C "$folder" || exit
 [ "$TOTAL" = 0 ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
 [ -z "$film" ] || { cd "$OUT" && sh "$PIPELINES/film.sh"; }

@@ -44,7 +44,7 @@ class PixelSurfaces {
   /// 1 for each pixel that is not on the same surface as all of its eight neighbours, both ways asked.
   std::vector<std::uint8_t> edges() const;
 
-  // By pixel, for loops that test many at once. Objects are bits of id.object; normals are 0, 0, 0 where nothing is seen or known.
+  // One entry a pixel, for loops that test many at once. Objects are bits of id.object; normals are 0, 0, 0 where nothing is seen or known.
   std::vector<std::uint32_t> object;
   std::vector<float> w, w_right, w_down;   ///< 1/m; its change per pixel: the smaller of the two one-sided differences
   std::vector<float> nx, ny, nz;

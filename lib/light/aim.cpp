@@ -66,7 +66,7 @@ Aim::Start Aim::start(Vec3 travel, double u, double v) const {
   }
   for (std::size_t k = 0; k < discs_.size(); ++k) {
     const double dx = x - dot(discs_[k].centre, across), dy = y - dot(discs_[k].centre, up);
-    // Of its own disc, whatever rounding says of the rim.
+    // A start belongs to the disc it was drawn on, even where rounding puts it beside the rim.
     if (k == chosen || dx * dx + dy * dy < discs_[k].radius * discs_[k].radius) density += discs_[k].gain;
   }
   Start start;

@@ -68,8 +68,8 @@ class TemporalGather {
   /// - the point that stands for what it met has other light now: the cell's radiance is scaled by the ratio, per channel, or
   ///   traced again along its old direction beyond 1/2 to 2;
   /// - no point stands for what it met (mirrors, corners): traced again alike.
-  /// Of a record that changes, cells whose radiance is more than one point's light (hits near by) are traced again alike in turn, each in every eighth update.
-  /// Of a record that changes, further cells get a new ray in their place of the hemisphere, drawn by age: see TemporalOptions::refresh.
+  /// If a record changes, its cells whose radiance is more than one point's light (hits near by) are traced again in turn, each in every eighth update.
+  /// If a record changes, further cells get a new ray in their place of the hemisphere. They are drawn by age: see TemporalOptions::refresh.
   /// Where bright points are sampled explicitly, cells that met one have no anchor, as what is left of its light follows from the distance, too; and if anything has
   /// changed the explicit part of every record is sampled anew, with the record's random numbers.
   void advance(KeptHemispheres& kept, TemporalCounts& counts) const;

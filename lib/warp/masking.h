@@ -39,7 +39,7 @@ class Masking {
   Spread spread(const float* mean, const float* square) const;
   /// At how many positions a pixel composed of several surfaces must be known for its error to be WarpOptions::edge_share of its light: n positions in
   /// rows and columns of their own err by sigma n^(-5/6) (docs/pixels.md), sigma the standard deviation of what they show. `at`: of the `count`
-  /// positions tried. What they all missed has a share of 1 / (2 count), about; how it differs is told by the centres of the 3 x 3 pixels
+  /// positions tried. What they all missed has a share of 1 / (2 count), about; how it differs is estimated from the centres of the 3 x 3 pixels
   /// `around`, of which an edge leaves a third on its other side.
   std::size_t edge_positions(Spread at, std::size_t count, Spread around) const;
 

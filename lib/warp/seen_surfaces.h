@@ -14,7 +14,7 @@ namespace tempolux {
 inline constexpr std::uint32_t kNoObject = 0xffffffffu;    ///< id.object where nothing is seen
 inline constexpr std::uint32_t kAnyObject = 0xfffffffeu;   ///< of a picture that does not say: it may be any
 
-/// Of the point that the ray through each pixel's centre meets. Nothing met: depth +inf, object kNoObject, normal 0.
+/// The point that the ray through each pixel's centre meets. Nothing met: depth +inf, object kNoObject, normal 0.
 struct SeenSurfaces {
   int width = 0, height = 0;
   std::vector<float> depth;              ///< Z, m
@@ -57,7 +57,7 @@ inline bool same_face(const FacePoint& a, const FacePoint& b, float tolerance) {
   return !known || dot(a.normal, b.normal) >= kSameFace;
 }
 
-/// By pixel, 1: the pixel's whole area shows the face that its centre shows, as far as the centres of the 8 around it tell.
+/// One entry a pixel. 1: the pixel's whole area shows the face that its centre shows, judged by the centres of the 8 around it.
 /// What is narrower than a pixel may lie between two centres unseen.
 std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCamera& camera);
 
