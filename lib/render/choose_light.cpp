@@ -20,7 +20,7 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   const bool records = method == IndirectMethod::records;
   const SampleEffort& effort = method == IndirectMethod::paths ? rough.path : rough.gather;
   const double variance = records ? (map ? effort.other_without_caustic : effort.other) : map ? effort.without_caustic : effort.all;
-  const double wanted = std::max(kLeastError, rough.wanted), samples = std::max(1.0, std::pow(variance / wanted, 1 / SampleEffort::kFalls));
+  const double wanted = std::max(kLeastError, rough.wanted), samples = std::max(1.0, variance / wanted);
   const double sample = (records ? rough.record_sample : effort.work) + (map ? Work::kCausticLookUp : 0);
   double fixed = 0;
   if (map || method != IndirectMethod::paths) fixed += double(order.photons) * Work::kPhoton * (1 + rough.photons_per_path);

@@ -122,12 +122,11 @@ std::vector<double> variances(const Samples& samples, const Levels& levels, doub
   return sum;
 }
 
-/// Samples go where noise is: n a pixel in the mean, in proportion to v^(1 / (1 + r)), leave least of it (SampleEffort).
+/// Samples go where noise is: n a pixel in the mean, in proportion to the root of each part's variance, leave (mean root)^2 / n.
 double adaptive(const std::vector<double>& variances) {
-  constexpr double kShare = 1 / (1 + SampleEffort::kFalls);
-  double mean = 0;
-  for (const double variance : variances) mean += std::pow(variance, kShare) / double(variances.size());
-  return std::pow(mean, 1 / kShare);
+  double roots = 0;
+  for (const double variance : variances) roots += std::sqrt(variance) / double(variances.size());
+  return roots * roots;
 }
 
 SampleEffort effort_of(const Samples& samples, const Levels& levels, double times, double work) {
@@ -142,7 +141,7 @@ void ask(const Samples& samples, const Levels& levels, double pixel_error, Rough
   for (const double variance : variances(samples, levels, kFirst, [](const Sample& s) { return s.other + s.caustic; })) {
     const double wanted = std::max(kFirst, wanted_samples(std::sqrt(variance), kWholeSample, pixel_error));
     rough.samples += wanted / (kColumns * kRows);
-    rough.wanted += variance * std::pow(wanted, -SampleEffort::kFalls) / (kColumns * kRows);
+    rough.wanted += variance / wanted / (kColumns * kRows);
   }
 }
 

@@ -25,9 +25,8 @@ struct Work {
 
 /// What one sample of a kind costs and errs. Errors are those of a picture file, which holds about the root of radiance: each variance is divided by
 /// the square of what its pixel may err by (allowed_error of pixel error 1), and a sample brings at most what makes its pixel white. As frames take more
-/// samples where noise is, a variance here is the least of which n samples a pixel leave V n^-r: (mean of v^(1 / (1 + r)) over 16 x 9 parts of the picture)^(1 + r).
+/// samples where noise is, a variance here is the square of the mean of its root over 16 x 9 parts of the picture: n samples a pixel leave it / n.
 struct SampleEffort {
-  static constexpr double kFalls = 1.3;     ///< r: 1 for independent samples, 5/3 for stratified ones of few numbers (docs/pixels.md, "How many")
 
   double work = 0;                          ///< shadow rays
   double all = 0, without_caustic = 0;      ///< variance of all light, and of all but layer caustic
