@@ -27,6 +27,7 @@ struct Work {
 /// the square of what its pixel may err by (allowed_error of pixel error 1), and a sample brings at most what makes its pixel white. As frames take more
 /// samples where noise is, a variance here is the square of the mean of its root over 16 x 9 parts of the picture: n samples a pixel leave it / n.
 struct SampleEffort {
+
   double work = 0;                          ///< shadow rays
   double all = 0, without_caustic = 0;      ///< variance of all light, and of all but layer caustic
   double other = 0, other_without_caustic = 0;   ///< of all but layer indirect, likewise
