@@ -34,13 +34,6 @@ CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wis
   return CameraView(frame.camera(source.camera_node), frame.origin, wish.width, wish.height);
 }
 
-std::vector<AimSphere> aim_spheres(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
-  std::vector<AimSphere> spheres;
-  for (const formats::ViewSphere& sphere : view)
-    spheres.push_back({Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
-  return spheres;
-}
-
 /// What one looked frame asks for.
 struct Look {
   IndirectMethod method = IndirectMethod::records;
@@ -103,13 +96,7 @@ class FramePilot {
 
   /// Lights that aim photons where the camera looks, as those of photon-trace.
   const Lights& aimed() {
-    if (!aimed_) {
-      EmissionTable table = table_;
-      std::vector<WeighedPlace> places;
-      add_seen_places(tracer_, view_, 0, places);
-      table.aim = aim_spheres(spheres_around(places, table.sphere_radius), frame_.origin);
-      aimed_.emplace(frame_, table);
-    }
+    if (!aimed_) aimed_.emplace(aimed_lights(tracer_, table_, view_));
     return *aimed_;
   }
 

@@ -153,4 +153,18 @@ std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>&
   return spheres;
 }
 
+std::vector<AimSphere> aim_spheres(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
+  std::vector<AimSphere> spheres;
+  for (const formats::ViewSphere& sphere : view)
+    spheres.push_back({Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
+  return spheres;
+}
+
+Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view) {
+  std::vector<WeighedPlace> places;
+  add_seen_places(tracer, view, 0, places);
+  table.aim = aim_spheres(spheres_around(places, table.sphere_radius), tracer.frame().origin);
+  return Lights(tracer.frame(), table);
+}
+
 }  // namespace tempolux

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "formats/plan/view.h"
+#include "lib/light/lights.h"
 #include "lib/render/camera_view.h"
 
 namespace tempolux {
@@ -30,5 +31,11 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
 /// twice as densely, in the geometric mean over places, as uniform ones on the disc of radius `scene_radius` [m].
 /// Reasons: docs/methods/aim.md.
 std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius);
+
+/// The spheres of a view, which are in world space, in a scene space of this origin [m].
+std::vector<AimSphere> aim_spheres(const std::vector<formats::ViewSphere>& view, Vec3d origin);
+
+/// Lights that send photons of sun and sky where the camera looks (docs/methods/aim.md).
+Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view);
 
 }  // namespace tempolux
