@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "lib/image/exr_io.h"
 #include "tools/common/info_facts.h"
@@ -58,9 +59,9 @@ void add(const Image& image, const std::string& layer, const std::string& frame,
 
 FramesAccount account_of_frames(const std::vector<std::string>& files) {
   std::array<Sum, kLayers.size()> sums;
-  ExrReadOptions attributes;
-  attributes.wanted = [](const std::string&) { return false; };
   for (const std::string& file : files) {
+    ExrReadOptions attributes;   // and one channel: a picture without any is none
+    attributes.wanted = [first = true](const std::string&) mutable { return std::exchange(first, false); };
     const Image image = load_exr(file, attributes);
     for (std::size_t l = 0; l < kLayers.size(); ++l) add(image, kLayers[l], file, sums[l]);
   }
