@@ -88,7 +88,7 @@ shown/exposure-%:
 exposure = --exposure "$$(cat $(filter shown/exposure-%,$|))"
 preview = $(RUN) "$$BIN"/tempolux-info --png frames/.$1.$$$$.png $(exposure) $(picture) && \
   $(publish) 'rm -f shown/$1-*.png; mv -f frames/.'$1.$$$$'.png frames/$1.png && touch $2'
-sheet = rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && touch $1
+sheet = rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && $(RUN) "$$BIN"/tempolux-info --account $(frames) && touch $1
 # A walkthrough's keys have a border in the sheet; its log says where keys were placed and why.
 marks = $(if $(log),$$(sh "$$PIPELINES/walkthrough.sh" marks))
 walk_log = rm -f shown/walk-*; sh "$$PIPELINES/walkthrough.sh" log $(intervals) > walk.log && touch $1

@@ -10,6 +10,7 @@
 #include "formats/paths/paths.h"
 #include "formats/photons/photons.h"
 #include "lib/core/halton.h"
+#include "lib/core/random.h"
 #include "lib/light/lights.h"
 #include "lib/material/bsdf.h"
 #include "lib/trace/mover_watch.h"
@@ -137,6 +138,7 @@ class PhotonTracer {
   Flown fly_through_media(Path& path, float end, std::uint32_t bounce, PhotonBatch& batch) const;
   void record_tentative(const Path& path, Rgb flux, Vec3 position, float extinction, float majorant, std::uint32_t bounce, PhotonBatch& batch) const;
   bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
+  float aim(Vec3 position, Vec3 normal, const PathRandom& random, std::uint32_t bounce, Vec3& travel) const;
   bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage, Vec3 smooth,
                   const Draw& draw, PhotonBatch& batch) const;
 

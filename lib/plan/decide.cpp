@@ -54,7 +54,7 @@ struct Look {
 class FramePilot {
  public:
   FramePilot(const Wish& wish, const SceneSource& source, int number, const std::string& kinds)
-      : kinds_(kinds), wish_(wish), camera_(source.camera_node), frame_(source.at(number, true)), table_(source.emission(frame_.frame)),
+      : kinds_(kinds), wish_(wish), frame_(source.at(number, true)), table_(source.emission(frame_.frame)),
         view_(view_at(frame_, source, wish)), tracer_(frame_), lights_(frame_, table_) {}
 
   Look look() {
@@ -85,9 +85,7 @@ class FramePilot {
   const Lights& aimed() {
     if (!aimed_) {
       EmissionTable table = table_;
-      SeenAround seen;
-      look_around(tracer_, frame_.camera(camera_), wish_.width, wish_.height, seen);
-      table.aim = spheres_ = spheres_in_scene(spheres_around(seen.places, table.sphere_radius), frame_.origin);
+      table.aim = spheres_ = spheres_seen(tracer_, table.sphere_radius, view_);
       aimed_.emplace(frame_, table);
     }
     return *aimed_;
@@ -95,7 +93,6 @@ class FramePilot {
 
   std::string kinds_;
   const Wish& wish_;
-  int camera_;
   SceneFrame frame_;
   EmissionTable table_;
   CameraView view_;

@@ -15,6 +15,8 @@ namespace {
 
 using Names = std::vector<std::string>;
 
+constexpr const char* kAudit = "--audit 0.02";   ///< of the frame's rays: with what the audit looks up less than 3 % of a run
+
 std::string joined(const std::vector<int>& frames) {
   std::string text;
   for (const int frame : frames) text += (text.empty() ? "" : ",") + std::to_string(frame);
@@ -378,6 +380,7 @@ class Builder {
     Command c{"--frame " + std::to_string(frame), {}, cameras({frame}) + in_motion(frame, channels)};
     add_light(frame, c);
     for (const std::string& words : {size_, pixels, "--channels " + channels}) c.option(words);
+    if (decided(frame).photons() && !preview_) c.option(kAudit);
     return c;
   }
   /// With the channel motion a hash of a frame and those beside it: what is where, and the cameras.

@@ -254,4 +254,16 @@ std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& 
   return spheres;
 }
 
+
+std::vector<AimSphere> spheres_seen(const Tracer& tracer, double scene_radius, const CameraView& view) {
+  SeenAround seen;
+  look_around(tracer, view.camera(), view.width(), view.height(), seen);
+  return spheres_in_scene(spheres_around(seen.places, scene_radius), tracer.frame().origin);
+}
+
+Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view) {
+  table.aim = spheres_seen(tracer, table.sphere_radius, view);
+  return Lights(tracer.frame(), table);
+}
+
 }  // namespace tempolux
