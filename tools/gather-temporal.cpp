@@ -1,5 +1,6 @@
-// gather-temporal -- irradiance records whose incoming light is kept from frame to frame.
+// gather-temporal -- light over time: irradiance records that keep their incoming light from frame to frame, and photons of many frames.
 //
+//     gather-temporal density room.glb --frames 0-47 --photons p.####.photons -o d.####.meshirrad
 //     gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 960x540 -o s.0000.radsamples --cache c.0000.irradcache
 //     gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 960x540 --previous s.0000.radsamples ...
 //     gather-temporal final room.glb --frames 0-47 --points p.####.irradpoints --size 960x540 -o s.####.radsamples --cache c.####.irradcache
@@ -16,6 +17,7 @@
 #include "lib/gather/cache_files.h"
 #include "lib/render/known_light.h"
 #include "tools/common/option_words.h"
+#include "tools/stages/photon_windows.h"
 #include "tools/common/tool_main.h"
 #include "tools/stages/kept_files.h"
 
@@ -27,7 +29,7 @@ struct Options {
   std::vector<std::string> inputs;   // final SCENE
   std::string points, high, previous, output, cache, dynamic, age_weight = "2", refresh_rule = "adaptive";
   int width = 640, height = 360;
-  bool resume = false, free_radii = false;
+  bool resume = false;
   GatherOptions gather;
   PlacementOptions placement;
   TemporalOptions temporal;
@@ -152,14 +154,12 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
     rays.bright = &*bright;
   }
   const TemporalGather gather(scene, rays, options.placement, options.temporal, tools::sample_unit(frame));
-  const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-    seen_through(tracer, view, looks, seen);
-  };
+  const PixelView seen = [&](const Look& look) { return seen_through(tracer, view, look); };
   tool.stats().phase("records", true);
   TemporalCounts counts;
   if (chain.before) gather.advance(chain.kept, counts);
   RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
-  gather.place(views, options.width, options.height, chain.kept, store, counts, [&](double done) { tool.progress(done); });
+  gather.place(seen, options.width, options.height, chain.kept, store, counts, [&](double done) { tool.progress(done); });
   tool.stats().phase("write");
   write_cache(options, frame, store, history, cache_output);
   chain.files.write(chain.kept, frame, points, history, kept_output);
@@ -215,7 +215,6 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--min-weight", options.placement.min_weight,
                  "sum of records' weights at which a pixel is covered")
       ->capture_default_str()->check(tools::number_between(1e-6, 0.99));
-  app.add_flag("--free-radii", options.free_radii, "leave radii as each record's own rays tell");
   tool.leave_out_of_history(app.add_flag("--resume", options.resume, "take frames that an earlier run of this command has finished as they are"));
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.cache, ".irradcache file, or a pattern: the records of the frame", "--cache")->required();
@@ -225,6 +224,7 @@ void add_options(tools::Tool& tool, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "density") return tools::photon_windows(argc - 1, argv + 1);
   tools::Tool tool("gather-temporal", "Gather indirect light in records that keep their incoming light from frame to frame.", argc, argv);
   Options options;
   add_options(tool, options);
@@ -233,7 +233,6 @@ int main(int argc, char** argv) {
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
     check(tool.app(), options, frames);
-    options.placement.clamp_neighbours = !options.free_radii;
     options.temporal.rule = options.refresh_rule == "fixed" ? RefreshRule::fixed : RefreshRule::adaptive;
     options.temporal.age_weight = options.age_weight == "1"   ? AgeWeight::linear
                                   : options.age_weight == "2" ? AgeWeight::square

@@ -94,7 +94,7 @@ void add_wishes(tools::Tool& tool, Options& options) {
   };
   const auto words = [&](const char* name, std::string& value, const char* help) { app.add_option(name, value, help)->type_name("WORDS"); };
   choice("--quality", options.quality, "draft: rougher, in less than half of the time; final", {"draft", "final"});
-  choice("--method", options.method, "frames: each rendered; walkthrough: key frames, those between warped; auto: where it pays", {"frames", "walkthrough", "auto"});
+  choice("--method", options.method, "frames: each rendered; walkthrough: key frames, those between warped; auto: where it pays; preview: quick, indirect light by light textures from the photons of many frames", {"frames", "walkthrough", "auto", "preview"});
   choice("--filter", options.filter, "filter frames where the halves of their samples show that it helps: frames of the window, 1: each alone; none; "
          "auto: 1, unless --pixel-words are given", {"auto", "none", "1", "3", "5", "7", "9"});
   choice("--indirect", wish.indirect, "how indirect light is found: records, gather (in the pixel, by points), paths; auto: the cheapest by a pilot",
@@ -105,7 +105,7 @@ void add_wishes(tools::Tool& tool, Options& options) {
   choice("--split", wish.split, "are bright points divided from the others and sampled explicitly; auto: where a pilot finds that it pays", {"auto", "on", "off"});
   tool.size_option("--size", wish.width, wish.height, "size of the frames, pixels");
   app.add_option("--channels", wish.channels, "channels of the frames, as frame-render --channels")->capture_default_str();
-  tool.count_option("--photons", wish.photons, "paths of light of a photon map, up to 16 times as many where few of them arrive; 0: the preset's");
+  tool.count_option("--photons", wish.photons, "paths of light of a photon map (preview: of a frame), up to 16 times as many where few of them arrive; 0: the preset's");
   app.add_option("--rays", wish.rays, "gather rays of a record at most; 0: the preset's")->capture_default_str()->check(tools::number_between(0, 1 << 20));
   app.add_option("--pixel-error", wish.pixel_error, "of the frames, as frame-render --pixel-error; 0: the preset's")->capture_default_str()
       ->check(tools::number_between(0, 10));
@@ -120,8 +120,8 @@ void add_wishes(tools::Tool& tool, Options& options) {
       ->type_name("SHARE");
   app.add_option("--strategy", wish.strategy, "which groups of photons --update takes, as photon-trace --strategy")->capture_default_str();
   app.add_option("--key-distance", wish.key_distance, "frames between the first keys of a walkthrough")->capture_default_str()->check(tools::number_between(2, 1000));
-  app.add_option("--halve-above", wish.threshold, "relMSE between two keys above which an interval is halved; 5%: AQM, the share seen to differ; 0: the preset's")
-      ->capture_default_str()->check(tools::number_between(0, 100))->transform(tools::percent([&] { wish.threshold_of_seen = true; }));
+  app.add_option("--halve-above", wish.threshold, "an interval between keys is halved if a viewer sees in more than this share of its pixels, such as 5%, that "
+                 "they are wrong (AQM)")->capture_default_str()->check(tools::number_between(0, 1))->transform(tools::percent([] {}));
   app.add_option("--report", options.report, "frames to compare with path tracing; ends: the first and the last")->type_name("FRAMES");
   app.add_option("--reference-samples", wish.reference_samples, "samples of a pixel of what they are compared with")->capture_default_str()
       ->check(tools::number_between(2, 1 << 20));

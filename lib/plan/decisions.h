@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/render/choose_indirect.h"
+#include "lib/render/choose_light.h"
 #include "lib/render/choose_moving.h"
 
 namespace tempolux {
@@ -13,8 +13,11 @@ namespace tempolux {
 enum class Quality : std::uint8_t { draft, final };
 inline constexpr const char* kQualities[] = {"draft", "final"};
 
-enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic };
-inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto"};
+enum class FrameMethod : std::uint8_t { frames, walkthrough, automatic, preview };
+inline constexpr const char* kFrameMethods[] = {"frames", "walkthrough", "auto", "preview"};
+
+/// A preview's elements collect photons over this many frames at most, those before, at and after a frame.
+inline constexpr int kPreviewWindow = 33;
 
 /// What the user asks for. Words are options as on a command line, separated by blanks.
 struct Wish {
@@ -37,8 +40,7 @@ struct Wish {
   std::string refine;                   ///< further paths for what smoke shows of a map, as a share of its paths, "5%"; "": none
   std::string strategy = "census";      ///< which groups, as photon-trace --strategy
   int key_distance = 16;                ///< frames between the first keys of a walkthrough
-  double threshold = 0;                 ///< relMSE above which an interval is halved; 0: the preset's
-  bool threshold_of_seen = false;       ///< the threshold is a share of pixels that a viewer sees to differ (AQM), not relMSE
+  double threshold = 0.05;              ///< an interval of a walkthrough is halved if a viewer sees in a larger share of its pixels that they are wrong (AQM)
   int reference_samples = 64;           ///< of a pixel of the reference that a report compares with
   std::vector<int> report;              ///< frames to compare with path tracing
   std::string common;                   ///< words of all stages that shape content: --fps, --volume ... (they are hashed, not used)
@@ -60,8 +62,10 @@ struct Reason {
 struct Decisions {
   std::string kinds;                    ///< of photons that later stages read: "caustic,indirect"; "": no photons
   IndirectMethod indirect = IndirectMethod::records;
+  bool caustic_map = false;             ///< caustic light where the eye looks is read from photons; else paths find it
   std::uint64_t photon_paths = 700'000; ///< of a photon map
   int record_rays = 500;
+  double texture_width = 0;             ///< of a preview's light textures, m: deviation of their filter; 0: no preview
   bool learn_lights = false;            ///< light from far away comes through openings: it is learned which way
   bool split = false;                   ///< bright points are divided from the others and sampled explicitly
   MovingMethod moving = MovingMethod::anew;
@@ -78,7 +82,6 @@ struct Decisions {
   bool photons() const { return !kinds.empty(); }
   bool points() const { return photons() && indirect != IndirectMethod::paths; }
   bool records() const { return photons() && indirect == IndirectMethod::records; }
-  bool caustics() const { return kinds.find("caustic") != std::string::npos; }
 };
 
 }  // namespace tempolux

@@ -15,6 +15,8 @@ namespace {
 
 using Names = std::vector<std::string>;
 
+constexpr const char* kAudit = "--audit 0.02";   ///< of the frame's rays: with what the audit looks up less than 3 % of a run
+
 std::string joined(const std::vector<int>& frames) {
   std::string text;
   for (const int frame : frames) text += (text.empty() ? "" : ",") + std::to_string(frame);
@@ -42,9 +44,9 @@ std::string with_channels(std::string channels, const std::string& more) {
   return channels;
 }
 
-/// Channels of raw frames. A window of several frames is laid along their motion.
-std::string raw_channels(const Wish& wish) {
-  return with_channels(std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish.filter > 1 ? ",motion" : ""), wish.channels);
+/// Channels of a raw frame that is filtered to these. A window of several frames is laid along their motion.
+std::string raw_channels(const Wish& wish, const std::string& filtered) {
+  return with_channels(std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish.filter > 1 ? ",motion" : ""), filtered);
 }
 
 /// Options of a command, and the files among them.
@@ -75,6 +77,7 @@ class Builder {
       : plan_(plan), wish_(wish), tool_hash_(tool_hash), majorants_(majorants) {
     size_ = "--size " + std::to_string(wish.width) + "x" + std::to_string(wish.height);
     pixels_ = without(wish.pixels, "--learn-lights");
+    preview_ = wish.method == FrameMethod::preview;
   }
 
   Graph build() {
@@ -298,6 +301,45 @@ class Builder {
     return add(stage::textures, lit, c);
   }
 
+  // ---- previews -------------------------------------------------------------------------------------------------
+  static constexpr int kReach = kPreviewWindow / 2;
+  /// Photons of a frame: its own, whatever frames have the same light, so that windows collect different ones. In a segment of one state of light one
+  /// map has as many as a window.
+  std::string preview_photons(int frame, bool still) {
+    const Decisions& d = decided(frame);
+    Command c{"--frame " + std::to_string(frame) + (still ? "" : " --seed-mode frame"), {}, state(frame).light};
+    add_view(frame, c);
+    c.option("--photons " + std::to_string(d.photon_paths * (still ? kPreviewWindow : 1)) + " --kinds " + d.kinds);
+    return add(stage::photons, frame, c);
+  }
+  std::string width_words(int frame) const {
+    std::ostringstream words;
+    words << "--filter-width " << decided(frame).texture_width;
+    return words.str();
+  }
+  std::string counts(int frame) {
+    const PlannedSegment& s = segment(frame);
+    Command c{"--frame " + std::to_string(frame) + " --counts --kinds " + decided(frame).kinds + " " + width_words(frame), {}, ""};
+    // What moves is cut by its size in these frames, and jumps are seen beside the frames around.
+    for (const int f : {s.first, s.first + (s.last - s.first) / 2, s.last, frame - 2, frame - 1, frame, frame + 1})
+      c.content += state(std::clamp(f, s.first, s.last)).light;
+    c.file("--photons", preview_photons(frame, false));
+    return add(stage::counts, frame, c);
+  }
+  /// Light textures of a state of light.
+  std::string preview_light(int lit) {
+    const PlannedSegment& s = segment(lit);
+    Command c{"--frame " + std::to_string(lit), {}, state(lit).light};
+    if (s.states().size() == 1) {
+      c.option("--kinds " + s.decisions.kinds + " " + width_words(lit));
+      c.file("--photons", preview_photons(lit, true));
+      return add(stage::textures, lit, c);
+    }
+    c.option(width_words(lit) + " --counts");
+    for (int f = std::max(s.first, lit - kReach); f <= std::min(s.last, lit + kReach); ++f) c.file("", counts(f));
+    return add(stage::windows, lit, c);
+  }
+
   /// What light from far away reaches what the cameras of the segment see, learned once.
   std::string lights(int frame) {
     if (!decided(frame).learn_lights || !has_word(wish_.pixels, "--learn-lights")) return "";
@@ -316,7 +358,9 @@ class Builder {
     const Decisions& d = decided(frame);
     const int lit = state(frame).lit_frame;
     c.content += state(frame).light;
-    if (plan_.media && wish_.textures && d.photons()) {
+    if (preview_ && d.photons()) {
+      c.file("--meshirrad", preview_light(lit));
+    } else if (plan_.media && wish_.textures && d.photons()) {
       c.file("--meshirrad", textures(lit));
     } else if (d.points()) {
       if (d.records()) {
@@ -326,7 +370,7 @@ class Builder {
         add_points(lit, c);
       }
     }
-    if (d.caustics()) {
+    if (d.caustic_map && !preview_) {
       if (moved(lit)) c.file("--photons", stands_photons(lit));
       c.file(moved(lit) ? "--dynamic" : "--photons", photons(lit));
     }
@@ -336,6 +380,7 @@ class Builder {
     Command c{"--frame " + std::to_string(frame), {}, cameras({frame}) + in_motion(frame, channels)};
     add_light(frame, c);
     for (const std::string& words : {size_, pixels, "--channels " + channels}) c.option(words);
+    if (decided(frame).photons() && !preview_) c.option(kAudit);
     return c;
   }
   /// With the channel motion a hash of a frame and those beside it: what is where, and the cameras.
@@ -369,28 +414,28 @@ class Builder {
     return add(stage::smoke, frame, c);
   }
   std::string clear_picture(int frame) {
-    const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk));
+    const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk && wish_.filter <= 1));
     if (walk) return walked_picture(frame);
-    if (wish_.filter > 0) return filtered_picture(frame);
+    if (wish_.filter > 0) return filtered_picture(frame, wish_.channels);
     return add(stage::pictures, frame, frame_command(frame, pixels_, wish_.channels));
   }
 
   /// A frame with the halves of its samples, filtered alone or with those around it. The window ends at the animation's ends.
-  std::string filtered_picture(int frame) {
+  std::string filtered_picture(int frame, const std::string& channels) {
     // Frames around it must have noise of their own.
     const std::string pixels = pixels_ + (wish_.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
-    const std::string channels = raw_channels(wish_);
+    const std::string raw_names = raw_channels(wish_, channels);
     Command c;
     std::size_t position = 0;
     for (int f = frame - wish_.filter / 2; f <= frame + wish_.filter / 2; ++f) {
       if (f != clamped(f)) continue;
-      const int like = shown(f, channels);
-      const std::string raw = add(stage::raw, like, frame_command(like, pixels, channels));
+      const int like = shown(f, raw_names);
+      const std::string raw = add(stage::raw, like, frame_command(like, pixels, raw_names));
       if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
       if (f == frame) position = c.inputs.size();
     }
     if (wish_.filter == 1) graph_.files[graph_.by_name.at(c.inputs.front())].passing = true;
-    c.option("--position " + std::to_string(position) + " --channels " + wish_.channels);
+    c.option("--position " + std::to_string(position) + " --channels " + channels);
     return add(stage::filtered, frame, c);
   }
 
@@ -402,9 +447,10 @@ class Builder {
     return true;
   }
   std::string key_picture(int frame) {
-    std::string channels = with_channels(wish_.channels, "Z,N,id");
-    if (!has_channel(channels, "layers")) channels = with_channels(channels, "specular");
+    const bool layers = wish_.filter > 0 || has_channel(wish_.channels, "layers");
+    const std::string channels = with_channels(wish_.channels, layers ? "Z,N,id,layers" : "Z,N,id,specular");
     frame = shown(frame, channels);
+    if (wish_.filter > 0) return filtered_picture(frame, channels);
     return add(stage::keys, frame, frame_command(frame, pixels_, channels));
   }
   /// The interval of equal light between first keys that holds a frame strictly inside, or none: then the frame is a key.
@@ -429,7 +475,7 @@ class Builder {
     c.file("", key_picture(i.first));
     c.file("", key_picture(i.last));
     std::ostringstream threshold;
-    threshold << (wish_.threshold_of_seen ? 100 * wish_.threshold : wish_.threshold) << (wish_.threshold_of_seen ? "%" : "");
+    threshold << wish_.threshold;
     for (const std::string& word : {frame_digits(i.middle()), key_picture(i.middle()), threshold.str(), left.empty() ? "-" : left, right.empty() ? "-" : right})
       c.option(word);
     c.content = tool_hash_("aqm-compare") + cameras({i.middle()});
@@ -444,10 +490,12 @@ class Builder {
     if (std::ranges::find(graph_.intervals, decided_by) == graph_.intervals.end()) graph_.intervals.push_back(decided_by);
     Command light{"", {}, ""};
     add_light(frame, light);
-    Command c{"", {}, tool_hash_("ibr-warp") + light.content + cameras({frame}) + in_motion(frame, wish_.channels)};
+    Command c{"", {}, tool_hash_("ibr-warp") + (wish_.filter > 0 ? tool_hash_("st-filter") : "") + light.content + cameras({frame}) + in_motion(frame, wish_.channels)};
     c.file("", decided_by);
     c.option(frame_digits(frame));
-    for (const std::string& words : {light.words, size_, pixels_, "--channels " + wish_.channels}) c.option(words);
+    c.option(wish_.filter > 0 ? wish_.channels : "-");
+    for (const std::string& words : {light.words, size_, pixels_, "--channels " + (wish_.filter > 0 ? raw_channels(wish_, wish_.channels) : wish_.channels)})
+      c.option(words);
     c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());
     return add(stage::walked, frame, c);
   }
@@ -479,6 +527,7 @@ class Builder {
   const ToolHash& tool_hash_;
   const MajorantsText& majorants_;
   std::string size_, pixels_;
+  bool preview_ = false;
   Graph graph_;
   std::map<int, std::string> majorants_known_, records_;
   std::map<long long, std::string> intervals_;
@@ -509,14 +558,14 @@ std::string frame_digits(int frame) {
 
 std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish) {
   std::set<int> helpers;
-  const int beside = has_channel(raw_channels(wish), "motion");
+  const int beside = has_channel(raw_channels(wish, wish.channels), "motion");
   const auto add = [&](int first, int last) {
     for (int f = first - beside; f <= last + beside; ++f) helpers.insert(f);
   };
   for (const int frame : frames) {
     add(frame - wish.filter / 2, frame + wish.filter / 2);
     const int first = frame - frame % wish.key_distance;
-    if (wish.method != FrameMethod::frames) add(first, first + wish.key_distance);
+    if (wish.method != FrameMethod::frames && wish.method != FrameMethod::preview) add(first, first + wish.key_distance);
   }
   return {helpers.begin(), helpers.end()};
 }
@@ -524,10 +573,13 @@ std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish)
 Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, const MajorantsText& majorants) {
   if (plan.media && wish.method == FrameMethod::walkthrough)
     throw InputError("METHOD=walkthrough: the scene has media, which warping between keys does not know; use METHOD=frames");
+  if (plan.media && wish.method == FrameMethod::preview)
+    throw InputError("METHOD=preview: the scene has media, which light textures leave out; use METHOD=frames SURFACES=textures");
   if (!plan.media && !(wish.update.empty() && wish.refine.empty()))
     throw InputError("UPDATE and REFINE are for maps of scenes with media; this scene has none");
-  if (wish.filter > 0 && wish.method == FrameMethod::walkthrough)
-    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=walkthrough: keys are not filtered; use one or the other");
+  if (wish.filter > 1 && wish.method == FrameMethod::walkthrough)
+    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=walkthrough: what is warped has its keys' noise in all frames, so that "
+                     "frames around it know nothing more; use FILTER=1");
   return Builder(plan, wish, tool_hash, majorants).build();
 }
 

@@ -8,8 +8,11 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <span>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "formats/error.h"
 #include "formats/hash.h"
@@ -96,6 +99,25 @@ std::set<std::uint32_t> used_materials(const Scene& scene) {
       for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)
         if (!primitive.triangles.empty()) used.insert(primitive.material);
   return used;
+}
+
+/// Numbers in the order given, those that follow each other as a range: "-2, 48 to 60".
+std::string in_words(std::span<const int> frames) {
+  std::string words;
+  for (std::size_t i = 0; i < frames.size();) {
+    std::size_t end = i + 1;
+    while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
+    words += (words.empty() ? "" : ", ") + std::to_string(frames[i]);
+    if (end > i + 1) words += " to " + std::to_string(frames[end - 1]);
+    i = end;
+  }
+  return words;
+}
+
+/// First and last frame of the animation: "0 to 47"; of a scene that stands still "0 and later".
+std::string extent_in_words(const Scene& scene, const TimeOptions& options) {
+  const int last = frame_in_animation(scene, std::numeric_limits<int>::max(), options);
+  return last == std::numeric_limits<int>::max() ? "0 and later" : "0 to " + std::to_string(last);
 }
 
 /// The materials at all frames of the segment; once if no animation changes them.
@@ -197,20 +219,22 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   plan.media = bool(media);
   plan.last_frame = media ? frame_in_animation(scene, std::numeric_limits<int>::max(), options) : last_change(scene, options);
 
-  std::size_t beyond = 0;
+  std::vector<int> outside;
   std::set<int> needed;
   for (const int frame : frames) {
     const int shown = std::clamp(frame, 0, plan.last_frame);
     if (!plan.shows.try_emplace(frame, shown).second) continue;
     plan.frames.push_back(frame);
-    beyond += frame_in_animation(scene, frame, options) != frame;
+    if (frame_in_animation(scene, frame, options) != frame) outside.push_back(frame);
     needed.insert(shown);
   }
   for (const int frame : others) needed.insert(std::clamp(frame, 0, plan.last_frame));
   for (const int frame : needed)
     if (plan.segments.empty() || frame > plan.segments.back().last)
       plan.segments.push_back(plan_segment(scene, segment_of(scene, frame, options), camera_node, options, media));
-  if (beyond > 0) plan.warnings.push_back(std::to_string(beyond) + (beyond == 1 ? " frame" : " frames") + " outside the animation: the nearest end is shown");
+  if (!outside.empty())
+    plan.warnings.push_back("of the frames asked for " + in_words(outside) + (outside.size() == 1 ? " is" : " are") + " outside the animation (" +
+                            extent_in_words(scene, options) + "): its nearest end is shown");
   return plan;
 }
 

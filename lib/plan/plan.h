@@ -1,4 +1,4 @@
-// lib/plan/plan.h -- the states of a scene in the segments that a range of frames needs (architecture.md 4).
+// lib/plan/plan.h -- the states of a scene in the segments that a range of frames needs (docs/methods/formulas.md).
 //
 // Everything here follows from the scene and the segment. No value depends on which other frames were asked for.
 #pragma once

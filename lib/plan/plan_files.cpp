@@ -15,11 +15,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json decisions_json(const Decisions& d) {
-  Json json = {{"photon_kinds", d.kinds}, {"indirect", kIndirectMethods[std::size_t(d.indirect)]}, {"paths", d.photon_paths},
+  Json json = {{"photon_kinds", d.kinds}, {"indirect", kIndirectMethods[std::size_t(d.indirect)]}, {"caustic_map", d.caustic_map}, {"paths", d.photon_paths},
                {"rays", d.record_rays}, {"learn_lights", d.learn_lights}, {"split", d.split},
                {"moving", kMovingMethods[std::size_t(d.moving)]},
                {"new_share", d.new_share}, {"pictures_together", d.together},
                {"walkthrough", d.walk}, {"view", d.view}, {"looked_at", d.looked}};
+  if (d.texture_width > 0) json["texture_width"] = d.texture_width;
   json["because"] = Json::object();
   for (const Reason& reason : d.reasons) json["because"][reason.stage] = reason.because;
   return json;
@@ -126,8 +127,10 @@ Decisions read_decisions(const std::string& text) {
     Decisions d;
     d.kinds = json.at("photon_kinds").get<std::string>();
     d.indirect = named<IndirectMethod>(kIndirectMethods, json.at("indirect"));
+    d.caustic_map = json.at("caustic_map");
     d.photon_paths = json.at("paths");
     d.record_rays = json.at("rays");
+    d.texture_width = json.value("texture_width", 0.0);
     d.learn_lights = json.at("learn_lights");
     d.split = json.at("split");
     d.moving = named<MovingMethod>(kMovingMethods, json.at("moving"));

@@ -24,13 +24,12 @@ struct Placement {
 };
 
 /// What the camera sees, but for pixels that are not wanted and points that are not taken.
-PixelViews looks_through(const Placement& place, const CameraView& view, const std::vector<std::uint8_t>& wanted) {
-  return [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-    seen_through(place.tracer, view, looks, seen);
-    for (std::size_t i = 0; i < looks.size(); ++i) {
-      const bool asked = wanted.empty() || wanted[std::size_t(looks[i].y) * std::size_t(view.width()) + std::size_t(looks[i].x)];
-      if (!asked || (seen[i] && place.takes && !place.takes(*seen[i]))) seen[i].reset();
-    }
+PixelView looks_through(const Placement& place, const CameraView& view, const std::vector<std::uint8_t>& wanted) {
+  return [&](const Look& look) -> std::optional<SeenPoint> {
+    if (!wanted.empty() && !wanted[std::size_t(look.y) * std::size_t(view.width()) + std::size_t(look.x)]) return std::nullopt;
+    std::optional<SeenPoint> seen = seen_through(place.tracer, view, look);
+    if (seen && place.takes && !place.takes(*seen)) seen.reset();
+    return seen;
   };
 }
 
@@ -64,13 +63,13 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
   const std::vector<bool> moves = moving_objects(input.tracer.frame());
   const auto rides = [&](const SeenPoint& seen) { return seen.surface.object < moves.size() && moves[seen.surface.object]; };
   // Where E_y counts by the share f < 1, its squared error counts by f^2: f of the rays leave no more of it than all leave where f is 1.
-  const RecordSource source{[&](const SeenPoint& seen, const RecordStore::Expected& expected, std::size_t, GatherCounts& local) {
+  const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
     const float share = rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
-    IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, expected.lit_share, share);
+    IrradianceRecord record = input.gather.gather(seen.surface, seen.normal, local, share);
     limit_radius(record, seen.footprint, options);
     input.gather.look_around(seen.surface, record);
     return record;
-  }, [](std::size_t, std::size_t) {}};
+  }, [](std::size_t) {}};
   const auto matters = [&](const SeenPoint& seen) { return rides(seen) || field.at(seen.surface.position, seen.normal) > input.influence.low; };
   RecordStore store({.least_cosine = least_cosine_of(options.error_bound)});
   const GatherCounts counts = place_for_all({input.gather, input.tracer, options, matters, &source}, cameras, store);

@@ -34,8 +34,7 @@ double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, in
     for (std::uint32_t i = 0; i < kLooks && !views.empty(); ++i) {
       const Vec2 u = sobol_owen_2d(i, 0);
       const Look look{u.x * float(width), u.y * float(height), {}};
-      std::optional<SeenPoint> point;
-      seen_through(tracer, view, {&look, 1}, {&point, 1});
+      const std::optional<SeenPoint> point = seen_through(tracer, view, look);
       if (!point || !sees(tracer, view, point->surface.position)) continue;
       all += 1;
       fresh += std::ranges::none_of(views, [&](const CameraView& before) { return sees(tracer, before, point->surface.position); });
@@ -53,8 +52,7 @@ SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int loo
       const PathRandom random(seed ^ 0x6c6561726e000001ull, i);
       const Vec2 u = sobol_owen_2d(std::uint32_t(i), seed ^ 0x6c6f6f6bull);
       const Look look{u.x * float(view.width()), u.y * float(view.height()), random};
-      std::optional<SeenPoint> point;
-      seen_through(scene.tracer, view, {&look, 1}, {&point, 1});
+      const std::optional<SeenPoint> point = seen_through(scene.tracer, view, look);
       if (!point) continue;
       SeenPlace& place = seen.places[i];
       const Vec3 front = point->surface.normal_geometric;

@@ -99,8 +99,7 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
     const Vec2 within = random.get2(0, Purpose::place);
     const Look look{(float(i % kColumns) + within.x) * float(view.width()) / kColumns,
                     (float(i / kColumns) + within.y) * float(view.height()) / kRows, random};
-    std::optional<SeenPoint> seen;
-    seen_through(tracer, view, {&look, 1}, {&seen, 1});
+    const std::optional<SeenPoint> seen = seen_through(tracer, view, look);
     if (!seen) continue;
     add(seen->surface.position, 1, length(Vec3d(seen->surface.position) - Vec3d(view.eye())));
     SurfacePoint at = seen->surface;
@@ -253,6 +252,18 @@ std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& 
   for (const formats::ViewSphere& sphere : view)
     spheres.push_back({Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
   return spheres;
+}
+
+
+std::vector<AimSphere> spheres_seen(const Tracer& tracer, double scene_radius, const CameraView& view) {
+  SeenAround seen;
+  look_around(tracer, view.camera(), view.width(), view.height(), seen);
+  return spheres_in_scene(spheres_around(seen.places, scene_radius), tracer.frame().origin);
+}
+
+Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view) {
+  table.aim = spheres_seen(tracer, table.sphere_radius, view);
+  return Lights(tracer.frame(), table);
 }
 
 }  // namespace tempolux

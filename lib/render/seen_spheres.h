@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "formats/plan/view.h"
-#include "lib/light/aim.h"
+#include "lib/light/lights.h"
 #include "lib/render/camera_view.h"
 
 namespace tempolux {
@@ -46,5 +46,11 @@ std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>&
 
 /// The same in scene space; `origin`: that of the frame.
 std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin);
+
+/// The spheres, in scene space, of what this camera and those around it see; `scene_radius`: m.
+std::vector<AimSphere> spheres_seen(const Tracer& tracer, double scene_radius, const CameraView& view);
+
+/// Lights that send photons of sun and sky where the camera looks (docs/methods/aim.md).
+Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view);
 
 }  // namespace tempolux

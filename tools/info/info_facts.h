@@ -65,6 +65,14 @@ void export_irradcache(const std::string& path, const std::string& format, Outpu
 /// Throws InputError for a file of another type.
 void export_points(const std::string& path, const std::string& format, Output& output);
 
+/// What frames say of the bias of their light (docs/methods/account.md), together.
+struct FramesAccount {
+  std::string line;                      ///< in words; empty if no frame says anything
+  std::vector<std::string> warnings;     ///< layers that are off by more than 2 % of the picture and three standard errors
+};
+/// By the attributes of EXR files. The audits of frames are independent, so the error of their mean is sqrt(sum of squares) / n.
+FramesAccount account_of_frames(const std::vector<std::string>& files);
+
 struct PictureOptions {
   std::string layer;                     ///< "": R, G, B
   std::optional<double> exposure_stops;  ///< nothing: auto

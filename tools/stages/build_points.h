@@ -24,7 +24,6 @@ struct CacheOptions {
   GatherOptions gather;
   PlacementOptions placement;
   InfluenceThresholds influence;
-  bool free_radii = false;
 
   std::string mode() const { return inputs.size() == 2 ? inputs[0] : "both"; }
   const std::string& scene() const { return inputs.back(); }

@@ -37,7 +37,7 @@ void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const
   for (std::size_t i = 0; i < outputs_.size(); ++i) {
     Image image = data;
     add_colour_channels(*parts[i], channels, image);
-    if (!mask.empty()) keep_base_pixels(mask, base, image);
+    if (!mask.empty()) keep_base_pixels(mask, base, data.channels.size(), image);
     describe(description, parts[i]->samples, image);
     if (i == 0)   // of the mean of all samples
       for (const auto& [name, value] : description.account) image.numbers["tempolux:" + name] = value;

@@ -87,12 +87,13 @@ void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, c
 
 void IndirectLight::read_mesh(Tool& tool, const std::string& name, const SceneFrame& frame) {
   tool.depends_on(name);
-  formats::MeshirradFile file = formats::load_meshirrad(name);
+  const formats::MeshirradFile file = formats::load_meshirrad(name);
   check_identity(tool, name, file.header.identity, frame);
-  if (file.header.kinds != "indirect")
-    throw InputError(name + ": holds light of kinds " + file.header.kinds + ", of which frames sample or look up some by themselves; make it with --kinds indirect");
+  if (file.header.holds == formats::MeshHolds::counts) throw InputError(name + ": holds counts, not light; make light of them with gather-temporal density");
+  if (file.header.kinds != "indirect" && (file.header.kinds != "caustic,indirect" || photons_))
+    throw InputError(name + ": holds light of kinds " + file.header.kinds + ", of which frames sample or look up some by themselves; make it with --kinds indirect, or caustic,indirect and no --photons");
   history_ = file.header.history;
-  mesh_ = std::make_unique<MeshLight>(std::move(file));
+  mesh_ = std::make_unique<MeshLight>(file, frame);
   known_.mesh = mesh_.get();
 }
 
