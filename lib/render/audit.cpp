@@ -26,12 +26,15 @@ double light_of(const Layers& pixel) {
   return sum;
 }
 
-/// Both estimates joined by inverse variance; the one that is known if there is one only.
+/// Both estimates joined by inverse variance; the one that is known if there is one only. Two that differ by more than kAuditErrors of their difference's
+/// standard errors are not both right (rare light that one way has not met), and nothing shows which is: no estimate.
 Estimate joined(const Estimate& a, const Estimate& b) {
   if (!a.known()) return b;
   if (!b.known()) return a;
   const double va = a.error * a.error, vb = b.error * b.error;
   if (!(va + vb > 0)) return a;
+  const double apart = a.value - b.value;
+  if (apart * apart > kAuditErrors * kAuditErrors * (va + vb)) return {};
   return {(a.value * vb + b.value * va) / (va + vb), std::sqrt(va * vb / (va + vb))};
 }
 
