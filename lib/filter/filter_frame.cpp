@@ -178,7 +178,7 @@ namespace {
 
 /// Pixels around a tile that its own depend on: the fits' windows, two for what is smoothed and on one surface, the windows of unmix() and
 /// resolve(), those of choose() six times.
-constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 6 * 4; }
+constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 6 * 3; }
 
 Image cut_out(const Image& image, int left, int top, int width, int height) {
   Image out{width, height, {}, {}, {}, {}};
