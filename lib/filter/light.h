@@ -46,7 +46,7 @@ class FrameLight {
  public:
   /// Matte light by what the pixel sees; emission and specular by what mirrors and glass show. R G B alone where a frame has no layers.
   static constexpr std::size_t kGroups = 2;
-  /// InputError if a layer's noise is not all there, or the layer is not.
+  /// InputError as check_noise().
   explicit FrameLight(const Image& image);
   /// Nothing to be filtered in the group, or nothing is known of its noise: empty.
   const std::optional<LightGroup>& group(std::size_t g) const { return groups_[g]; }
@@ -55,6 +55,8 @@ class FrameLight {
   std::array<std::optional<LightGroup>, kGroups> groups_;
 };
 
+/// InputError if a layer's noise is not all there, or the layer is not.
+void check_noise(const Image& image);
 /// Does a frame say anything by which its matte light's noise is known?
 bool knows_noise(const Image& image);
 /// Does the filter read a channel of this name?
