@@ -20,8 +20,8 @@ namespace {
 /// InputError if two frames of a window differ in size or layers.
 void check_frame(const WindowLight& frame, const WindowLight& other) {
   if (other.width != frame.width || other.height != frame.height)
-    throw InputError("frames of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + " and of " + std::to_string(other.width) +
-                     "x" + std::to_string(other.height) + " pixels; all frames of a window have one size");
+    throw InputError("frames of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + " and of " +
+                     std::to_string(other.width) + "x" + std::to_string(other.height) + " pixels; all frames of a window have one size");
   const auto &own = frame.light.group(0), &others = other.light.group(0);
   if (own.has_value() != others.has_value() ||
       (own && (own->layers != others->layers || own->surfaces.albedo[0].empty() != others->surfaces.albedo[0].empty())))
