@@ -63,8 +63,8 @@ struct WarpedFrame {
   std::vector<std::string> names;                ///< of the colour channels, ascending
   std::vector<std::vector<float>> colour;        ///< by name, then by pixel; 0 where nothing was found
   std::vector<std::uint32_t> why;                ///< sums of formats::Why
-  /// With WarpOptions::separate: what each key alone gives, laid out as `colour`. Where it does not give the whole pixel it is what
-  /// was composed: comparing two candidates finds no difference there.
+  /// With WarpOptions::separate: what each key alone gives, laid out as `colour`. Where it does not give the whole pixel, or the pixel stands still, it is
+  /// what was composed: comparing two candidates finds no difference there. What stands is exact, and the keys' noise is no error of warping.
   std::vector<std::vector<std::vector<float>>> candidates;
 };
 
