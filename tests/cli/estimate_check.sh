@@ -3,7 +3,7 @@ failed=0
 bad() { echo "$*"; failed=1; }
 export TMPDIR="$PWD/temporary"
 mkdir temporary
-estimate() { exec setsid env --default-signal=INT make -f "$HERE/../../Makefile.example" BIN="$(dirname "$(command -v scene-plan)")" SCENE="$HERE/../../pipelines/scenes/S1_cornell.glb" SIZE=96x54 OUT=out "$@" estimate; }
+estimate() { exec setsid env --default-signal=INT make -f "$HERE/../../Makefile.example" BIN="$(dirname "$(command -v scene-plan)")" SCENE="$HERE/../../pipelines/scenes/S1_cornell.glb" SIZE=96x54 INDIRECT=records OUT=out "$@" estimate; }
 unset MAKEFLAGS MFLAGS MAKELEVEL
 (estimate) > said || bad "exits $?"
 for stage in photon-trace irradcache-build frame-render st-filter; do grep -q "^$stage" said || bad "says nothing of $stage: $(cat said)"; done
