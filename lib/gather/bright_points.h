@@ -21,7 +21,6 @@ namespace tempolux {
 
 struct BrightOptions {
   std::uint64_t seed = 0;
-  float near_factor = 2;     ///< GatherOptions::near_factor
   int light_samples = 16;    ///< shadow rays of a site where a point's direct light is not that of the places near it
   std::span<const LampPhoton> beside_lamps = {};   ///< of lamps beside surfaces; their points are noted (PointLookup::note_lamp)
 };
@@ -97,7 +96,6 @@ class BrightPoints {
   };
   std::optional<Site> site_at(const IrradiancePoint& place, float area) const;
   void sample_uneven(const Lights& lights, const std::vector<std::uint32_t>& uneven, const BrightOptions& options);
-  float share_of_far(const Site& site, float distance) const;
   float share(const Site& site, float distance, bool reads_near) const;
   static float lamp_share(float distance, float lamp_distance);
   void place_high(const Lights& lights, const BrightOptions& options);
@@ -108,7 +106,7 @@ class BrightPoints {
   const Tracer& tracer_;
   const PointLookup& points_;
   std::vector<float> high_;
-  float near_factor_, radius_, lamp_reach_;
+  float radius_, lamp_reach_;
   std::vector<Site> sites_;          ///< those of one spot side by side
   std::vector<Sites> sites_of_;      ///< by spot
   std::optional<LightTree> tree_;    ///< spots

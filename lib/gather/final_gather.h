@@ -16,7 +16,6 @@ namespace tempolux {
 struct GatherOptions {
   std::uint64_t seed = 0;
   int rays = 500;                   ///< wanted where light is even; rounded to M rings x N_phi sectors, N_phi about pi M
-  float near_factor = 2;            ///< hits nearer than about this many estimate radii continue one bounce
   const BrightPoints* bright = nullptr;   ///< points that are sampled explicitly, if any (bright_points.h)
   int bright_samples = 100;         ///< explicit samples of a record
 };

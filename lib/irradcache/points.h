@@ -106,6 +106,16 @@ class PointLookup {
   ///     E_bright - c E_dark > 3 sqrt(E_bright^2 / k + c^2 (E_dark e + e^2)),   c = kContrastOfIndirect
   bool apart(const IrradiancePoint& bright, const IrradiancePoint& dark) const;
 
+  /// Hits nearer than about this many radii of the estimate behind their point do not read the point: the blur of its light would be seen.
+  static constexpr float kNear = 2;
+  /// Is a hit at `distance` m along the way from the last Lambert lobe so near? u in [0, 1) moves the limit between half and one and a half of it, so
+  /// that it shows no seam.
+  static bool is_near(const Light& light, float distance, float u) { return distance < kNear * light.radius * (0.5f + u); }
+  /// Share of the u for which a hit is not near; radius: Light::radius.
+  static float share_of_far(float radius, float distance) {
+    return radius > 0 ? std::clamp(distance / (kNear * radius) - 0.5f, 0.0f, 1.0f) : 1.0f;
+  }
+
   static constexpr float kReach = 2;   ///< spacings: farther off no point stands for a hit
 
  private:

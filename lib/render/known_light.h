@@ -45,11 +45,9 @@ class KnownLight {
     Rgb irradiance{0.0f};
     bool direct = true;   ///< of all kinds; else of all but direct: where the border of a shadow runs paths sample that themselves
   };
-  /// At a hit `distance` m along the way from the last Lambert lobe; none where no point stands for it or its indirect light is not that of the hit,
-  /// or where it is so near that the blur of the points would be seen: nearer than about kNear radii of the estimate behind it.
-  /// u in [0, 1) moves that limit between half and one and a half of it, so that it shows no seam.
+  /// At a hit `distance` m along the way from the last Lambert lobe; none where no point stands for the hit, the point's indirect light is not that
+  /// of the hit, or the hit is near (PointLookup::is_near).
   std::optional<Told> told(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
-  static constexpr float kNear = 2;       ///< GatherOptions::near_factor's default
   /// Share of the light scattered by the Lambert lobe at the hit that is not sampled explicitly where the path comes from; 1 where it
   /// is so near that the path goes on for its light. The same u as told().
   float left(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;

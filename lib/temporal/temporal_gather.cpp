@@ -8,6 +8,7 @@
 #include "lib/core/check.h"
 #include "lib/core/parallel.h"
 #include "lib/scene/deform.h"
+#include "lib/scene/moving_objects.h"
 #include "lib/temporal/light_changes.h"
 
 namespace tempolux {
@@ -55,13 +56,9 @@ struct TemporalGather::Marked {
 };
 
 std::size_t anchored_points(const SceneFrame& frame, std::span<const IrradiancePoint> points) {
-  std::vector<bool> moves;
-  for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s) {
-    moves.resize(std::max<std::size_t>(moves.size(), frame.surfaces[s].object + 1));
-    moves[frame.surfaces[s].object] = true;
-  }
+  const MovingObjects moving(frame);
   std::size_t count = 0;
-  while (count < points.size() && !(points[count].object < moves.size() && moves[points[count].object])) ++count;
+  while (count < points.size() && !moving.contains(points[count].object)) ++count;
   return count;
 }
 

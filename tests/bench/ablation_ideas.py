@@ -31,7 +31,7 @@ IDEAS = (
          (("lib/render/path_tracer.cpp", "if (has_diffuse) diffuse *= mis_power(pdf, lobes.times_diffuse * x.bsdf.pdf_diffuse(wi, x.eye));", ""),
           ("lib/render/path_tracer.cpp", "times * (next.diffuse ? x.bsdf.pdf_diffuse(next.wi, x.eye)", "times * (next.diffuse ? 0.0f"))),
     Idea("gloss forks", "under a gloss both lobes are followed at the first surface", "frames",
-         (("lib/render/path_tracer.cpp", "const bool forks = known_ && ", "const bool forks = known_ && walk.bounce > 1000 && "),)),
+         (("lib/render/path_tracer.cpp", "if (known_ && known_->forks() && ", "if (known_ && walk.bounce > 1000 && known_->forks() && "),)),
     Idea("gloss reads points", "what a rough gloss shows is told by points, as what rays of the hemisphere meet", "frames",
          (("lib/render/path_tracer.cpp", "(beyond.spread > 0 && !known.bright)", "(beyond.spread > 1000 && !known.bright)"),)),
     # ---- numbers of samples
@@ -58,8 +58,7 @@ IDEAS = (
     Idea("points by importance", "points lie where cameras look", "points",
          (("lib/gather/irradiance_points.cpp", "if (seen.empty()) return {};\n  std::vector<double> standing", "if (seen.size() < 1000000) return {};\n  std::vector<double> standing"),)),
     Idea("near hits go on", "rays that end nearer than two radii of an estimate go on for a bounce", "points",
-         (("lib/gather/final_gather.h", "float near_factor = 2;", "float near_factor = 0;"),
-          ("lib/render/known_light.h", "static constexpr float kNear = 2;", "static constexpr float kNear = 0;"))),
+         (("lib/irradcache/points.h", "static constexpr float kNear = 2;", "static constexpr float kNear = 0;"),)),
     Idea("shadow borders", "where points side by side have direct light that differs eightfold it is sampled instead", "points",
          (("lib/irradcache/points.cpp", "bool even() const { return !(least * kContrast < most); }", "bool even() const { return true; }"),)),
     Idea("answers by cell", "which point answers in a cell of half a spacing is found once", "points",

@@ -11,6 +11,7 @@
 #include "lib/gather/cache_files.h"
 #include "lib/image/images_by_module.h"
 #include "lib/render/known_light.h"
+#include "lib/scene/moving_objects.h"
 #include "lib/scene/standing.h"
 #include "tools/common/localised_cache.h"
 
@@ -205,7 +206,7 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
   std::vector<float> influences;
   for (const RecordChange& change : cache.changes) influences.push_back(change.influence);
   const InfluenceField field(cache.standing, influences, options.influence);
-  const std::vector<bool> moves = moving_objects(frame);
+  const MovingObjects moving(frame);
   GatherCounts counts;
   RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
   const int camera = input.scene().camera_node(tool.common().camera);
@@ -216,7 +217,7 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
     const PixelView all = looks_through(tracer, view, wanted_pixels(tool, options, f), options.width);
     const PixelView influenced = [&](const Look& look) {
       std::optional<SeenPoint> point = all(look);
-      const bool rides = point && point->surface.object < moves.size() && moves[point->surface.object];
+      const bool rides = point && moving.contains(point->surface.object);
       if (point && !rides && !(field.at(point->surface.position, point->normal) > options.influence.low)) point.reset();
       return point;
     };
@@ -224,7 +225,7 @@ void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& op
     if (f != number) placement.min_weight *= kLaterWeight;
     // Where E_y counts by the share f < 1, its squared error counts by f^2: f of the rays leave no more of it than all leave where f is 1.
     const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
-      const bool rides = seen.surface.object < moves.size() && moves[seen.surface.object];
+      const bool rides = moving.contains(seen.surface.object);
       const float share = rides ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);
       IrradianceRecord record = gather.gather(seen.surface, seen.normal, local, share);
       limit_radius(record, seen.footprint, placement);

@@ -49,16 +49,6 @@ std::vector<formats::IrradianceCacheRecord> to_file(const LocalisedRecords& cach
   return records;
 }
 
-std::vector<bool> moving_objects(const SceneFrame& frame) {
-  std::vector<bool> moves;
-  for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s) {
-    const std::size_t object = frame.surfaces[s].object;
-    if (object >= moves.size()) moves.resize(object + 1);
-    moves[object] = true;
-  }
-  return moves;
-}
-
 void influence_options(Tool& tool, InfluenceThresholds& thresholds) {
   CLI::App& app = tool.app();
   app.add_option("--influence-low", thresholds.low,

@@ -26,8 +26,6 @@ bool is_localised(const formats::IrradcacheFile& file);
 LocalisedRecords localised_records(const formats::IrradcacheFile& file, const SceneFrame& frame);
 /// Records as a file holds them, columns and sets filled in.
 std::vector<formats::IrradianceCacheRecord> to_file(const LocalisedRecords& cache, const SceneFrame& frame);
-/// By object: does one of its surfaces move in the segment?
-std::vector<bool> moving_objects(const SceneFrame& frame);
 
 /// --influence-low, --influence-high, --influence-absolute.
 void influence_options(Tool& tool, InfluenceThresholds& thresholds);
