@@ -69,8 +69,8 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
       radius_(points.spacing() * std::sqrt(kInvPi)),
       lamp_reach_(kBesideLamp * points.spacing()) {
   high_.resize(points.size(), 0.0f);
-  // Rays go on from where a point's indirect light is not that of the hit: what they find there is not the point's light, so that no share of it
-  // may be sampled explicitly. Beside a lamp direct light has a division of its own.
+  // Rays go on from where a point's indirect light is not that of the hit: what they find there is not the point's light, so that no share
+  // of it may be sampled explicitly. Beside a lamp direct light has a division of its own.
   for (std::uint32_t i = 0; i < high_.size(); ++i)
     if (high_[i] > 0 && (points.light(i).beside_lamp || !points.is_even_indirect(points.light(i)))) high_[i] = 0;
   if (std::ranges::any_of(high_, [](float share) { return share > 0; })) place_high(lights, options);

@@ -44,14 +44,14 @@ struct BrightLight {
 /// The explicit part is an integral over surfaces, of h w L cos cos / l^2. It is sampled at sites: places uniform by area, 16 for each
 /// point, each with the light of the point that stands for it. The sites of a point are a spot; spots are drawn as lamps are (LightTree).
 ///
-/// So is direct light of lamps beside surfaces, which light spots smaller than points can hold (lamp_light.h). Of the light of a place z on a lamp that
-/// reaches y, d = |z - y| below kBesideLamp spacings, the share w is explicit with d for R: from 4 d on. Where a point beside a lamp stands for y rays
-/// sample direct light, as they do where none stands for it, and bring 1 - w of such samples. Sites are photons from the lamps: as dense as the light, however small its spot.
-/// Thread-safe.
+/// So is direct light of lamps beside surfaces, which light spots smaller than points can hold (lamp_light.h). Of the light of a place z on
+/// a lamp that reaches y, d = |z - y| below kBesideLamp spacings, the share w is explicit with d for R: from 4 d on. Where a point beside a
+/// lamp stands for y rays sample direct light, as they do where none stands for it, and bring 1 - w of such samples. Sites are photons from
+/// the lamps: as dense as the light, however small its spot. Thread-safe.
 class BrightPoints {
  public:
-  /// high_shares: h_p by point of `points`, in [0, 1]; points whose indirect light is not that of their neighbours (PointLookup::is_even_indirect)
-  /// get none. All must outlive it.
+  /// high_shares: h_p by point of `points`, in [0, 1]; points whose indirect light is not that of their neighbours
+  /// (PointLookup::is_even_indirect) get none. All must outlive it.
   BrightPoints(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::vector<float> high_shares, const BrightOptions& options);
 
   std::size_t spot_count() const { return sites_of_.size(); }
@@ -64,8 +64,8 @@ class BrightPoints {
   }
   /// w.
   float explicit_share(float distance) const;
-  /// Share of the direct light of a lamp `lamp_distance` m from a place y that rays bring which meet y at `distance` m. 1 where the point that stands for
-  /// y is not beside a lamp; nullptr: none stands for y.
+  /// Share of the direct light of a lamp `lamp_distance` m from a place y that rays bring which meet y at `distance` m. 1 where the point
+  /// that stands for y is not beside a lamp; nullptr: none stands for y.
   float left_of_lamp(const PointLookup::Light* point, float distance, float lamp_distance) const {
     return (!point || point->beside_lamp) && lamp_distance < lamp_reach_ ? 1 - lamp_share(distance, lamp_distance) : 1.0f;
   }

@@ -34,8 +34,8 @@ class FinalGather {
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
   /// Sets the clearance of a record gathered there, as far as its radius: once that is limited.
   void look_around(const SurfacePoint& from, IrradianceRecord& record) const;
-  /// Adds to a record of rays alone what GatherOptions::bright_samples explicit samples bring, if there are bright points. Random numbers are those of `key`,
-  /// which gather_key() of the record's place and normal is.
+  /// Adds to a record of rays alone what GatherOptions::bright_samples explicit samples bring, if there are bright points. Random numbers
+  /// are those of `key`, which gather_key() of the record's place and normal is.
   void add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record, GatherCounts& counts) const;
 
   /// What rays bring.

@@ -226,7 +226,8 @@ struct FootprintDensity::Candidate {
   double importance;    ///< >= 0: its channels' sum
 };
 
-/// Light of those of the candidates that reach a place, by options_.asked of them: drawn by importance, evenly spaced along their sum `whole`.
+/// Light of those of the candidates that reach a place, by options_.asked of them: drawn by importance, evenly spaced along their sum
+/// `whole`.
 Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const {
   const auto reaches = [&](std::uint32_t photon) { return area_.reach()(index_.position(photon), normal_of(photon), position, normal); };
   Rgbd sum{0.0};

@@ -19,8 +19,8 @@ namespace tempolux {
 struct FootprintOptions {
   int neighbours = 25;    ///< k, below kMaxNeighbours
   float max_radius = 0;   ///< m; 0: the photons' own (photon_reach): one in twenty is so far from others
-  /// Of the photons whose footprints cover a place so many are asked whether they reach it, drawn by what they would give; 0: all. No bias, and no noise
-  /// where all reach it or none: for estimates of which a pixel averages several.
+  /// Of the photons whose footprints cover a place so many are asked whether they reach it, drawn by what they would give; 0: all. No bias,
+  /// and no noise where all reach it or none: for estimates of which a pixel averages several.
   int asked = 0;
   float margin = 0;       ///< of max_radius: light counts as smooth only if no footprint narrower than that is as near as this
 };
@@ -77,9 +77,9 @@ class FootprintDensity {
   /// Irradiance [W/m^2] of a place above a surface's lit side. Below 0 only by photons of negative flux.
   /// `smooth_over`: max_radius where footprints cover the place and all that come within `margin` are as wide as that; else 0.
   Rgb estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const;
-  /// The same. `alike_within`: so far from here [m] no footprint lies that is narrower than four times that, so that light changes by a few per cent; 0
-  /// where none covers the place. A photon's radius differs from a near one's by their distance at most (both reach to a k-th neighbour): with
-  /// m = max over covering photons (r_i - d_i) what reaches to m / 9 from here is wider than m 4 / 9.
+  /// The same. `alike_within`: so far from here [m] no footprint lies that is narrower than four times that, so that light changes by a few
+  /// per cent; 0 where none covers the place. A photon's radius differs from a near one's by their distance at most (both reach to a k-th
+  /// neighbour): with m = max over covering photons (r_i - d_i) what reaches to m / 9 from here is wider than m 4 / 9.
   Rgb estimate_around(Vec3 position, const LitSurface& surface, float& alike_within) const;
   /// Of a surface without bent normals or a coat.
   Rgb estimate(Vec3 position, Vec3 normal, float& smooth_over) const { return estimate(position, LitSurface(normal), smooth_over); }

@@ -162,8 +162,8 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
 inline float IncomingRadiance::threshold(const PathRandom& random) { return 0.5f + random.get1(0, Purpose::gather); }
 
 /// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to read there, or by
-/// going on where none stands for the hit, its indirect light is not that of the hit, or a first hit is near; its other lobes by following one of them. to.further
-/// receives the ray that goes on from a Lambert lobe, if any.
+/// going on where none stands for the hit, its indirect light is not that of the hit, or a first hit is near; its other lobes by following
+/// one of them. to.further receives the ray that goes on from a Lambert lobe, if any.
 Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                                 const Gathered& to) const {
   const Bsdf& bsdf = *met.bsdf;
@@ -284,8 +284,8 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   return irradiance;
 }
 
-/// Direct irradiance at a hit by one light sample; point: that stands for it, if any. low: light of lamps beside it is sampled explicitly where the ray
-/// comes from (BrightPoints::left_of_lamp).
+/// Direct irradiance at a hit by one light sample; point: that stands for it, if any. low: light of lamps beside it is sampled explicitly
+/// where the ray comes from (BrightPoints::left_of_lamp).
 Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PointLookup::Light* point, bool low,
                                     const PathRandom& random, GatherCounts& counts) const {
   DirectSample direct;

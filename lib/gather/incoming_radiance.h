@@ -15,7 +15,8 @@
 
 namespace tempolux {
 
-/// near_hits: went on though a point stood for them, as it was near or its indirect light not that of the hit; unanswered: went on as none did.
+/// near_hits: went on though a point stood for them, as it was near or its indirect light not that of the hit; unanswered: went on as none
+/// did.
 struct GatherCounts {
   std::uint64_t rays = 0, near_hits = 0, shadow_rays = 0, points_read = 0, unanswered = 0;
   GatherCounts& operator+=(const GatherCounts& o) {

@@ -9,8 +9,8 @@
 
 namespace tempolux {
 
-/// What of each frame's light follows from that of the scene as it stands: nothing; photons and points; records, too. Or photons and points,
-/// and records from those of the frame before.
+/// What of each frame's light follows from that of the scene as it stands: nothing; photons and points; records, too. Or photons and
+/// points, and records from those of the frame before.
 enum class MovingMethod : std::uint8_t { anew, light, records, time };
 inline constexpr const char* kMovingMethods[] = {"anew", "light", "records", "time"};
 
@@ -39,7 +39,8 @@ struct MovingChoice {
 /// With what stands computed once for each of `segments`, `states` of light then cost a share of themselves each:
 /// .2 + 3 touched_share for photons and points, .1 + gathered_share for records (docs/methods/dynamic.md has the measurements). Whatever
 /// comes out cheaper. Records over time are never chosen: a frame's records follow from those of all states before it in its segment, so a
-/// single frame of the middle of a segment costs as much as ten (S5, 320x180: 13.2 CPU s instead of 1.9). They are for whole ranges, by wish.
+/// single frame of the middle of a segment costs as much as ten (S5, 320x180: 13.2 CPU s instead of 1.9). They are for whole ranges, by
+/// wish.
 MovingChoice choose_moving(const MovingPilot& pilot, std::size_t segments, std::size_t states);
 
 /// Processor time of a state's records over time, in shares of what they cost anew: .35, and 1.2 in a segment's first state

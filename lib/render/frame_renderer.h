@@ -27,11 +27,12 @@ struct FrameOptions {
   int adaptive_limit = 1024;
   /// The frame will be filtered (lib/filter): noise that counts for pixel_error is that of light which passes the filter, layer specular.
   bool for_filter = false;
-  /// With pixel_error: light that one sample alone claims is shared out among the pixels around, of a masked frame those of the mask (lib/render/spread_outliers.h).
+  /// With pixel_error: light that one sample alone claims is shared out among the pixels around, of a masked frame those of the mask
+  /// (lib/render/spread_outliers.h).
   bool spread_outliers = false;
   bool sample_halves = false;           ///< keep LayerImage::sample_halves
-  /// Each pixel's samples of odd number are stratified by themselves and independent of those of even number. The two halves have equal numbers of
-  /// samples, so `samples` is even. All samples together are then less well stratified. Not with `halves`.
+  /// Each pixel's samples of odd number are stratified by themselves and independent of those of even number. The two halves have equal
+  /// numbers of samples, so `samples` is even. All samples together are then less well stratified. Not with `halves`.
   bool independent_halves = false;
   const KnownLight* known = nullptr;    ///< where paths may end
   std::vector<std::uint8_t> mask;       ///< by pixel, 0: leave it out; empty: all pixels

@@ -26,8 +26,8 @@ class KnownLight {
   /// Of `points` those that are sampled explicitly where no record tells: what paths meet first beyond then brings the rest.
   const BrightPoints* bright = nullptr;
   int bright_samples = 0;                 ///< at the first such place of an eye path; one at each later one
-  /// Can a ray meet a light: is there an environment, or a surface that emits? Where not, and indirect and caustic light are known at a place, no ray goes on
-  /// from its Lambert lobe: the ray would find nothing.
+  /// Can a ray meet a light: is there an environment, or a surface that emits? Where not, and indirect and caustic light are known at a
+  /// place, no ray goes on from its Lambert lobe: the ray would find nothing.
   bool lights_are_met = true;
   /// Do eye paths fork at the first Lambert lobe under a gloss, to follow both? A gloss reflects 4 % as a rule: one ray in 25 that
   /// meets something bright makes a dot. Where nothing is known both would be whole paths: a fork costs as much as it gains then.
@@ -45,8 +45,8 @@ class KnownLight {
     Rgb irradiance{0.0f};
     bool direct = true;   ///< of all kinds; else of all but direct: where the border of a shadow runs paths sample that themselves
   };
-  /// At a hit `distance` m along the way from the last Lambert lobe; none where no point stands for the hit, the point's indirect light is not that
-  /// of the hit, or the hit is near (PointLookup::is_near).
+  /// At a hit `distance` m along the way from the last Lambert lobe; none where no point stands for the hit, the point's indirect light is
+  /// not that of the hit, or the hit is near (PointLookup::is_near).
   std::optional<Told> told(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
   /// Share of the light scattered by the Lambert lobe at the hit that is not sampled explicitly where the path comes from; 1 where it
   /// is so near that the path goes on for its light. The same u as told().

@@ -30,8 +30,8 @@ struct SampledLobes {
   }
 };
 
-/// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)] `draw(normal, light)` draws the sample for the side that
-/// the normal is on; `share`: with which probability it was that side.
+/// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)] `draw(normal, light)` draws the sample for the side
+/// that the normal is on; `share`: with which probability it was that side.
 struct LightAdder {
   const RenderScene& scene;
   const ShadingPoint& x;
@@ -200,7 +200,8 @@ class EyeTracer {
   void go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, const Walk& walk) const;
   void count(std::uint64_t rays, std::uint64_t& as, const Walk& walk) const {
     as += rays;
-    if (walk.result == &parts_.onward) counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;   // nearest hit, surface, material: twice a shadow ray
+    if (walk.result == &parts_.onward) counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;   // nearest hit, surface, material:
+                                                                                                     // twice a shadow ray
   }
 
   const RenderScene& scene_;
@@ -293,8 +294,8 @@ EyeTracer::Passed EyeTracer::pass_media(const Media& media, Walk& walk) const {
   return scatter_in_medium(collision, walk) ? Passed::scattered : Passed::ended;
 }
 
-/// At a first matte surface as many samples as asked for, of the part `lit`. The sun stands still: where it is seen its samples agree, so that they
-/// need no more than camera rays do, of whose part they are.
+/// At a first matte surface as many samples as asked for, of the part `lit`. The sun stands still: where it is seen its samples agree, so
+/// that they need no more than camera rays do, of whose part they are.
 void EyeTracer::add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const {
   const auto adder = [&](const PixelRandom& random) {
     return LightAdder{scene_, x, lobes, walk.throughput, walk.path, walk.inside, random, walk.bounce};

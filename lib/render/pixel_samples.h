@@ -19,7 +19,8 @@ struct PartCounts {
 /// Sums over one pixel's samples.
 struct PixelSum {
   LayersT<double> own, lit, onward;
-  double seen_square = 0, mirrored_square = 0, onward_square = 0;   ///< of seen(), mirrored() of `own` and value() of `onward`, of single samples
+  double seen_square = 0, mirrored_square = 0, onward_square = 0;   ///< of seen(), mirrored() of `own` and value() of `onward`, of single
+                                                                    ///< samples
   bool for_filter = false;                    ///< FrameOptions::for_filter: noise is of layer specular alone
   void add(const PathParts& sample) {
     add(sample.own, own);
@@ -114,8 +115,8 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
                 [&](RayCounts& counts) { return [&](std::size_t pixel, int x, int y) { body(pixel, x, y, counts); }; });
 }
 
-/// Deals samples of the parts out to a pixel's camera rays: as evenly as whole numbers allow, each ray with the same probability, as all are moved
-/// by one random number. So a part's mean over its samples is right whatever their number.
+/// Deals samples of the parts out to a pixel's camera rays: as evenly as whole numbers allow, each ray with the same probability, as all
+/// are moved by one random number. So a part's mean over its samples is right whatever their number.
 class Dealt {
  public:
   Dealt(std::uint64_t seed, std::uint64_t pixel, const PartCounts& first, const PartCounts& counts)

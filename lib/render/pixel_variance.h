@@ -10,9 +10,9 @@
 
 namespace tempolux {
 
-/// Sums over the samples of one pixel by part (PathParts), of the first half and of the second half apart. Samples of one pixel are stratified
-/// together, so that their mean errs by less than that of independent ones. Each half of a pass, in their order, is nearly as well
-/// stratified: the difference of the two halves' means knows it, where the spread of single samples does not. With
+/// Sums over the samples of one pixel by part (PathParts), of the first half and of the second half apart. Samples of one pixel are
+/// stratified together, so that their mean errs by less than that of independent ones. Each half of a pass, in their order, is nearly as
+/// well stratified: the difference of the two halves' means knows it, where the spread of single samples does not. With
 /// FrameOptions::independent_halves the halves are samples of even and of odd number instead.
 struct SampleHalves {
   struct Sum {

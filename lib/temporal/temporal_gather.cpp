@@ -134,8 +134,8 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
   }
 }
 
-/// Is the smallest radius, which lets a record cover pixels around it, no longer this record's due: something has come close, and hidden it? Behind a lamp that
-/// glides along a ceiling it is dark; it would darken what is seen beside the lamp.
+/// Is the smallest radius, which lets a record cover pixels around it, no longer this record's due: something has come close, and hidden
+/// it? Behind a lamp that glides along a ceiling it is dark; it would darken what is seen beside the lamp.
 bool TemporalGather::outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before, const IrradianceRecord& made) const {
   const float smallest = placement_.min_radius_px * before.footprint;
   const bool had_its_own = std::abs(before.radius - smallest) > 1e-4f * smallest;

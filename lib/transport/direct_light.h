@@ -17,12 +17,14 @@ struct Receiver {
 /// A sample of the lights that can reach a receiver.
 struct DirectSample {
   LightSample light;
-  Rgb irradiance{0.0f};          ///< W/m^2 over the density of the sample, if nothing is in the way: by the cosine to the shading normal, times
+  Rgb irradiance{0.0f};          ///< W/m^2 over the density of the sample, if nothing is in the way: by the cosine to the shading normal,
+                                 ///< times
                                  ///< Bsdf::arrival_weight under a coat
   Ray shadow;                    ///< transmittance() of it is the share that arrives
 };
 
-/// Draws a light and a place on it (Lights::sample). False if none can reach the receiver, or the light comes from behind either of its normals.
+/// Draws a light and a place on it (Lights::sample). False if none can reach the receiver, or the light comes from behind either of its
+/// normals.
 bool sample_direct(const Lights& lights, const Receiver& at, float u_choice, Vec2 u, DirectSample& sample);
 /// The same from one stratified pair.
 bool sample_direct(const Lights& lights, const Receiver& at, Vec2 u, DirectSample& sample);

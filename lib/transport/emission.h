@@ -14,8 +14,8 @@ struct LastScatter {
   Lights::From from = Lights::From::all;       ///< lights that samples were drawn from there
 };
 
-/// Radiance [W/m^2/sr] that the surface emits at the hit towards wo, times the weight of the power heuristic [Veach 1997, 9.2.4]. Textures are read over
-/// `width` m, but at their finest level where light samples could have found the light: both read the same.
+/// Radiance [W/m^2/sr] that the surface emits at the hit towards wo, times the weight of the power heuristic [Veach 1997, 9.2.4]. Textures
+/// are read over `width` m, but at their finest level where light samples could have found the light: both read the same.
 Rgb weighed_emission(const Lights& lights, const SurfacePoint& hit, Vec3 wo, const LastScatter& last, float width);
 
 /// The same of the environment, where the path leaves the scene; only with one.
