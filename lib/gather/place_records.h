@@ -1,4 +1,4 @@
-// lib/gather/place_records.h -- put irradiance records where a camera needs them.
+// lib/gather/place_records.h -- put irradiance records where a camera needs them (docs/methods/records.md).
 #pragma once
 
 #include <cstdint>

@@ -43,8 +43,6 @@ IDEAS = (
            "  static_assert(kMostLit == kMostOnward);"),)),
     Idea("edges between pixels", "what is seen counts as uneven where neighbours differ", "frames",
          (("lib/render/pixel_noise.cpp", "(options_.samples == 1 ? 1 : kBetween)", "(options_.samples == 1 ? 1 : 0 * kBetween)"),)),
-    Idea("packets of camera rays", "three and more rays of a pixel are traced as a packet", "frames",
-         (("lib/render/pixel_samples.h", "kFewest = 3;", "kFewest = 1000;"),)),
     Idea("outliers spread", "light that one sample alone claims goes to the pixels around", "frames",
          (("tools/frame-render.cpp", "frame_options.spread_outliers = !options.keep_outliers &&", "frame_options.spread_outliers = false &&"),)),
     Idea("records by windows", "records, not gathering in the pixels, where light comes into a room through openings", "photons",
