@@ -2,11 +2,13 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "lib/core/sampling.h"
 #include "lib/density/box_tree.h"
 #include "lib/density/photon_index.h"
 #include "lib/density/photon_view.h"
@@ -93,9 +95,20 @@ class FootprintDensity {
     float narrow2[kLeaf];      ///< m^2: (radius + margin)^2 of those narrower than max_radius, else -1
   };
   /// Found when a footprint is first asked for: most of a map's are never seen.
-  struct Extent {
-    float radius = 0;         ///< m; 0: not known yet
-    float inverse_area = 0;   ///< 1/m^2; below 0: of a whole disc, where all of its plane can be reached
+  class Extent {
+   public:
+    Extent() = default;
+    static Extent of_area(float radius, float inverse_area) { return {radius, inverse_area}; }
+    /// All of the plane within the radius can be reached.
+    static Extent of_whole_disc(float radius) { return {radius, -1 / (kPi * radius * radius)}; }
+    bool known() const { return radius_ > 0; }
+    float radius() const { return radius_; }                           ///< m
+    float inverse_area() const { return std::abs(signed_inverse_); }   ///< 1/m^2, of what can be reached
+    bool whole_disc() const { return signed_inverse_ < 0; }
+
+   private:
+    Extent(float radius, float signed_inverse) : radius_(radius), signed_inverse_(signed_inverse) {}
+    float radius_ = 0, signed_inverse_ = 0;   ///< eight bytes, so that an atomic one needs no lock; the sign says whole_disc()
   };
   struct Covering {
     std::uint32_t photon;
