@@ -6,6 +6,8 @@
   draw.py dots POINTS.csv FRAME.json FRAME.png OUT.png   as dots over the darkened frame
   draw.py kept KEPT.radsamples FRAME.json FRAME.png OUT.png   likewise records with their samples, the redder the more of these
                                                          met what moves
+  draw.py windows D.meshirrad FRAME.json OUT.png         elements of gather-temporal density by the frames in their windows: dark blue
+                                                         a single frame, white 33; red where they lie after the frame, green before
   draw.py plan PLAN.json OUT.png                         a column for each frame, a row for each concern of the scene;
                                                          equal colours in a row: equal content
 
@@ -116,6 +118,30 @@ def kept(samples, frame, picture, out):
     write_png(out, image)
 
 
+def windows(texture, frame, out):
+    sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "tests", "formats"))
+    import read_meshirrad as mesh
+    file, frame = mesh.read_meshirrad(texture), json.load(open(frame))
+    origin, rows = [float(x) for x in file.header["origin"].split()], []
+    for e in file.elements:
+        u, v = (c / 65534 * 2 - 1 for c in e[mesh.NORMAL:mesh.NORMAL + 2])
+        n = [u, v, 1 - abs(u) - abs(v)]
+        if n[2] < 0:
+            n[:2] = (1 - abs(v)) * math.copysign(1, u), (1 - abs(u)) * math.copysign(1, v)
+        if e[mesh.PHOTONS]:
+            place = [a + b for a, b in zip(e[mesh.POSITION:mesh.POSITION + 3], origin)]
+            rows.append({**dict(zip(("x_m", "y_m", "z_m", "nx", "ny", "nz"), (*place, *n))), "area": e[mesh.AREA], "window": (e[mesh.BEFORE], e[mesh.AFTER])})
+    width, height = frame["width"], frame["height"]
+    image = [[(0, 0, 0)] * width for _ in range(height)]
+    scale = width * math.hypot(*frame["worldToNDC"][0:12:4])
+    for depth, x, y, row in seen(rows, frame, width, height):
+        before, after = row["window"]
+        size = 1 + round(0.8 * math.sqrt(row["area"]) * scale / depth)
+        length = (before + after) / 32
+        splat(image, x - size // 2, y - size // 2, size, tuple(round(255 * min(1, v)) for v in (0.1 + length * 0.7 + max(0, after - before) / 32, 0.1 + length * 0.7 + max(0, before - after) / 32, 0.4 + 0.6 * length)))
+    write_png(out, image)
+
+
 def plan(document, out):
     document = json.load(open(document))
     columns = []
@@ -135,7 +161,7 @@ def plan(document, out):
 
 
 if __name__ == "__main__":
-    commands = {"points": points, "dots": dots, "kept": kept, "plan": plan}
+    commands = {"points": points, "dots": dots, "kept": kept, "windows": windows, "plan": plan}
     if len(sys.argv) < 4 or sys.argv[1] not in commands:
         sys.exit(__doc__)
     commands[sys.argv[1]](*sys.argv[2:])

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Make the pictures of README.md again, into docs/images: sh docs/make_pictures.sh [BIN]
+# Make the pictures of README.md and docs/chain.md again, into docs/images: sh docs/make_pictures.sh [BIN]
 # Run at the top of the tree; BIN is the folder with the tools. Takes about four CPU minutes; all from scenes of the tree.
 bin=${1:-build/release/bin} out=docs/images scene=pipelines/scenes/S2_cornell_moving.glb
 work=$(mktemp -d) || exit 3
@@ -8,14 +8,9 @@ set -e
 mkdir -p $out
 info="$bin/tempolux-info" draw='python3 -B docs/draw.py'
 
-# The demo's frames, every sixth.
-for f in 0 6 12 18 24 30 36 42; do
-  "$bin/photon-trace" $scene --frame $f --photons 200k --kinds indirect -o "$work/p.photons"
-  "$bin/irradcache-build" $scene --frame $f --photons "$work/p.photons" --size 640x360 --keep-points "$work/p.irradpoints" -o "$work/c.irradcache"
-  "$bin/frame-render" $scene --frame $f --size 640x360 --irradcache "$work/c.irradcache" --points "$work/p.irradpoints" \
-    -o "$work/$(printf %04d $f).exr"
-done
-"$info" --sheet $out/demo.png --columns 4 --tile 240 "$work"/00??.exr
+# The demo's frames, every sixth: as the README's command makes them.
+make -s -f Makefile.example demo BIN="$(cd "$bin" && pwd)" OUT="$work/demo" FRAMES=0-47x6
+"$info" --sheet $out/demo.png --columns 4 --tile 240 "$work"/demo/frames/00??.exr
 
 # One frame through the chain, at 320x180.
 "$bin/scene-plan" $scene --frames 0-47 -o "$work/plan" -q
@@ -58,6 +53,15 @@ for textures in counted smoothed; do
 done
 "$info" --sheet $out/light-textures.png --columns 1 --tile 160 "$work/counted.exr" "$work/smoothed.exr"
 "$info" --sheet $out/light-textures-beside.png --columns 3 --tile 240 "$work/counted.exr" "$work/smoothed.exr" "$work/f.exr"
+
+# Photons over time: of this frame alone, and of the frames of its segment.
+"$bin/photon-trace" $scene --frames 0-23 --photons 25k --seed-mode frame --kinds indirect -o "$work/few.##.photons"
+"$bin/gather-temporal" density $scene --frame 12 --photons "$work/few.##.photons" -o "$work/alone.12.meshirrad"
+"$bin/gather-temporal" density $scene --frames 0-23 --photons "$work/few.##.photons" -o "$work/windows.##.meshirrad"
+for textures in alone windows; do
+  "$bin/frame-render" $scene --frame 12 --size 320x180 --meshirrad "$work/$textures.12.meshirrad" -o "$work/$textures.exr"
+done
+"$info" --sheet $out/density.png --columns 1 --tile 160 "$work/alone.exr" "$work/windows.exr"
 
 # A walk: every fourth frame, keys marked; one frame as it was warped, and what of it is traced.
 tools=$(realpath "$bin") top=$PWD

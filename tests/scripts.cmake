@@ -38,11 +38,13 @@ add_test(NAME bench.ablation COMMAND python3 -B tests/bench/ablation.py --check 
 
 # Stages together, run by make at the top of the tree.
 foreach(script rerun make_asks plan_example plan_refuses content_camera drop_kind environment
-               scenes leaving_out walkthrough filter dynamic temporal split smoke)
+               scenes leaving_out walkthrough filter dynamic temporal preview split smoke)
   add_test(NAME pipelines.${script} COMMAND sh tests/pipelines/${script}.sh $<TARGET_FILE_DIR:scene-plan>
            WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(pipelines.${script} PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
 endforeach()
+add_test(NAME pipelines.looks COMMAND sh tests/pipelines/looks.sh $<TARGET_FILE_DIR:scene-plan> WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.looks PROPERTIES TIMEOUT 300)
 add_test(NAME pipelines.from_blender COMMAND sh tests/pipelines/from_blender.sh $<TARGET_FILE_DIR:scene-plan> WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.from_blender PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
 # Make against a new OUT: a random walk over what a user can change, names, ranges, two makes at once.

@@ -1,5 +1,6 @@
-// gather-temporal -- irradiance records whose incoming light is kept from frame to frame.
+// gather-temporal -- light over time: irradiance records that keep their incoming light from frame to frame, and photons of many frames.
 //
+//     gather-temporal density room.glb --frames 0-47 --photons p.####.photons -o d.####.meshirrad
 //     gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 960x540 -o s.0000.radsamples --cache c.0000.irradcache
 //     gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 960x540 --previous s.0000.radsamples ...
 //     gather-temporal final room.glb --frames 0-47 --points p.####.irradpoints --size 960x540 -o s.####.radsamples --cache c.####.irradcache
@@ -15,9 +16,10 @@
 #include "lib/gather/bright_points.h"
 #include "lib/gather/cache_files.h"
 #include "lib/render/known_light.h"
-#include "tools/common/kept_files.h"
 #include "tools/common/option_words.h"
+#include "tools/stages/photon_windows.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/kept_files.h"
 
 using namespace tempolux;
 
@@ -222,6 +224,7 @@ void add_options(tools::Tool& tool, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "density") return tools::photon_windows(argc - 1, argv + 1);
   tools::Tool tool("gather-temporal", "Gather indirect light in records that keep their incoming light from frame to frame.", argc, argv);
   Options options;
   add_options(tool, options);

@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "formats/error.h"
-#include "tools/common/build_records.h"
-#include "tools/common/importance.h"
-#include "tools/common/localised_cache.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/build_records.h"
+#include "tools/stages/importance.h"
+#include "tools/stages/influence_options.h"
 
 using namespace tempolux;
 

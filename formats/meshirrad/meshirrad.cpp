@@ -12,9 +12,11 @@
 namespace tempolux::formats {
 namespace {
 
-constexpr Format kFormat{{"\x89TMESH\r\n", 8}, ".meshirrad", "st-filter mesh"};
+constexpr Format kFormat{{"\x89TMESH\r\n", 8}, ".meshirrad", "st-filter mesh or gather-temporal density", 1, 1};
 constexpr std::string_view kBlockMark = "MESH";
 constexpr std::size_t kEndBodySize = 16;
+constexpr std::uint16_t kHoldsSince = 1;     // minor version
+constexpr std::array<std::string_view, 3> kHolds{"frame", "counts", "windows"};   // by MeshHolds
 
 bool is_kinds(const std::string& list) {
   for (unsigned kinds = 1; kinds < 8; ++kinds) {
@@ -38,12 +40,21 @@ bool is_filter(std::string_view text) {
   return false;
 }
 
+/// The least version that has what the header says.
+Format format_of(const MeshirradHeader& h) {
+  Format format = kFormat;
+  format.minor = h.holds == MeshHolds::frame ? 0 : kHoldsSince;
+  return format;
+}
+
 /// What is wrong with the values, as the reader and the writer both see it; "" if nothing.
 std::string_view fault_of(const MeshirradHeader& h) {
   if (!is_kinds(h.kinds)) return "kinds is not a list of direct, caustic, indirect in this order";
   if (!(h.cell > 0) || !std::isfinite(h.cell)) return "cell is not a length";
   if (!(h.unit > 0) || !std::isfinite(h.unit)) return "unit is not a flux above 0";
   if (!is_filter(h.filter)) return "filter is not none, or box, gaussian or bilateral and a width";
+  if (h.holds == MeshHolds::counts && h.filter != "none") return "counts have no filter";
+  if (h.jump && h.holds != MeshHolds::counts) return "jump is of counts alone";
   return fault_of_common(h.origin, h.identity);
 }
 
@@ -55,25 +66,33 @@ std::string header_text(const MeshirradHeader& h) {
   text.line("cell", text_of(h.cell));
   text.line("unit", text_of(h.unit));
   text.line("filter", h.filter);
+  if (h.holds != MeshHolds::frame) text.line("holds", std::string(kHolds[std::size_t(h.holds)]));
+  if (h.jump) text.line("jump", "yes");
   text.identity(h.identity);
   text.history(h.history);
   return text.finish();
 }
 
-Line take_line(std::string_view key, std::string_view value, MeshirradHeader& h) {
+Line take_line(std::string_view key, std::string_view value, std::uint16_t minor, MeshirradHeader& h) {
   const auto result = [](bool good) { return good ? Line::good : Line::bad_value; };
   if (key == "kinds") return h.kinds = value, Line::good;
   if (key == "filter") return h.filter = value, Line::good;
   if (key == "cell") return result(parse_numbers(value, &h.cell, 1));
   if (key == "unit") return result(parse_numbers(value, &h.unit, 1));
+  if (key == "jump" && minor >= kHoldsSince) return h.jump = true, result(value == "yes");
+  if (key == "holds" && minor >= kHoldsSince) {
+    const auto found = std::ranges::find(kHolds, value);
+    h.holds = MeshHolds(found - kHolds.begin());
+    return result(found != kHolds.end());
+  }
   return take_common_line(key, value, common_keys(h));
 }
 
-std::optional<HeaderError> parse_header_text(std::string_view text, bool allow_unknown, MeshirradHeader& h) {
+std::optional<HeaderError> parse_header_text(std::string_view text, std::uint16_t minor, MeshirradHeader& h) {
   h = MeshirradHeader();
   constexpr std::array<std::string_view, 5> required{"kinds", "origin", "cell", "unit", "filter"};
-  const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, h); };
-  if (auto error = parse_lines(text, allow_unknown, required, take)) return error;
+  const auto take = [&](std::string_view key, std::string_view value) { return take_line(key, value, minor, h); };
+  if (auto error = parse_lines(text, minor > kFormat.minor, required, take)) return error;
   if (const std::string_view fault = fault_of(h); !fault.empty()) return HeaderError{0, "header: " + std::string(fault)};
   return std::nullopt;
 }
@@ -83,6 +102,7 @@ bool is_good(float x) { return std::isfinite(x) && x >= 0; }
 /// The rules of meshirrad.md, section 3, for one element after the other.
 class Checked {
  public:
+  explicit Checked(MeshHolds holds) : holds_(holds) {}
   /// "" if the element may follow those before.
   std::string_view add(const MeshElement& e) {
     if (e.cuts < 1 || e.cuts > kMostCuts) return "cuts is not in 1 .. 1024";
@@ -95,7 +115,7 @@ class Checked {
       if (!is_good(x)) return "irradiance is not finite or is negative";
     for (const std::int64_t sum : e.sums)
       if (sum < 0) return "a sum is negative";
-    if (e.reserved != 0) return "reserved bytes are not 0";
+    if (holds_ != MeshHolds::windows && (e.before != 0 || e.after != 0)) return "frames before or after are not 0";
     const std::tuple place{e.surface, e.triangle, e.side};
     const bool goes_on = next_cell_ > 0;
     if (goes_on ? place != last_ || e.cuts != cuts_ || e.cell != next_cell_ : e.cell != 0 || (count_ > 0 && place <= last_))
@@ -112,6 +132,7 @@ class Checked {
   std::uint64_t photons() const { return photons_; }
 
  private:
+  MeshHolds holds_;
   std::tuple<std::uint32_t, std::uint32_t, std::uint16_t> last_{};
   std::uint32_t cuts_ = 0, next_cell_ = 0;
   std::uint64_t count_ = 0, photons_ = 0;
@@ -119,12 +140,17 @@ class Checked {
 
 }  // namespace
 
-std::uint32_t mesh_cell(std::uint32_t n, float u, float v) {
+MeshPlace mesh_place(std::uint32_t n, float u, float v) {
   // Rows of equal v; in row j there are 2 (n - j) - 1 cells, in turn one that stands and one on its tip.
   const float x = std::clamp(u, 0.0f, 1.0f) * float(n), y = std::clamp(v, 0.0f, 1.0f) * float(n);
   const std::uint32_t j = std::min(std::uint32_t(y), n - 1), i = std::min(std::uint32_t(x), n - 1 - j);
   const bool tip = i + j + 1 < n && (x - float(i)) + (y - float(j)) > 1;
-  return j * (2 * n - j) + 2 * i + tip;
+  return {i, j, tip, x - float(i), y - float(j)};
+}
+
+std::uint32_t mesh_cell(std::uint32_t n, float u, float v) {
+  const MeshPlace place = mesh_place(n, u, v);
+  return place.row * (2 * n - place.row) + 2 * place.column + place.tip;
 }
 
 std::array<float, 2> mesh_cell_centre(std::uint32_t n, std::uint32_t cell) {
@@ -136,11 +162,11 @@ std::array<float, 2> mesh_cell_centre(std::uint32_t n, std::uint32_t cell) {
 }
 
 void write_meshirrad(const std::function<void(const void*, std::size_t)>& sink, const MeshirradFile& file) {
-  Checked checked;
+  Checked checked(file.header.holds);
   for (const MeshElement& element : file.elements)
     if (const std::string_view fault = checked.add(element); !fault.empty()) throw std::invalid_argument("write_meshirrad: " + std::string(fault));
   if (!checked.complete()) throw std::invalid_argument("write_meshirrad: cells of the last triangle are missing");
-  ContainerWriter out(sink, kFormat, header_text(file.header));
+  ContainerWriter out(sink, format_of(file.header), header_text(file.header));
   const std::span<const MeshElement> all = file.elements;
   for (std::size_t first = 0; first < all.size(); first += kMaxBlockCount) {
     const auto some = all.subspan(first, std::min<std::size_t>(all.size() - first, kMaxBlockCount));
@@ -157,9 +183,9 @@ void write_meshirrad(const std::function<void(const void*, std::size_t)>& sink, 
 MeshirradFile load_meshirrad(const std::string& path) {
   ContainerReader in(path, kFormat);
   MeshirradFile file;
-  in.expect_good(parse_header_text(in.text(), in.later_minor(), file.header));
+  in.expect_good(parse_header_text(in.text(), in.minor(), file.header));
   file.elements.reserve(in.bytes().size() / sizeof(MeshElement));
-  Checked checked;
+  Checked checked(file.header.holds);
   std::vector<char> body;
   while (in.read_records(kBlockMark, sizeof(MeshElement), body))
     for (std::size_t i = 0; i < body.size() / sizeof(MeshElement); ++i) {
@@ -178,7 +204,9 @@ MeshirradFile load_meshirrad(const std::string& path) {
 std::string digest_of(const MeshirradFile& file) {
   Hasher elements;
   elements.add_bytes(file.elements.data(), file.elements.size() * sizeof(MeshElement));
-  return hash_hex("meshirrad: 1\norigin: " + hex_of(file.header.origin) + "\nunit: " + hex_of(std::span(&file.header.unit, 1)) +
+  const std::string holds = file.header.holds == MeshHolds::frame ? "" : "holds: " + std::string(kHolds[std::size_t(file.header.holds)]) + "\n";
+  const std::string jump = file.header.jump ? "jump: yes\n" : "";
+  return hash_hex("meshirrad: 1\n" + holds + jump + "origin: " + hex_of(file.header.origin) + "\nunit: " + hex_of(std::span(&file.header.unit, 1)) +
                   "\nelements: " + std::to_string(file.elements.size()) + " #" + elements.hex() + "\n");
 }
 

@@ -16,6 +16,7 @@ namespace tempolux {
 struct GatherOptions {
   std::uint64_t seed = 0;
   int rays = 500;                   ///< wanted where light is even; rounded to M rings x N_phi sectors, N_phi about pi M
+  float near_factor = PointLookup::kNear;   ///< radii below which a hit is near
   const BrightPoints* bright = nullptr;   ///< points that are sampled explicitly, if any (bright_points.h)
   int bright_samples = 100;         ///< explicit samples of a record
 };

@@ -27,7 +27,7 @@ class Hemisphere {
   ///     E     = pi/(M N) sum L_jk
   ///     dE/dn = pi/(M N) sum_k v_k sum_j T_j L_jk                                      [Ward & Heckbert 1992]
   ///
-  /// v_k at the middle of sector k + 90 degrees; T_j is the ring's mean of tan t (algorithms.md 8.2: the sign is that
+  /// v_k at the middle of sector k + 90 degrees; T_j is the ring's mean of tan t (docs/methods/formulas.md: the sign is that
   /// of E(n) = E + (n_i x n) . dE/dn).
   void irradiance_and_rotational_gradient(const Frame& frame, IrradianceRecord& record) const;
 

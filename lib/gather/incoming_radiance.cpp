@@ -56,8 +56,8 @@ struct IncomingRadiance::Gathered {
   RadianceSource* source_of(const Further& from) const { return sources.empty() ? nullptr : &sources[from.of]; }
 };
 
-IncomingRadiance::IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, const BrightPoints* bright)
-    : tracer_(tracer), lights_(lights), points_(points), bright_(bright) {
+IncomingRadiance::IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor, const BrightPoints* bright)
+    : tracer_(tracer), lights_(lights), points_(points), near_factor_(near_factor), bright_(bright) {
   for (const Material& material : tracer.frame().materials)
     bsdfs_.push_back({Bsdf(material, false), Bsdf(material, true)});
 }
@@ -181,8 +181,8 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   if (bsdf.has_diffuse()) {
     const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
     // Most hits are far from the seam: they need no random number.
-    const bool near = point && depth == 0 && met.distance < 1.5f * PointLookup::kNear * point->radius &&
-                      PointLookup::is_near(*point, met.distance, random.get1(0, Purpose::gather));
+    const bool near = point && depth == 0 && met.distance < 1.5f * near_factor_ * point->radius &&
+                      PointLookup::is_near(*point, met.distance, random.get1(0, Purpose::gather), near_factor_);
     if (point && !near && points_.is_even_indirect(*point)) {
       ++to.counts.points_read;
       const bool even = lights_.empty() || points_.is_even(*point);

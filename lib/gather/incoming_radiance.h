@@ -43,7 +43,8 @@ class BrightPoints;    // lib/gather/bright_points.h
 class IncomingRadiance {
  public:
   /// bright: points of which rays bring the low part alone, where they are read first (BrightPoints::left); may be null.
-  IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, const BrightPoints* bright = nullptr);
+  IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor = PointLookup::kNear,
+                   const BrightPoints* bright = nullptr);
 
   /// Radiance [W/m^2/sr] arriving along rays that counts as indirect at their starts, and the distance to what each meets
   /// first, m (infinity: nothing). keys: random numbers, one for each ray. Fastest if rays that follow one another
@@ -76,6 +77,7 @@ class IncomingRadiance {
   const Tracer& tracer_;
   const Lights& lights_;
   const PointLookup& points_;
+  float near_factor_;
   const BrightPoints* bright_;
   std::vector<std::array<Bsdf, 2>> bsdfs_;  ///< by material: seen from behind, from in front
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <unordered_map>
 
 #include "formats/error.h"
@@ -13,8 +14,8 @@ namespace tempolux {
 namespace {
 
 constexpr std::size_t kChunk = 1024;         ///< photons, or elements, in a piece of work
-constexpr double kPhotonsInKernel = 256;     ///< noise of an element 1/16
 constexpr float kSameWay = 0.866f;           ///< cosine of 30 degrees
+constexpr int kNormalBits = 13;              ///< of 16 that a joined normal leaves out: it keeps 64 directions
 constexpr float kReach = 3;                  ///< of a Gaussian, standard deviations
 
 struct Corners {
@@ -32,8 +33,10 @@ Corners corners_of(const SceneFrame& frame, std::uint32_t surface, std::uint32_t
 /// An element with what is filtered.
 struct Sample {
   Vec3 position, normal;
-  Rgb flux{0.0f};                            ///< W
+  Rgbd flux{0.0};                            ///< W
   float area = 0;
+  float width = 0;                           ///< m, of the filter around it
+  std::uint32_t material = 0;
 };
 
 /// Samples by cubes of space as wide as the filter reaches.
@@ -70,20 +73,22 @@ class Neighbours {
 
 /// Weight of a neighbour by place alone; 0: it does not count.
 float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
-  const float width = float(filter.width);
+  const float width = a.width;
   const Vec3 d = b.position - a.position;
-  if (dot(a.normal, b.normal) < kSameWay || std::abs(dot(d, a.normal)) > width) return 0;
+  if (a.material != b.material || dot(a.normal, b.normal) < kSameWay || std::abs(dot(d, a.normal)) > width) return 0;
   if (filter.kind == MeshFilter::Kind::box)
     return std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}) <= width ? 1.0f : 0.0f;
   const float d2 = dot(d, d) / (width * width);
   return d2 > kReach * kReach ? 0 : std::exp(-0.5f * d2);
 }
 
-/// Irradiance of each sample: flux over area under the kernel; `alike` (may be empty): ln of irradiance by which neighbours are weighed.
-std::vector<Rgb> smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours, const std::vector<float>& alike) {
-  std::vector<Rgb> result(samples.size(), Rgb(0.0f));
+/// Irradiance of the samples that have a width: flux over area under the kernel; `alike` (may be empty): ln of irradiance by which
+/// neighbours are weighed.
+void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours, const std::vector<float>& alike,
+            std::vector<Rgbd>& result) {
   parallel_chunks(samples.size(), kChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
+      if (!(samples[i].width > 0)) continue;
       Rgbd flux{0.0};
       double area = 0;
       neighbours.around(samples[i].position, [&](std::uint32_t j) {
@@ -93,34 +98,97 @@ std::vector<Rgb> smooth(const std::vector<Sample>& samples, const MeshFilter& fi
           w *= std::exp(-0.5f * difference * difference);
         }
         if (!(w > 0)) return;
-        flux += Rgbd(samples[j].flux) * double(w);
+        flux += samples[j].flux * double(w);
         area += double(w) * double(samples[j].area);
       });
-      if (area > 0) result[i] = Rgb(flux * (1 / area));
+      if (area > 0) result[i] = flux * (1 / area);
     }
   });
-  return result;
 }
 
-/// After weighing by likeness each object shall have the flux that it had, by channel.
-void put_right(const std::vector<Sample>& samples, const std::vector<std::uint16_t>& objects, std::vector<Rgb>& irradiance) {
+/// Elements joined to what a filter cannot tell apart: those in a cube of this edge [m] that face alike and have one material.
+struct Joined {
+  std::vector<Sample> cubes;
+  std::vector<std::uint32_t> of;             ///< of each element its cube
+};
+Joined join(const std::vector<Sample>& samples, float edge) {
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers;
+  Joined joined;
+  for (const Sample& s : samples) {
+    const auto code = formats::encode_normal({s.normal.x, s.normal.y, s.normal.z});
+    std::uint64_t key = mix64(std::uint64_t(s.material) << 32 | std::uint64_t(code[0] >> kNormalBits) << 16 | std::uint64_t(code[1] >> kNormalBits));
+    for (int c = 0; c < 3; ++c) key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(s.position[c]) / double(edge)))));
+    const auto [found, is_new] = numbers.try_emplace(key, std::uint32_t(joined.cubes.size()));
+    if (is_new) joined.cubes.push_back({Vec3(0, 0, 0), Vec3(0, 0, 0), Rgbd{0.0}, 0, 0, s.material});
+    joined.of.push_back(found->second);
+    Sample& cube = joined.cubes[found->second];
+    cube.position = cube.position + s.position * s.area;
+    cube.normal = cube.normal + s.normal * s.area;
+    cube.flux += s.flux;
+    cube.area += s.area;
+  }
+  for (Sample& cube : joined.cubes) {
+    if (!(cube.area > 0)) continue;
+    cube.position = cube.position * (1 / cube.area);
+    cube.normal = normalize(cube.normal);
+  }
+  return joined;
+}
+
+/// Smooths each sample by its own width, those within a factor of two together. Small ones are joined first: the cost follows from the
+/// widths and not from the number of triangles.
+void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, std::vector<Rgbd>& result) {
+  std::map<int, std::vector<std::uint32_t>> levels;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    if (samples[i].width > 0 && samples[i].area > 0) levels[std::max(0, std::ilogb(samples[i].width / float(filter.width) * 1.0001f))].push_back(std::uint32_t(i));
+  for (const auto& [level, which] : levels) {
+    Joined joined = join(samples, std::ldexp(float(filter.width), level - 1));
+    float widest = 0;
+    for (const std::uint32_t i : which) {
+      float& width = joined.cubes[joined.of[i]].width;
+      width = std::max(width, samples[i].width);
+      widest = std::max(widest, width);
+    }
+    const Neighbours neighbours(joined.cubes, widest * (filter.kind == MeshFilter::Kind::box ? 1 : kReach));
+    std::vector<Rgbd> smoothed(joined.cubes.size(), Rgbd(0.0));
+    smooth(joined.cubes, filter, neighbours, {}, smoothed);
+    for (const std::uint32_t i : which) result[i] = smoothed[joined.of[i]];
+  }
+}
+
+/// After smoothing each object shall have the flux that it had, by channel.
+void put_right(const std::vector<Sample>& samples, const std::vector<formats::MeshElement>& elements, std::vector<Rgbd>& irradiance) {
   std::map<std::uint16_t, std::pair<Rgbd, Rgbd>> flux;   // before, after
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    auto& [before, after] = flux.try_emplace(objects[i], Rgbd{0.0}, Rgbd{0.0}).first->second;
-    before += Rgbd(samples[i].flux);
-    after += Rgbd(irradiance[i]) * double(samples[i].area);
+    auto& [before, after] = flux.try_emplace(elements[i].object, Rgbd{0.0}, Rgbd{0.0}).first->second;
+    before += samples[i].flux;
+    after += irradiance[i] * double(samples[i].area);
   }
   for (std::size_t i = 0; i < samples.size(); ++i)
     for (int c = 0; c < 3; ++c)
-      if (const auto& [before, after] = flux.at(objects[i]); after[c] > 0) irradiance[i][c] *= float(before[c] / after[c]);
+      if (const auto& [before, after] = flux.at(elements[i].object); after[c] > 0) irradiance[i][c] *= before[c] / after[c];
 }
 
 }  // namespace
 
-std::uint32_t mesh_cuts(const SceneFrame& frame, std::uint32_t surface, std::uint32_t triangle, double cell) {
-  const Corners t = corners_of(frame, surface, triangle);
-  const double longest = double(std::max({length(t.b - t.a), length(t.c - t.b), length(t.a - t.c)}));
-  return std::uint32_t(std::clamp(std::ceil(longest / cell), 1.0, double(formats::kMostCuts)));
+std::uint32_t MeshCuts::operator()(std::uint32_t surface, std::uint32_t triangle) const {
+  double longest = 0;
+  for (const SceneFrame* frame : measured_) {
+    const Corners t = corners_of(*frame, surface, triangle);
+    longest = std::max(longest, double(std::max({length(t.b - t.a), length(t.c - t.b), length(t.a - t.c)})));
+    if (surface < frame->static_count) break;   // the same in all frames
+  }
+  return std::uint32_t(std::clamp(std::ceil(longest / cell_), 1.0, double(formats::kMostCuts)));
+}
+
+double kernel_width(double area, double photons, double in_kernel) { return std::sqrt(in_kernel * area / (4 * std::numbers::pi * photons)); }
+
+MeshOptions window_widths(double area, double photons) {
+  const double width = kernel_width(area, std::max(1.0, photons), kPhotonsInWindow);
+  MeshOptions result;
+  result.filter.width = width > 0 ? width : 1;   // of a scene without surfaces
+  result.cell = kCellOfWindows * result.filter.width;
+  return result;
 }
 
 double surface_area(const SceneFrame& frame) {
@@ -134,13 +202,13 @@ double surface_area(const SceneFrame& frame) {
 MeshOptions with_widths(const MeshOptions& options, const SceneFrame& frame, std::uint64_t photons) {
   MeshOptions result = options;
   double& width = result.filter.width;
-  if (!(width > 0)) width = std::sqrt(kPhotonsInKernel * surface_area(frame) / (4 * 3.14159265358979 * double(std::max<std::uint64_t>(1, photons))));
+  if (!(width > 0)) width = kernel_width(surface_area(frame), double(std::max<std::uint64_t>(1, photons)));
   if (!(width > 0)) width = 1;               // of a scene without surfaces
   if (!(result.cell > 0)) result.cell = width;
   return result;
 }
 
-void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset, int times) {
+void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset) {
   struct Place {
     Side side{};
     std::uint32_t cuts = 0, cell = 0;        ///< cuts 0: not found
@@ -153,10 +221,10 @@ void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset, int ti
       const Vec3 normal{float(decoded[0]), float(decoded[1]), float(decoded[2])};
       const Vec3 position = Vec3{photon.position[0], photon.position[1], photon.position[2]} + offset;
       // Above the surface by what rounding may be, or a thousandth of a cell.
-      const float above = std::max(float(cell_) * 1e-3f, max_component(abs(position)) * 0x1p-18f);
+      const float above = std::max(float(cuts_.cell()) * 1e-3f, max_component(abs(position)) * 0x1p-18f);
       Hit hit;
       if (!tracer_.intersect({position + normal * above, -normal, 0, 2 * above}, hit)) continue;
-      const std::uint32_t cuts = mesh_cuts(tracer_.frame(), hit.surface, hit.triangle, cell_);
+      const std::uint32_t cuts = cuts_(hit.surface, hit.triangle);
       const bool back = dot(tracer_.surface_point(hit).normal_geometric, normal) < 0;
       places[i] = {{hit.surface, hit.triangle, std::uint16_t(back)}, cuts, formats::mesh_cell(cuts, hit.u, hit.v)};
     }
@@ -170,29 +238,29 @@ void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset, int ti
     auto& cells = cells_[place.side];
     cells.resize(std::size_t(place.cuts) * place.cuts);
     Cell& cell = cells[place.cell];
-    cell.photons += std::uint32_t(times);
-    for (std::size_t c = 0; c < 3; ++c) {   // unsigned: what overflows in a damaged file wraps, and comes back when it is taken away
-      const auto more = std::uint64_t(std::llrint(std::clamp(double(photons[i].flux[c]) / unit_, 0.0, 9e18)));
-      cell.sums[c] = std::int64_t(std::uint64_t(cell.sums[c]) + std::uint64_t(std::int64_t(times)) * more);
+    ++cell.photons;
+    std::array<double, 3> flux{};
+    for (std::size_t c = 0; c < 3; ++c) {   // unsigned: what overflows in a damaged file wraps
+      flux[c] = std::clamp(double(photons[i].flux[c]) / unit_, 0.0, 9e18);
+      cell.sums[c] = std::int64_t(std::uint64_t(cell.sums[c]) + std::uint64_t(std::llrint(flux[c])));
     }
+    const double y = luminance(Rgbd(flux[0], flux[1], flux[2]));
+    cell.squares += y * y;
   }
 }
 
-std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums, const MeshFilter& filter) {
+std::vector<formats::MeshElement> all_elements(const SceneFrame& frame, const MeshCuts& cuts) {
   std::vector<formats::MeshElement> elements;
-  std::vector<Sample> samples;
-  std::vector<std::uint16_t> objects;
   for (std::uint32_t s = 0; s < frame.surfaces.size(); ++s)
     for (std::uint32_t t = 0; t < frame.surfaces[s].primitive->triangles.size(); ++t) {
       const Corners corners = corners_of(frame, s, t);
       const Vec3 across = corners.cross_product();
       const float doubled = length(across);
       if (!(doubled > 0)) continue;          // nothing arrives there
-      const std::uint32_t n = mesh_cuts(frame, s, t, sums.cell());
+      const std::uint32_t n = cuts(s, t);
       if (elements.size() + 2 * std::uint64_t(n) * n > kMostElements)
-        throw InputError("--cell: more than " + std::to_string(kMostElements) + " elements of " + std::to_string(sums.cell()) + " m; give a larger one");
+        throw InputError("--cell: more than " + std::to_string(kMostElements) + " elements of " + std::to_string(cuts.cell()) + " m; give a larger one");
       for (std::uint16_t side = 0; side < 2; ++side) {
-        const auto found = sums.cells().find({s, t, side});
         const Vec3 normal = across * ((side == 1) != frame.surfaces[s].flipped ? -1 / doubled : 1 / doubled);
         for (std::uint32_t cell = 0; cell < n * n; ++cell) {
           formats::MeshElement& e = elements.emplace_back();
@@ -207,49 +275,73 @@ std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const M
           e.normal = formats::encode_normal({normal.x, normal.y, normal.z});
           e.area = 0.5f * doubled / float(n) / float(n);
           e.object = std::uint16_t(frame.surfaces[s].object);
-          if (found != sums.cells().end()) {
-            e.photons = found->second[cell].photons;
-            e.sums = found->second[cell].sums;
-          }
-          Sample& sample = samples.emplace_back();
-          sample.position = p;
-          sample.normal = normal;
-          sample.area = e.area;
-          for (int c = 0; c < 3; ++c) sample.flux[c] = float(double(e.sums[std::size_t(c)]) * sums.unit());
-          objects.push_back(e.object);
         }
       }
     }
-  std::vector<Rgb> irradiance(samples.size(), Rgb(0.0f));
-  if (filter.kind == MeshFilter::Kind::none) {
-    for (std::size_t i = 0; i < samples.size(); ++i)
-      if (samples[i].area > 0) irradiance[i] = samples[i].flux * (1 / samples[i].area);
-  } else {
-    const float reach = float(filter.width) * (filter.kind == MeshFilter::Kind::box ? 1 : kReach);
-    const Neighbours neighbours(samples, reach);
-    MeshFilter first = filter;
-    if (filter.kind == MeshFilter::Kind::bilateral) first.kind = MeshFilter::Kind::gaussian;
-    irradiance = smooth(samples, first, neighbours, {});
-    if (filter.kind == MeshFilter::Kind::bilateral) {
-      std::vector<float> alike;
-      for (const Rgb& e : irradiance) alike.push_back(std::log(std::max(1e-30f, (e.r + e.g + e.b) / 3)));
-      irradiance = smooth(samples, filter, neighbours, alike);
-      put_right(samples, objects, irradiance);
+  return elements;
+}
+
+void put_sums(const MeshSums& sums, std::vector<formats::MeshElement>& elements) {
+  for (std::size_t first = 0; first < elements.size();) {
+    const formats::MeshElement& side = elements[first];
+    const std::size_t count = std::size_t(side.cuts) * side.cuts;
+    const auto found = sums.cells().find({side.surface, side.triangle, side.side});
+    for (std::size_t i = 0; i < count && found != sums.cells().end(); ++i) {
+      elements[first + i].photons = found->second[i].photons;
+      elements[first + i].sums = found->second[i].sums;
+      elements[first + i].irradiance = {float(found->second[i].squares), 0, 0};
     }
+    first += count;
   }
-  // Sides that no light reaches are left out.
+}
+
+void leave_out_dark(std::vector<formats::MeshElement>& elements) {
   std::size_t kept = 0;
   for (std::size_t first = 0; first < elements.size();) {
     const std::size_t last = first + std::size_t(elements[first].cuts) * elements[first].cuts;
     bool lit = false;
-    for (std::size_t i = first; i < last; ++i) lit |= !is_black(irradiance[i]) || elements[i].photons > 0;
-    for (std::size_t i = first; i < last && lit; ++i) {
-      elements[kept] = elements[i];
-      elements[kept++].irradiance = {irradiance[i].r, irradiance[i].g, irradiance[i].b};
-    }
+    for (std::size_t i = first; i < last; ++i) lit |= elements[i].irradiance != std::array<float, 3>{} || elements[i].photons > 0;
+    for (std::size_t i = first; i < last && lit; ++i) elements[kept++] = elements[i];
     first = last;
   }
   elements.resize(kept);
+}
+
+void smooth_elements(const SceneFrame& frame, std::span<const Rgbd> flux, const MeshFilter& filter, std::span<const float> widths,
+                     std::vector<formats::MeshElement>& elements) {
+  std::vector<Sample> samples(elements.size());
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const formats::MeshElement& e = elements[i];
+    const auto n = formats::decode_normal(e.normal);
+    samples[i] = {{e.position[0], e.position[1], e.position[2]}, {float(n[0]), float(n[1]), float(n[2])}, flux[i], e.area, widths.empty() ? float(filter.width) : widths[i],
+                  frame.surfaces[e.surface].material};
+  }
+  std::vector<Rgbd> irradiance(samples.size(), Rgbd(0.0));
+  if (filter.kind == MeshFilter::Kind::none) {
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      if (samples[i].area > 0) irradiance[i] = flux[i] * (1 / double(samples[i].area));
+  } else {
+    MeshFilter first = filter;
+    if (filter.kind == MeshFilter::Kind::bilateral) first.kind = MeshFilter::Kind::gaussian;
+    smooth_all(samples, first, irradiance);
+    if (filter.kind == MeshFilter::Kind::bilateral) {
+      std::vector<float> alike;
+      for (const Rgbd& e : irradiance) alike.push_back(float(std::log(std::max(1e-30, (e.r + e.g + e.b) / 3))));
+      smooth(samples, filter, Neighbours(samples, float(filter.width) * kReach), alike, irradiance);
+    }
+    put_right(samples, elements, irradiance);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    elements[i].irradiance = {float(irradiance[i].r), float(irradiance[i].g), float(irradiance[i].b)};
+}
+
+std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const MeshSums& sums, const MeshFilter& filter) {
+  std::vector<formats::MeshElement> elements = all_elements(frame, sums.cuts());
+  put_sums(sums, elements);
+  std::vector<Rgbd> flux;
+  for (const formats::MeshElement& e : elements) flux.push_back(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2])) * sums.unit());
+  smooth_elements(frame, flux, filter, {}, elements);
+  leave_out_dark(elements);
   return elements;
 }
 

@@ -1,30 +1,100 @@
 #include "lib/gather/mesh_light.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "formats/octahedral.h"
+#include "lib/core/random.h"
 
 namespace tempolux {
 namespace {
+
+constexpr float kSameWay = 0.866f;           ///< cosine of 30 degrees
+constexpr float kSamePlace = 1e-3f;          ///< of a cell: corners closer than this are one
 
 /// One number for each side: 32 bits of surface, 31 of triangle, one of side.
 std::uint64_t key(std::uint32_t surface, std::uint32_t triangle, std::uint32_t side) {
   return std::uint64_t(surface) << 32 | std::uint64_t(triangle & 0x7fffffffu) << 1 | side;
 }
 
+/// Number of a corner among those of its side.
+std::uint32_t corner(std::uint32_t n, std::uint32_t column, std::uint32_t row) { return row * (n + 1) - row * (row - 1) / 2 + column; }
+
+/// Corners of a cell: column and row of each.
+std::array<std::array<std::uint32_t, 2>, 3> corners_of(const formats::MeshPlace& p) {
+  if (p.tip) return {{{p.column + 1, p.row}, {p.column, p.row + 1}, {p.column + 1, p.row + 1}}};
+  return {{{p.column, p.row}, {p.column + 1, p.row}, {p.column, p.row + 1}}};
+}
+
+/// An element at one of its corners.
+struct Meeting {
+  std::uint64_t place = 0;                   ///< hash of where
+  std::uint32_t element = 0, corner = 0;     ///< corner: in MeshLight::corners_
+  bool operator<(const Meeting& o) const { return std::tie(place, element, corner) < std::tie(o.place, o.element, o.corner); }
+};
+
+std::uint64_t place_of(Vec3 p, float step) {
+  std::uint64_t hash = 0;
+  for (int c = 0; c < 3; ++c) hash = mix64(hash + std::uint64_t(std::int64_t(std::floor(double(p[c]) / double(step) + 0.5))));
+  return hash;
+}
+
 }  // namespace
 
-MeshLight::MeshLight(formats::MeshirradFile file) : file_(std::move(file)) {
-  for (std::size_t i = 0; i < file_.elements.size();) {
-    const formats::MeshElement& e = file_.elements[i];
-    sides_.emplace(key(e.surface, e.triangle, e.side), std::uint32_t(i));
-    i += std::size_t(e.cuts) * e.cuts;
+MeshLight::MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame) : size_(file.elements.size()) {
+  const std::vector<formats::MeshElement>& elements = file.elements;
+  std::vector<Meeting> meetings;
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < elements.size();) {
+    const formats::MeshElement& e = elements[i];
+    const std::uint32_t n = e.cuts;
+    sides_.emplace(key(e.surface, e.triangle, e.side), Side{count, n});
+    const Surface& s = frame.surfaces.at(e.surface);
+    const auto& index = s.primitive->triangles.at(e.triangle);
+    const Vec3 a = s.position(index[0]), b = s.position(index[1]), c = s.position(index[2]);
+    for (std::uint32_t cell = 0; cell < n * n; ++cell, ++i) {
+      const auto [u, v] = formats::mesh_cell_centre(n, cell);
+      for (const auto& [column, row] : corners_of(formats::mesh_place(n, u, v))) {
+        const float x = float(column) / float(n), y = float(row) / float(n);
+        meetings.push_back({place_of(a * (1 - x - y) + b * x + c * y, kSamePlace * float(file.header.cell)), std::uint32_t(i), count + corner(n, column, row)});
+      }
+    }
+    count += (n + 1) * (n + 2) / 2;
+  }
+  corners_.resize(count);
+  std::sort(meetings.begin(), meetings.end());
+  const auto normal = [&](const Meeting& m) {
+    const auto d = formats::decode_normal(elements[m.element].normal);
+    return Vec3{float(d[0]), float(d[1]), float(d[2])};
+  };
+  for (std::size_t first = 0, last = 0; first < meetings.size(); first = last) {
+    while (last < meetings.size() && meetings[last].place == meetings[first].place) ++last;
+    for (std::size_t m = first; m < last; ++m) {
+      Rgbd sum{0.0};
+      double area = 0;
+      for (std::size_t k = first; k < last; ++k) {
+        const formats::MeshElement& e = elements[meetings[k].element];
+        if (frame.surfaces[e.surface].material != frame.surfaces[elements[meetings[m].element].surface].material || dot(normal(meetings[m]), normal(meetings[k])) < kSameWay)
+          continue;
+        sum += Rgbd(double(e.irradiance[0]), double(e.irradiance[1]), double(e.irradiance[2])) * double(e.area);
+        area += double(e.area);
+      }
+      if (area > 0) corners_[meetings[m].corner] = Rgb(sum * (1 / area));
+    }
   }
 }
 
 Rgb MeshLight::irradiance(const SurfacePoint& hit, Vec3 geometric) const {
   const auto found = sides_.find(key(hit.surface, hit.triangle, dot(hit.normal_geometric, geometric) < 0));
   if (found == sides_.end()) return Rgb(0.0f);
-  const formats::MeshElement* const first = &file_.elements[found->second];
-  const auto& e = first[formats::mesh_cell(first->cuts, hit.u, hit.v)].irradiance;
-  return {e[0], e[1], e[2]};
+  const Side& side = found->second;
+  const formats::MeshPlace p = formats::mesh_place(side.cuts, hit.u, hit.v);
+  const std::array<float, 3> weights = p.tip ? std::array{1 - p.y, 1 - p.x, p.x + p.y - 1} : std::array{1 - p.x - p.y, p.x, p.y};
+  const auto corners = corners_of(p);
+  Rgb sum{0.0f};
+  for (std::size_t k = 0; k < 3; ++k) sum += corners_[side.first + corner(side.cuts, corners[k][0], corners[k][1])] * std::clamp(weights[k], 0.0f, 1.0f);
+  return sum;
 }
 
 }  // namespace tempolux

@@ -2,24 +2,36 @@
 #pragma once
 
 #include <unordered_map>
+#include <vector>
 
 #include "formats/meshirrad/meshirrad.h"
-#include "lib/scene/surface_point.h"
 #include "lib/core/vec.h"
+#include "lib/scene/at_frame.h"
+#include "lib/scene/surface_point.h"
 
 namespace tempolux {
 
 /// Irradiance [W/m^2] of a .meshirrad file where a ray meets a surface. Thread-safe.
+///
+/// At a corner of elements it is the mean of those that meet there, weighed by area, that face the same way (normals within 30 degrees) and
+/// have the same material; within an element it is linear between its corners. So no edge between elements is seen, and even light
+/// stays even.
 class MeshLight {
  public:
-  explicit MeshLight(formats::MeshirradFile file);
-  /// Of the element at the hit, on the side of `geometric` (unit): that towards which this normal points. 0 where the file has none.
+  /// `frame`: that of the file.
+  MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame);
+  /// At the hit, on the side of `geometric` (unit): that towards which this normal points. 0 where the file has none.
   Rgb irradiance(const SurfacePoint& hit, Vec3 geometric) const;
-  std::size_t size() const { return file_.elements.size(); }
+  std::size_t size() const { return size_; }
 
  private:
-  formats::MeshirradFile file_;
-  std::unordered_map<std::uint64_t, std::uint32_t> sides_;   ///< by hash of surface, triangle, side: its first element
+  struct Side {
+    std::uint32_t first = 0;                 ///< of its corners
+    std::uint32_t cuts = 0;
+  };
+  std::unordered_map<std::uint64_t, Side> sides_;   ///< by surface, triangle, side
+  std::vector<Rgb> corners_;                 ///< of each side (n + 1) (n + 2) / 2, in rows of equal v
+  std::size_t size_ = 0;                     ///< elements
 };
 
 }  // namespace tempolux

@@ -110,7 +110,7 @@ class PointLookup {
   static constexpr float kNear = 2;
   /// Is a hit at `distance` m along the way from the last Lambert lobe so near? u in [0, 1) moves the limit between half and one and a half
   /// of it, so that it shows no seam.
-  static bool is_near(const Light& light, float distance, float u) { return distance < kNear * light.radius * (0.5f + u); }
+  static bool is_near(const Light& light, float distance, float u, float radii = kNear) { return distance < radii * light.radius * (0.5f + u); }
   /// Share of the u for which a hit is not near; radius: Light::radius.
   static float share_of_far(float radius, float distance) {
     return radius > 0 ? std::clamp(distance / (kNear * radius) - 0.5f, 0.0f, 1.0f) : 1.0f;

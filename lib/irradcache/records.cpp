@@ -140,8 +140,7 @@ inline float RecordStore::weight_of(const Entry& entry, float radius, float leas
   const float weight = std::max(0.0f, (1 - std::sqrt(d2) / radius) * (1 - angle));
   if (!(weight > 0)) return 0;
   const Clearance& seen = records_[entry.record].clearance;
-  const bool relaxed = radius > entry.radius && seen.shares == Clearance::kOpen;
-  return relaxed || seen.contains(d, entry.normal) ? weight : 0;
+  return seen.contains(d, entry.normal) ? weight : 0;
 }
 
 inline void RecordStore::accumulate(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal,
@@ -209,20 +208,9 @@ bool RecordStore::covers(Vec3 position, Vec3 normal, float weight, float least_r
   return least_reach > 0 && options_.least_cosine > kWideCosine && covered(kWideCosine, least_reach);
 }
 
-std::optional<Rgb> RecordStore::irradiance(Vec3 position, Vec3 normal, bool relaxed) const {
-  Interpolated found = interpolate(position, normal);
-  if (!(found.weight > 0) && relaxed) found = interpolate_relaxed(position, normal);
+std::optional<Rgb> RecordStore::irradiance(Vec3 position, Vec3 normal) const {
+  const Interpolated found = interpolate(position, normal);
   return found.weight > 0 ? std::optional(found.irradiance) : std::nullopt;
-}
-
-RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {
-  Interpolated result;
-  Rgb sum{0.0f};
-  for (std::uint32_t i = 0; i < records_.size(); ++i)
-    accumulate({records_[i].position, records_[i].radius, records_[i].normal, i}, kRelaxed * records_[i].radius,
-               options_.least_cosine, position, normal, sum, result);
-  if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
-  return result;
 }
 
 }  // namespace tempolux

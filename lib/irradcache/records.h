@@ -90,14 +90,8 @@ class RecordStore {
   /// Is the sum of the weights there at least `weight`? Looks no farther once it is. Or is it, were no radius larger than
   /// least_reach, in the angle of kWideCosine? Where normals turn faster than records may be fine, they need not be finer.
   bool covers(Vec3 position, Vec3 normal, float weight, float least_reach = 0) const;
-  /// The same with every record's radius kRelaxed times as large: for the few points, fractions of a pixel beyond
-  /// an edge, that no record quite reaches. Looks at all records: slow.
-  Interpolated interpolate_relaxed(Vec3 position, Vec3 normal) const;
-  /// Irradiance by interpolate(), or where no record counts and `relaxed` is asked for by interpolate_relaxed(); none if there
-  /// is none so either.
-  std::optional<Rgb> irradiance(Vec3 position, Vec3 normal, bool relaxed) const;
-
-  static constexpr float kRelaxed = 4;
+  /// Irradiance by interpolate(); none where no record counts.
+  std::optional<Rgb> irradiance(Vec3 position, Vec3 normal) const;
 
  private:
   /// What decides whether a record counts at a point.

@@ -29,6 +29,8 @@ inline constexpr StageInfo records{"irradcache-build records", "cache", ".irradc
 inline constexpr StageInfo stands_records{"irradcache-build records --map static", "stands_cache", ".irradcache", "irradcache-build", "records"};
 inline constexpr StageInfo kept{"gather-temporal final", "kept", ".irradcache", "gather-temporal", "records"};
 inline constexpr StageInfo textures{"st-filter mesh", "textures", ".meshirrad", "st-filter", "count"};
+inline constexpr StageInfo counts{"st-filter mesh --counts", "counts", ".meshirrad", "st-filter", "count,write"};
+inline constexpr StageInfo windows{"gather-temporal density", "windows", ".meshirrad", "gather-temporal", "read counts,windows,filter,write"};
 inline constexpr StageInfo lights{"frame-render --learn-lights", "lights", ".lightgrid", "frame-render", "learn"};
 inline constexpr StageInfo raw{"frame-render --for-filter", "raw", ".exr", "frame-render", "render,data channels,write"};
 inline constexpr StageInfo keys{"frame-render (keys)", "keys", ".exr", "frame-render", "render,data channels,write"};
@@ -43,7 +45,7 @@ inline constexpr StageInfo error{"aqm-compare", "error", ".json", "aqm-compare",
 
 /// In the order in which they run.
 inline constexpr std::array kStages{
-    stage::stands_photons, stage::photons, stage::moved_photons, stage::refined, stage::stands_points, stage::points, stage::split, stage::textures,
+    stage::stands_photons, stage::photons, stage::moved_photons, stage::refined, stage::stands_points, stage::points, stage::split, stage::textures, stage::counts, stage::windows,
     stage::stands_records, stage::records, stage::kept, stage::lights, stage::keys, stage::walk, stage::walked, stage::raw,
     stage::filtered, stage::pictures, stage::smoke, stage::reference, stage::error};
 

@@ -11,10 +11,10 @@ constexpr std::uint32_t kMirrorsInARow = 16;
 
 }  // namespace
 
-std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const {
+std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const {
   if (mesh) return mesh->irradiance(surface, geometric);
-  if (localised) return localised->at(surface, shading, direct_view);
-  if (records) return records->irradiance(surface.position, shading, direct_view);
+  if (localised) return localised->at(surface, shading);
+  if (records) return records->irradiance(surface.position, shading);
   return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric)) : std::nullopt;
 }
 

@@ -34,9 +34,8 @@ class KnownLight {
   bool forks() const { return records || mesh || localised || points || (photons && photons->has_indirect()); }
 
   /// Irradiance of kind indirect at the first Lambert lobe of an eye path; both normals are unit and on the side seen. None where no
-  /// record is near: a ray of the hemisphere is to find it. `direct_view`: the camera ray itself met the place; then records with
-  /// larger radii are tried before, as one of the pixel's own is a fraction of a pixel away.
-  std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const;
+  /// record counts: a ray of the hemisphere is to find it.
+  std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const;
   bool has_caustic() const { return photons != nullptr; }
   /// Irradiance of kind caustic; only if has_caustic().
   Rgb caustic(Vec3 position, const LitSurface& surface) const { return photons->caustic(position, surface); }

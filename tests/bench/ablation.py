@@ -98,7 +98,7 @@ class Variant:
         self.bench.shared = bench.shared
 
     def runs(self, case, size, seed, patience):
-        image, cpu, stages = Side(self.bench, case, size, patience).chain(seed)
+        image, cpu, stages, _ = Side(self.bench, case, size, patience).chain(seed)
         return image, cpu, stages
 
 

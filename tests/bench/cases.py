@@ -3,15 +3,18 @@ import dataclasses
 import shutil
 from pathlib import Path
 
+import daylight
 import open_scenes
 from furnish import Asset, bounds, looking
 
 SKY_OF_SUN = ("--environment-color", "0.1,0.12,0.15")     # beside the sun of `-sun` scenes: an eighth of its light
+# Of a file by others what it is rendered with: frame, options of all tools, environment map below hdri.
+AS_MADE = {"evening_shot": (10, ("--light-units", "spec"), "evening_sky.exr")}
 WITH_SUN = ("house", "low-poly-jungle", "GrassFieldInstanced", "CesiumMan", "issum", "lamborghini", "DepthOfFieldExample")
 
 # Few scenes that stand for all: closed rooms, light through windows, open grounds, lone objects, leaves, many lamps.
 QUICK = ("S2", "S4", "S8", "hut-50-inside-both", "hut-5000-outside-both", "street-both", "leaves", "lamps", "house", "low-poly-jungle-sun",
-         "CesiumMan", "living_room")
+         "CesiumMan", "living_room", "cam", "level_two_lamps", "evening_shot", "S8-day", "S8-paper")
 
 
 @dataclasses.dataclass
@@ -24,6 +27,11 @@ class Case:
     shared: tuple = ()        # options of all tools
     environment: Path | None = None
     note: str = ""            # what was added to the file
+
+    @property
+    def family(self):
+        """Scenes of one family count as one in medians: huts on all grounds under all lights."""
+        return self.name.partition("-")[0] if self.name.startswith(("hut-", "street-")) else self.name
 
     def options(self):
         """Of every tool, as Makefile.example passes them."""
@@ -60,6 +68,11 @@ def copied(asset, folder):
     return Asset(copy)
 
 
+def by_day(bench, folder, wanted):
+    for name, (file, frame, sky) in daylight.make(bench.shared, folder, wanted).items():
+        yield Case(name, file, frame, "closed" if name.endswith("paper") else "window", shared=sky)
+
+
 def found_names(folder):
     """{name: file}. A file called scene is known by its folder's name, one beside its twin by its suffix too."""
     files = sorted(p for p in folder.rglob("*.gl*") if p.suffix in (".gltf", ".glb"))
@@ -88,6 +101,10 @@ def found(bench, folder, wanted, auto_frames):
             title = name + "-sun" if sun else name
             if not wanted(title):
                 continue
+            if name in AS_MADE:
+                frame, options, sky = AS_MADE[name]
+                yield Case(name, file, frame, "closed", shared=options, environment=top / "hdri" / sky)
+                continue
             asset, added = Asset(file), []
             camera = not asset.has_camera and not auto_frames
             if camera or sun:
@@ -108,4 +125,5 @@ def all_cases(bench, wanted, auto_frames):
     folder = bench.out / "every" / "scenes"
     yield from (case for case in ours(bench) if case.name != "PC" and wanted(case.name))
     yield from scripted(folder, wanted)
+    yield from by_day(bench, folder, wanted)
     yield from found(bench, folder / "found", wanted, auto_frames)

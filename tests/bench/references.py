@@ -1,4 +1,4 @@
-"""Path-traced references that grow as they are needed and are kept, and the error that path tracing has at so many samples."""
+"""Path-traced references that grow as they are needed and are kept, and what an error costs path tracing."""
 import hashlib
 import json
 import math
@@ -83,24 +83,19 @@ def view(image):
     return [image.attributes[name].hex() for name in VIEW if name in image.attributes]
 
 
-class Law:
-    """How path tracing's mean squared error falls with its samples: straight lines between measured points of log error over
-    log samples, 1/samples beyond them."""
+class Curve:
+    """What seen error costs: straight lines between measured points of log CPU over log error, error ~ 1/sqrt(CPU) beyond them."""
 
     def __init__(self, points):
-        """points: (samples per pixel, mean squared error)"""
-        by_samples = {}
-        for samples, error in points:
-            if error > 0:
-                by_samples.setdefault(samples, []).append(error)
-        self.points = sorted((math.log(n), math.log(sum(e) / len(e))) for n, e in by_samples.items())
+        """points: (CPU seconds, error)"""
+        self.points = sorted((cpu, error) for cpu, error in points if error > 0)
 
-    def samples(self, error):
-        """(samples for this mean squared error, is it inside the measured points?)"""
-        wanted = math.log(error)
-        first, last = self.points[0], self.points[-1]
-        for (n0, e0), (n1, e1) in zip(self.points, self.points[1:]):
+    def cost(self, error):
+        """(CPU seconds for this error, is it inside the measured points?)"""
+        logs = [(math.log(c), math.log(e)) for c, e in self.points]
+        wanted = math.log(max(error, 1e-9))
+        for (c0, e0), (c1, e1) in zip(logs, logs[1:]):
             if e1 <= wanted <= e0 and e1 < e0:
-                return math.exp(n0 + (n1 - n0) * (e0 - wanted) / (e0 - e1)), True
-        n, e = first if wanted > first[1] else last
-        return math.exp(n + e - wanted), False
+                return math.exp(c0 + (c1 - c0) * (e0 - wanted) / (e0 - e1)), True
+        c, e = logs[0] if wanted > logs[0][1] else logs[-1]
+        return math.exp(c + 2 * (e - wanted)), False

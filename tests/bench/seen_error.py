@@ -1,86 +1,30 @@
 #!/usr/bin/env python3
 """Seen error of pictures: the root mean square difference of 8-bit sRGB codes to a reference in two halves.
 
-    frame-render room.glb --spp 256 --channels RGBA,halves -o reference.exr
-    python3 tests/bench/seen_error.py --reference reference.exr raw.exr filtered.exr
+    frame-render room.glb --spp 256 --halves --channels RGBA -o reference.exr
+    python3 tests/bench/seen_error.py --reference reference_a.exr reference_b.exr raw.exr filtered.exr
 
 One exposure for all pictures puts the median of the reference's pixel means at .18. Codes are 255 times the sRGB curve of the exposed
 value, cut to [0, 1], not rounded. The squared error of a picture x is the mean of (x - a)(x - b), where a and b are the reference's
 halves: it has no noise of its own. Codes are not linear, so a figure counts only where the halves differ by less than twice as much;
-the line says "not converged" otherwise. Halves are two files (--reference a.exr b.exr) or channels of one (--channels halves).
+the line says "not converged" otherwise.
 """
 import argparse
-import math
-import statistics
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stress"))
 import exr
-
-LAYERS = ("emission", "specular", "direct", "caustic", "indirect", "volume")
-STEPS = 1 << 14
-CURVE = [255 * (12.92 * v if v <= 0.0031308 else 1.055 * v ** (1 / 2.4) - 0.055) for v in (i / STEPS for i in range(STEPS + 2))]
-
-
-def code(value):
-    """The sRGB code of an exposed value. From a table with straight lines between its entries: right to .02 codes."""
-    if not value > 0:
-        return 0.0
-    if value >= 1:
-        return 255.0
-    if value <= 0.0031308:
-        return 255 * 12.92 * value
-    place = value * STEPS
-    i = int(place)
-    return CURVE[i] + (place - i) * (CURVE[i + 1] - CURVE[i])
-
-
-def halves_of(files):
-    """The two halves of a reference as lists of R, G and B planes."""
-    images = [exr.read(file) for file in files]
-    if len(images) == 2:
-        return [[image.channels[c] for c in "RGB"] for image in images]
-    channels = images[0].channels
-    layers = [layer for layer in LAYERS if f"{layer}.a.R" in channels]
-    if not layers:
-        raise SystemExit(f"{files[0]}: no halves; name two files, or render it with --channels halves")
-    return [[[math.fsum(v) for v in zip(*(channels[f"{layer}.{h}.{c}"] for layer in layers))] for c in "RGB"] for h in "ab"]
-
-
-class Seen:
-    """Codes of a reference, against which pictures are judged."""
-
-    def __init__(self, files):
-        a, b = halves_of(files)
-        self.count = len(a[0])
-        median = statistics.median(sum(values) for values in zip(*a, *b)) / 6
-        self.exposure = 0.18 / median if median > 0 else 1
-        self.a, self.b = self.codes(a), self.codes(b)
-
-    def codes(self, planes):
-        return [[code(self.exposure * v) for v in plane] for plane in planes]
-
-    def halves_differ(self):
-        """RMS of the halves' mean against the truth, as the halves' difference has it."""
-        return math.sqrt(sum((p - q) ** 2 for u, v in zip(self.a, self.b) for p, q in zip(u, v)) / (12 * self.count))
-
-    def squares(self, planes):
-        """By pixel the squared error, mean over its colours."""
-        parts = [[(x - p) * (x - q) for x, p, q in zip(*three)] for three in zip(self.codes(planes), self.a, self.b)]
-        return [sum(values) / 3 for values in zip(*parts)]
-
-    def error(self, planes):
-        return math.sqrt(max(0.0, math.fsum(self.squares(planes)) / self.count))
+from seen import Seen
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--reference", nargs="+", required=True, metavar="FILE")
+    parser.add_argument("--reference", nargs=2, required=True, metavar="FILE", help="the reference's halves")
     parser.add_argument("--worst", action="store_true", help="also the share of the squared error in the worst percent of the pixels")
     parser.add_argument("pictures", nargs="+")
     options = parser.parse_args()
-    seen = Seen(options.reference)
+    seen = Seen(*([exr.read(file).channels[c] for c in "RGB"] for file in options.reference))
     noise = seen.halves_differ()
     for file in options.pictures:
         image = exr.read(file)

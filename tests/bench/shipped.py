@@ -51,20 +51,21 @@ class Side:
             raise Unfinished(lines[0] if lines else f"a process took more than {self.patience} CPU s")
         return after.children_user - before.children_user + after.children_system - before.children_system
 
-    def chain(self, seed, quality="final", channels=CHANNELS, keep=None):
-        """(picture, CPU seconds, those of each stage); `keep`: a file that the frame is moved to, None: then the picture is read and
-        the frame removed."""
+    def chain(self, seed, quality="final", channels=CHANNELS, keep=None, variables=None):
+        """(picture, CPU seconds, those of each stage, what frame-render says of the frame); `keep`: a file that the frame is moved to, None:
+        then the picture is read and the frame removed. `variables`: further ones of Makefile.example."""
         case = self.case
         shutil.rmtree(self.folder, ignore_errors=True)
         frame = pipeline.frame_of(self.folder, case.frame)
         cpu = self.spend(pipeline.command(
             self.bench.project, self.bench.bin, self.folder, f"frames/{frame.name}", SCENE=case.file.resolve(), FRAMES=case.frame, SIZE=self.size,
             CAMERA=case.camera, CHANNELS=",".join(channels), TIME=" ".join(map(str, case.shared)), QUALITY=quality,
-            RUN=f"sh {Path(__file__).with_name('with_seed.sh')} {seed}", ENVIRONMENT=case.environment and case.environment.resolve()))
+            RUN=f"sh {Path(__file__).with_name('with_seed.sh')} {seed}", ENVIRONMENT=case.environment and case.environment.resolve(), **(variables or {})))
         stages = pipeline.cpu_of(self.folder)
+        said = {name: value for stats in pipeline.stats_of(self.folder, ("frames",)) if stats["tool"] == "frame-render" for name, value in stats["results"].items()}
         image = shutil.move(frame, keep) if keep else exr.read(frame)
         shutil.rmtree(self.folder)
-        return image, cpu, stages
+        return image, cpu, stages, said
 
     def paths(self, spp, seed):
         """(picture, CPU seconds that do not depend on the samples, those of a sample per pixel)"""
@@ -79,5 +80,5 @@ def preset(bench, name, seed, size=None, quality="final"):
     """(file of the frame with layers and ids, CPU seconds of all processes): one of our scenes, rendered afresh."""
     case = next(case for case in cases.ours(bench) if case.name == name)
     keep = bench.out / "frames" / f"{name}-{quality}-{seed}.exr"
-    image, cpu, _ = Side(bench, case, size or bench.size, 10**5).chain(seed, quality, (*CHANNELS, "id"), keep)
+    image, cpu, *_ = Side(bench, case, size or bench.size, 10**5).chain(seed, quality, (*CHANNELS, "id"), keep)
     return Path(image), cpu

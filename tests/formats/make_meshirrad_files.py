@@ -18,8 +18,8 @@ HEADER = {"kinds": "indirect", "origin": "0 0 0", "cell": "0.5", "unit": "0.25",
 
 
 def element(surface=2, triangle=5, cell=0, cuts=1, side=0, position=(1, 2, 3), normal=(32767, 65534), area=0.5, photons=3, sums=(4, 2, 1),
-            irradiance=(2, 1, 0.5), number=7, reserved=0):
-    return surface, triangle, cell, cuts, side, *position, *normal, area, photons, *sums, *irradiance, number, reserved
+            irradiance=(2, 1, 0.5), number=7, before=0, after=0):
+    return surface, triangle, cell, cuts, side, *position, *normal, area, photons, *sums, *irradiance, number, before, after
 
 
 FRONT, BACK = element(), element(side=1, normal=(32767, 32767), photons=0, sums=(0, 0, 0), irradiance=(0, 0, 0))
@@ -57,6 +57,16 @@ save("accept/worked-example", GOOD)
 save("accept/nothing", encoded(()))
 save("accept/cells-of-a-triangle", encoded([FRONT, BACK, *FOUR]))
 save("accept/bilateral", encoded(filter="bilateral 0.25", kinds="direct,caustic,indirect"))
+COUNTED, WINDOW = element(irradiance=(7.5, 0, 0)), element(before=3, after=16)
+save("accept/counts", encoded([COUNTED, BACK], minor=1, holds="counts"))
+save("accept/counts-after-a-jump", encoded([COUNTED, BACK], minor=1, holds="counts", jump="yes"))
+save("accept/windows", encoded([WINDOW, BACK], minor=1, holds="windows", filter="gaussian 0.25"))
+save("refuse/counts-with-windows", encoded([WINDOW, BACK], minor=1, holds="counts"))
+save("refuse/header-counts-with-filter", encoded([COUNTED, BACK], minor=1, holds="counts", filter="box 1"))
+save("refuse/header-holds-unknown", encoded(minor=1, holds="photons"))
+save("refuse/header-holds-in-version-1.0", encoded(holds="counts"))
+save("refuse/header-jump-without-counts", encoded([WINDOW, BACK], minor=1, holds="windows", jump="yes"))
+save("refuse/header-jump-no", encoded(minor=1, holds="counts", jump="no"))
 save("accept/no-identity", encoded(frames=None, static_geometry=None))
 save("accept/later-minor-version-with-new-key", encoded(minor=7, colour_of_ink="blue"))
 for name, values in {"kinds-volume": {"kinds": "volume"}, "kinds-in-other-order": {"kinds": "indirect,direct"}, "cell-zero": {"cell": "0"},
@@ -71,7 +81,7 @@ save("refuse/header-checksum", GOOD.replace(b"cell: 0.5", b"cell: 0.6"))
 for name, values in {"cuts-zero": {"cuts": 0}, "cuts-above-limit": {"cuts": 1025}, "side-2": {"side": 2}, "position-nan": {"position": (1, NAN, 3)},
                      "normal-above-65534": {"normal": (0, 65535)}, "area-negative": {"area": -1}, "area-infinite": {"area": INF},
                      "irradiance-negative": {"irradiance": (1, -1, 1)}, "irradiance-nan": {"irradiance": (1, 1, NAN)}, "sum-negative": {"sums": (1, -1, 1)},
-                     "reserved-not-0": {"reserved": 1}, "first-cell-is-not-0": {"cell": 1, "cuts": 2}}.items():
+                     "frames-before-in-light-of-a-frame": {"before": 1}, "first-cell-is-not-0": {"cell": 1, "cuts": 2}}.items():
     save("refuse/" + name, encoded([element(**values)]))
 save("refuse/cells-missing", encoded(FOUR[:3]))
 save("refuse/cell-left-out", encoded([FOUR[0], *FOUR[2:]]))

@@ -74,6 +74,24 @@ std::string bytes_of(const MeshirradFile& file) {
   return bytes;
 }
 
+/// Photons of the three frames before and of sixteen after.
+MeshirradFile windows() {
+  MeshirradFile file = example();
+  file.header.holds = MeshHolds::windows;
+  file.header.filter = "gaussian 0.25";
+  file.elements[0].before = 3;
+  file.elements[0].after = 16;
+  return file;
+}
+
+MeshirradFile counts() {
+  MeshirradFile file = example();
+  file.header.holds = MeshHolds::counts;
+  file.header.jump = true;
+  file.elements[0].irradiance = {7.5f, 0, 0};
+  return file;
+}
+
 void read(const std::string& path) { load_meshirrad(path); }
 
 TEST(Meshirrad, WorkedExampleOfThePageIsWhatTheWriterWrites) {
@@ -93,6 +111,17 @@ TEST(Meshirrad, EverythingComesBack) {
   EXPECT_EQ(a.elements, rich().elements);
   EXPECT_EQ(a.header.filter, "gaussian 0.125");
   EXPECT_EQ(digest_of(a), digest_of(rich()));
+}
+
+TEST(Meshirrad, CountsAndWindowsAreVersion1_1) {
+  EXPECT_EQ(bytes_of(windows()), load(kFiles + "accept/windows.meshirrad"));
+  EXPECT_EQ(bytes_of(counts()), load(kFiles + "accept/counts-after-a-jump.meshirrad"));
+  const MeshirradFile file = load_meshirrad(kFiles + "accept/counts-after-a-jump.meshirrad");
+  EXPECT_EQ(file.elements, counts().elements);
+  EXPECT_EQ(file.elements[0].squares(), 7.5);
+  EXPECT_EQ(file.header.holds, MeshHolds::counts);
+  EXPECT_TRUE(file.header.jump);
+  EXPECT_NE(digest_of(file), digest_of(example()));
 }
 
 /// Each cell holds its centre; a place lies in the cell whose centre is nearest in the sheared lattice: checked by brute force on paper for
@@ -139,6 +168,9 @@ TEST(Meshirrad, TheWriterWritesNothingThatAReaderWouldRefuse) {
   refused([](MeshirradFile& f) { f.elements[1].sums[0] = -1; });
   refused([](MeshirradFile& f) { f.header.unit = 0; });
   refused([](MeshirradFile& f) { f.header.filter = "box"; });
+  refused([](MeshirradFile& f) { f.elements[0].after = 1; });
+  refused([](MeshirradFile& f) { f.header.jump = true; });
+  refused([](MeshirradFile& f) { f.header.holds = MeshHolds::counts, f.header.filter = "box 1"; });
 }
 
 TEST(Meshirrad, FilesForTheSecondReader) {
@@ -147,6 +179,8 @@ TEST(Meshirrad, FilesForTheSecondReader) {
   const std::string folder = std::string(name) + "/";
   save(folder + "rich.meshirrad", bytes_of(rich()));
   save(folder + "plain.meshirrad", bytes_of(example()));
+  save(folder + "windows.meshirrad", bytes_of(windows()));
+  std::ofstream(folder + "windows.meshirrad.expected") << 2 << '\n';
   std::ofstream(folder + "rich.meshirrad.expected") << rich().elements.size() << '\n';
   std::ofstream(folder + "plain.meshirrad.expected") << 2 << '\n';
 }

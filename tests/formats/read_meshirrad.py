@@ -14,12 +14,13 @@ import struct
 from containers import REAL, cut, encode_container, read_container, refuse, save, second_reader
 
 MAGIC, MARK = b"\x89TMESH\r\n", b"MESH"
-# section 3: surface, triangle, cell, cuts, side, position, normal, area, photons, sums, irradiance, object, reserved
-RECORD = struct.Struct("<3I2H3f2HfI3q3f2H")
-SURFACE, TRIANGLE, CELL, CUTS, SIDE, POSITION, NORMAL, AREA, PHOTONS, SUMS, IRRADIANCE, OBJECT = 0, 1, 2, 3, 4, 5, 8, 10, 11, 12, 15, 18
+# section 3: surface, triangle, cell, cuts, side, position, normal, area, photons, sums, irradiance, object, before, after
+RECORD = struct.Struct("<3I2H3f2HfI3q3fH2B")
+SURFACE, TRIANGLE, CELL, CUTS, SIDE, POSITION, NORMAL, AREA, PHOTONS, SUMS, IRRADIANCE, OBJECT, BEFORE, AFTER = 0, 1, 2, 3, 4, 5, 8, 10, 11, 12, 15, 18, 19, 20
 END = "<QQ"                                     # section 4, without mark and chain
 KINDS = ["direct", "caustic", "indirect"]
 KEYS = ["kinds", "origin", "cell", "unit", "filter"]
+SINCE = {"holds": 1, "jump": 1}                 # minor versions
 
 
 def positive(text):
@@ -30,6 +31,8 @@ RULES = {
     "kinds": lambda v: v != "" and ",".join(k for k in KINDS if k in v.split(",")) == v,
     "cell": positive,
     "unit": positive,
+    "holds": lambda v: v in ("frame", "counts", "windows"),
+    "jump": lambda v: v == "yes",
     "filter": lambda v: v == "none" or (v.split(" ")[0] in ("box", "gaussian", "bilateral") and v.count(" ") == 1 and positive(v.split(" ")[1])),
 }
 
@@ -42,8 +45,11 @@ class Mesh:
 
 
 def read_meshirrad(path):
-    header, history, blocks, end = read_container(path, MAGIC, MARK, KEYS, RULES, lambda h: [RECORD.size], END)
+    header, history, blocks, end = read_container(path, MAGIC, MARK, KEYS, RULES, lambda h: [RECORD.size], END, SINCE)
     m = Mesh(header, history, [])
+    holds = header.get("holds", "frame")
+    if holds == "counts" and header["filter"] != "none" or "jump" in header and holds != "counts":
+        refuse(0, "counts have no filter, and they alone say that light jumps")
     last, following = None, None               # side done last; (side, cuts, cell) that must come next
     for offset, _, parts in blocks:
         for i, e in enumerate(RECORD.iter_unpack(parts[0])):
@@ -51,7 +57,7 @@ def read_meshirrad(path):
             in_order = (side, e[CUTS], e[CELL]) == following if following else e[CELL] == 0 and (last is None or side > last)
             numbers = e[POSITION:POSITION + 3] + (e[AREA],) + e[IRRADIANCE:IRRADIANCE + 3]
             good = (1 <= e[CUTS] <= 1024 and e[SIDE] <= 1 and all(map(math.isfinite, numbers)) and min(numbers[3:]) >= 0 and
-                    max(e[NORMAL:NORMAL + 2]) <= 65534 and min(e[SUMS:SUMS + 3]) >= 0 and e[-1] == 0)
+                    max(e[NORMAL:NORMAL + 2]) <= 65534 and min(e[SUMS:SUMS + 3]) >= 0 and (holds == "windows" or e[BEFORE] == e[AFTER] == 0))
             if not (in_order and good):
                 refuse(offset + RECORD.size * i, "element out of range or order")
             last, following = side, None if e[CELL] + 1 == e[CUTS] ** 2 else (side, e[CUTS], e[CELL] + 1)
@@ -68,7 +74,7 @@ def totals(m):
 def encode_meshirrad(m):
     """The bytes of a file, in blocks of 65536."""
     blocks = [(len(some), [b"".join(RECORD.pack(*e) for e in some)]) for some in cut(m.elements)]
-    return encode_container(MAGIC, MARK, KEYS, m.header, m.history, blocks, struct.pack(END, *totals(m)))
+    return encode_container(MAGIC, MARK, KEYS + list(SINCE), m.header, m.history, blocks, struct.pack(END, *totals(m)), int("holds" in m.header))
 
 
 def write_meshirrad(path, m):

@@ -77,16 +77,24 @@ constexpr ManualText kTexts[] = {
      "\n"
      "A range of frames keeps the samples in memory and writes those of each frame; --resume goes on after the last one that is whole. Each frame alone, "
      "with --previous, gives the same files. Points of all frames must be made with the same options: those on what stands have the "
-     "same places then.",
+     "same places then.\n"
+     "\n"
+     "gather-temporal density SCENE --photons FILE -o FILE makes light textures from the photons of many frames instead: each element of the surfaces takes "
+     "those of as many frames before and after as its light stands still (docs/methods/density.md). Its options: gather-temporal density --help.",
      ".irradpoints: light on all surfaces, read (formats/irradpoints/irradpoints.md)\n"
      ".radsamples: records with their samples (formats/radsamples/radsamples.md)\n"
-     ".irradcache: the records of a frame (formats/irradcache/irradcache.md)",
+     ".irradcache: the records of a frame (formats/irradcache/irradcache.md)\n"
+     ".photons, .meshirrad: read and written by gather-temporal density (formats/meshirrad/meshirrad.md)",
      "gather-temporal final room.glb --frames 0-23 --points p.####.irradpoints --size 640x360 -o s.####.radsamples "
      "--cache c.####.irradcache\n"
      "# One frame after the other, as make does.\n"
      "gather-temporal final room.glb --frame 0 --points p.0000.irradpoints --size 640x360 -o s.0000.radsamples --cache c.0000.irradcache\n"
      "gather-temporal final room.glb --frame 1 --points p.0001.irradpoints --size 640x360 --previous s.0000.radsamples -o s.0001.radsamples "
-     "--cache c.0001.irradcache",
+     "--cache c.0001.irradcache\n"
+     "# From the photons of many frames: quick and quiet previews.\n"
+     "photon-trace room.glb --frames 0-47 --photons 25k --seed-mode frame --kinds indirect -o p.####.photons\n"
+     "gather-temporal density room.glb --frames 0-47 --photons p.####.photons -o d.####.meshirrad\n"
+     "frame-render room.glb --frames 0-47 --size 640x360 --meshirrad d.####.meshirrad -o f.####.exr",
      "irradcache-build frame-render tempolux-info"},
     {"frame-render",
      "Traces the pixels of a frame: direct light is sampled at the lights, indirect light is read from an irradiance "
@@ -123,22 +131,21 @@ constexpr ManualText kTexts[] = {
      "ibr-warp left.exr --view right.exr -o warped.exr --mask why.exr",
      "frame-render aqm-compare tempolux-info"},
     {"st-filter",
-     "Takes noise out of a frame of few samples: light is collected from the frames before and after along the pixel flow and a plane is fitted "
-     "to it around each pixel. A pixel counts if it sees the same surface (id.object, Z, N) and differs by no more than both "
-     "pixels' noise explains. Noise is told by the channels variance or diffuse.variance, or by neighbours where samples is below "
-     "2. Where albedo is there light alone is filtered, not textures. Emission and specular pass: frame-render --for-filter gives pixels that show "
-     "mirrors and glass more samples. With coverage edges are put "
-     "together from the surfaces that a pixel sees, else they stay as they are.\n"
+     "Takes noise out of a frame of few samples: planes are fitted to the light around each pixel, in its own frame and in frames before and after "
+     "along the pixel flow. A pixel counts if it sees the same surface (id.object, Z, N); in large windows it counts as far as its value agrees. Two halves of the "
+     "light, LAYER plus and less LAYER.noise (frame-render --channels halves), say what each candidate errs by; where the samples err less they stay. Where albedo is "
+     "there light alone is filtered, not textures. Emission and specular are filtered by what mirrors and glass show (channels seen). With coverage edges are put "
+     "together from the surfaces that a pixel sees.\n"
      "\n"
-     "Frames of other programs, which know neither variance nor samples, are filtered as far as a viewer cannot see it.\n"
+     "Frames of other programs get halves from their variance, or from what neighbours differ by where they have albedo; without either they stay as they are.\n"
      "\n"
      "st-filter mesh SCENE --photons FILE -o FILE makes light textures instead: photons are counted by small triangles of the surfaces and smoothed "
      "along them; frame-render --meshirrad reads them (docs/methods/light_textures.md). Its options: st-filter mesh --help.",
      "frame .exr: read and written (formats/frames/frames.md)\n"
      "flow .exr: where pixels go and came from (formats/flow/flow.md)\n"
      ".meshirrad: written by st-filter mesh (formats/meshirrad/meshirrad.md)",
-     "frame-render room.glb --frames 0-47 --spp 2 --for-filter --pixel-error 0.016 --seed-mode frame --irradcache c.####.irradcache "
-     "--channels RGBA,layers,Z,N,id,albedo,motion,coverage,samples -o f.####.exr\n"
+     "frame-render room.glb --frames 0-47 --spp 4 --pixel-error 0.016 --seed-mode frame --irradcache c.####.irradcache "
+     "--channels RGBA,layers,Z,N,id,albedo,motion,coverage,halves,seen -o f.####.exr\n"
      "st-filter f.####.exr --frames 0-47 -o filtered.####.exr\n"
      "# One frame, by its five files.\n"
      "st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o filtered.0010.exr\n"

@@ -1,4 +1,4 @@
-// Final gathering against the half-plane emitter of algorithms.md 8.2 and the furnace.
+// Final gathering against the half-plane emitter of docs/methods/formulas.md and the furnace.
 #include "lib/gather/final_gather.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Light textures: even light stays even to the last element of a wall, walls do not mix, flux is kept, adding and taking away are inverses.
+// Light textures: even light stays even to the last element of a wall, walls do not mix, flux is kept, sums have no order.
 #include "lib/gather/mesh_elements.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ class LightTexture : public testing::Test {
   }
   /// A photon on each side of each triangle, so that all elements are listed; only those of inner sides.
   MeshSums full() {
-    MeshSums sums(*tracer_, kCell, 1e-9);
+    MeshSums sums(*tracer_, cuts_, 1e-9);
     std::vector<formats::Photon> some;
     for (int i = 0; i < 3000; ++i) {
       const PathRandom random(7, std::uint64_t(i));
@@ -55,13 +55,14 @@ class LightTexture : public testing::Test {
     return sums;
   }
   std::vector<formats::MeshElement> texture(const std::vector<formats::Photon>& photons, const MeshFilter& filter) {
-    MeshSums sums(*tracer_, kCell, 1e-12);
+    MeshSums sums(*tracer_, cuts_, 1e-12);
     sums.add(photons, {});
     return light_texture(room_.frame(), sums, filter);
   }
 
   test::HandMadeScene room_;
   std::unique_ptr<Tracer> tracer_;
+  MeshCuts cuts_{kCell, {&room_.frame()}};
 };
 
 TEST_F(LightTexture, EvenLightStaysEvenAndWallsDoNotMix) {
@@ -95,35 +96,43 @@ TEST_F(LightTexture, TheBilateralFilterKeepsFluxAndEdges) {
   EXPECT_GT(middle(MeshFilter::Kind::gaussian, flux), 1.35);   // 1 + 3 x share of a Gaussian beyond its deviation, .16
 }
 
-TEST_F(LightTexture, TakingAwayLeavesWhatWasThere) {
+TEST_F(LightTexture, SumsHaveNoOrder) {
   const auto all = photons([](Vec3 p) { return 1 + p.x * p.y; });
   const std::span<const formats::Photon> some(all.data(), all.size() / 3), rest(all.data() + some.size(), all.size() - some.size());
-  MeshSums both(*tracer_, kCell, 1e-12), one(*tracer_, kCell, 1e-12);
-  both.add(some, {});
-  both.add(rest, {});
-  both.add(some, {}, -1);
-  one.add(rest, {});
-  for (const auto& [side, cells] : both.cells()) {
-    const auto found = one.cells().find(side);
-    if (found != one.cells().end()) EXPECT_EQ(cells, found->second);
-    else
-      for (const auto& cell : cells) EXPECT_EQ(cell, MeshSums::Cell{});
-  }
+  MeshSums at_once(*tracer_, cuts_, 1e-12), in_turn(*tracer_, cuts_, 1e-12);
+  at_once.add(all, {});
+  in_turn.add(rest, {});
+  in_turn.add(some, {});
+  ASSERT_EQ(at_once.cells().size(), in_turn.cells().size());
+  for (const auto& [side, cells] : at_once.cells())
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      const MeshSums::Cell& other = in_turn.cells().at(side)[c];
+      EXPECT_EQ(cells[c].photons, other.photons);
+      EXPECT_EQ(cells[c].sums, other.sums);
+      EXPECT_NEAR(cells[c].squares, other.squares, 1e-12 * other.squares);
+    }
 }
 
+/// Light that is linear along the walls is read as it was put in: corners inside a wall have the mean of elements that lie symmetrically around
+/// them, and between them reading is linear, too. At the rim of a wall a corner has the mean of one side's elements alone.
 TEST_F(LightTexture, IsReadWhereItWasMade) {
   formats::MeshirradFile file;
+  file.header.cell = kCell;
   file.elements = texture(photons([](Vec3 p) { return 2 + p.z; }), {MeshFilter::Kind::none, 1});
-  const auto elements = file.elements;
-  const MeshLight light(std::move(file));
-  for (const formats::MeshElement& e : elements) {
+  const MeshLight light(file, room_.frame());
+  int inside = 0;
+  for (const formats::MeshElement& e : file.elements) {
     const auto n = formats::decode_normal(e.normal);
     const Vec3 normal{float(n[0]), float(n[1]), float(n[2])}, p{e.position[0], e.position[1], e.position[2]};
     Hit hit;
     ASSERT_TRUE(tracer_->intersect({p + normal * 0.01f, -normal, 0, 1}, hit));
-    EXPECT_EQ(light.irradiance(tracer_->surface_point(hit), normal).r, e.irradiance[0]);
+    const float irradiance = light.irradiance(tracer_->surface_point(hit), normal).r;
+    const bool rim = std::max({std::abs(p.x) * (1 - std::abs(normal.x)), std::abs(p.y) * (1 - std::abs(normal.y)), std::abs(p.z) * (1 - std::abs(normal.z))}) > 0.7f;
+    EXPECT_NEAR(irradiance, e.irradiance[0], rim ? 0.3 : 1e-3);
+    inside += !rim;
     EXPECT_EQ(light.irradiance(tracer_->surface_point(hit), -normal).r, 0);
   }
+  EXPECT_GT(inside, 100);
 }
 
 TEST_F(LightTexture, WidthsFollowFromThePhotons) {

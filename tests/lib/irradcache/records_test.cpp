@@ -235,12 +235,9 @@ TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {
 TEST(RecordStore, OneRecordAndNone) {
   RecordStore store;
   EXPECT_EQ(store.interpolate({0.5f, 0.5f, 0.5f}, {0, 1, 0}).weight, 0);
-  EXPECT_EQ(store.interpolate_relaxed({0.5f, 0.5f, 0.5f}, {0, 1, 0}).weight, 0);
   store.add(record_at({0.5f, 0.5f, 0.5f}, {0, 1, 0}, 0.1f, Rgb(2.0f)));
   EXPECT_EQ(store.interpolate({0.55f, 0.5f, 0.5f}, {0, 1, 0}).irradiance, Rgb(2.0f));
   EXPECT_EQ(store.interpolate({0.7f, 0.5f, 0.5f}, {0, 1, 0}).count, 0);
-  EXPECT_EQ(store.interpolate_relaxed({0.7f, 0.5f, 0.5f}, {0, 1, 0}).irradiance, Rgb(2.0f));
-  EXPECT_EQ(store.interpolate_relaxed({0.95f, 0.5f, 0.5f}, {0, 1, 0}).count, 0);
 }
 
 /// Five records in one place, and two one float apart: all count, the mean is theirs.

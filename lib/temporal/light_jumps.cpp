@@ -1,0 +1,66 @@
+#include "lib/temporal/light_jumps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tempolux {
+namespace {
+
+constexpr double kLeast = 1.0 / 16;          ///< the noise of irradiance under the spatial filter: what is smaller is not seen
+constexpr double kStandsOut = 2;             ///< of the steps around it: motion that starts or ends has a step of its own size beside it
+constexpr std::uint32_t kLooked = 64;        ///< vertices of a surface that are followed
+
+/// Power of the lamps, up to textures [W for lamps of W/sr and W/m^2/sr; suns count by their irradiance].
+double lamp_power(const SceneFrame& frame) {
+  double power = 0;
+  for (const PlacedLight& lamp : frame.lights) power += 4 * std::numbers::pi * double(luminance(lamp.light.intensity));
+  for (const Surface& s : frame.surfaces) {
+    const double emission = double(luminance(frame.materials[s.material].emission));
+    if (!(emission > 0)) continue;
+    double area = 0;
+    for (const auto& t : s.primitive->triangles) area += 0.5 * double(length(cross(s.position(t[1]) - s.position(t[0]), s.position(t[2]) - s.position(t[0]))));
+    power += std::numbers::pi * emission * area;
+  }
+  return power;
+}
+
+double step_of_lamps(const SceneFrame& a, const SceneFrame& b) {
+  const double from = lamp_power(a), to = lamp_power(b), most = std::max(from, to);
+  return most > 0 ? std::abs(to - from) / most : 0;
+}
+
+/// How far the vertices of a surface go, in diagonals of their box.
+double step_of_surface(const Surface& a, const Surface& b) {
+  const std::uint32_t count = std::uint32_t(a.primitive->positions.size()), stride = std::max(1u, count / kLooked);
+  Box3 box_a, box_b;
+  double furthest = 0;
+  for (std::uint32_t v = 0; v < count; v += stride) {
+    const Vec3 from = a.position(v), to = b.position(v);
+    box_a.add(from);
+    box_b.add(to);
+    furthest = std::max(furthest, double(length(to - from)));
+  }
+  const double size = double(std::max(box_a.diagonal(), box_b.diagonal()));
+  return size > 0 ? furthest / size : 0;
+}
+
+template <class Step>
+bool jumps(const FramesInARow& f, const Step& step) {
+  const double here = step(*f.last, *f.here);
+  if (!(here > kLeast)) return false;
+  const double around = (f.before_last ? step(*f.before_last, *f.last) : 0) + (f.next ? step(*f.here, *f.next) : 0);
+  return here > kStandsOut * around;
+}
+
+}  // namespace
+
+bool light_jumps(const FramesInARow& frames) {
+  if (!frames.last || !frames.here) return false;
+  if (jumps(frames, step_of_lamps)) return true;
+  for (std::size_t s = frames.here->static_count; s < frames.here->surfaces.size(); ++s)
+    if (jumps(frames, [&](const SceneFrame& a, const SceneFrame& b) { return step_of_surface(a.surfaces[s], b.surfaces[s]); })) return true;
+  return false;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,331 @@
+#include "lib/temporal/photon_windows.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <unordered_map>
+
+#include "formats/octahedral.h"
+#include "lib/core/parallel.h"
+#include "lib/core/random.h"
+#include "lib/gather/mesh_elements.h"
+
+namespace tempolux {
+namespace {
+
+constexpr std::size_t kChunk = 1024;         ///< elements in a piece of work
+constexpr int kRegions = 3;                  ///< whose tests can reject stationary light: element, kernel, ring
+/// Photons that a block must be expected to hold for a test: below, the tails of its distribution are not a Gaussian's.
+constexpr double kPhotonsInBlock = 8;
+
+constexpr double kLargestSum = 0x1p55;      ///< of a frame, so that those of 255 frames do not overflow
+
+/// Blocks of 1, 1, 2, 4, 8 ... frames.
+int block_end(int distance) { return distance == 0 ? 1 : 2 * distance; }
+
+/// x with P(|Gaussian| > x) = p.
+double two_sided_quantile(double p) {
+  double low = 0, high = 40;
+  for (int i = 0; i < 80; ++i) {
+    const double middle = (low + high) / 2;
+    (std::erfc(middle / std::numbers::sqrt2) > p ? low : high) = middle;
+  }
+  return low;
+}
+
+/// The added frames: some on each side of the window.
+struct Added {
+  int before = 0, after = 0;
+  int frames() const { return before + after; }
+};
+
+struct Sides {
+  bool before = false, after = false;
+  bool any() const { return before || after; }
+};
+
+/// How a window grows to one side: distances of the last frame of each step from the middle, each frame a step, and the blocks that follow.
+template <class Visit>
+void each_step(int reach, const Visit& visit) {
+  for (int start = 0; start < reach; start = block_end(start)) {
+    const int end = std::min(block_end(start), reach);
+    for (int distance = start; distance < end; ++distance) visit(distance, distance + 1);
+    if (end > start + 1) visit(start, end);
+  }
+}
+
+/// Tests that a region of so many photons a frame gets while a window grows to its full size.
+int tests_of(double rate, const Added& most, int reach) {
+  int tests = 0;
+  each_step(reach, [&](int from, int to) {
+    const auto within = [](int distance, int side) { return std::min(distance, side); };
+    const int old = 1 + within(from, most.before) + within(from, most.after), added = 1 + within(to, most.before) + within(to, most.after) - old;
+    tests += added > 0 && std::min(old, added) * rate >= kPhotonsInBlock;
+  });
+  return tests;
+}
+
+class Grower {
+ public:
+  Grower(const WindowSeries& series, int at, int frames, const Added& most, const WindowThresholds& thresholds) : series_(series), at_(at) {
+    int tests = 0;
+    for (const HitSeries* region : {series.element, series.kernel, series.ring})
+      tests += tests_of(region->block(0, frames - 1).photons / frames, most, thresholds.reach());
+    threshold_ = thresholds.of(tests);
+  }
+
+  /// On which sides may these frames join the window? If both sides together differ from it, that one may that does not by itself; if
+  /// neither does by itself, light passes through an extreme, and neither may.
+  Sides sides(const Window& window, const Added& added) const {
+    if (added.frames() == 0 || !differs(window, added)) return {true, true};
+    const bool before = added.before > 0 && differs(window, {added.before, 0}), after = added.after > 0 && differs(window, {0, added.after});
+    return {after && !before && added.before > 0, before && !after && added.after > 0};
+  }
+
+ private:
+  /// Does the light of these further frames differ from that of the window?
+  bool differs(const Window& window, const Added& added) const {
+    const HitBlock kernel = all_of(*series_.kernel, window, added);
+    return rejects(*series_.element, window, added) || rejects(*series_.kernel, window, added) ||
+           (rejects(*series_.ring, window, added) && matters(*series_.ring, window, added, kernel)) ||
+           (rejects(*series_.frame, window, added) && matters(*series_.frame, window, added, kernel));
+  }
+  HitBlock old_of(const HitSeries& s, const Window& w) const { return s.block(at_ - w.before, at_ + w.after); }
+  HitBlock added_of(const HitSeries& s, const Window& w, const Added& a) const {
+    HitBlock block;
+    if (a.before > 0) block += s.block(at_ - w.before - a.before, at_ - w.before - 1);
+    if (a.after > 0) block += s.block(at_ + w.after + 1, at_ + w.after + a.after);
+    return block;
+  }
+  HitBlock all_of(const HitSeries& s, const Window& w, const Added& a) const { return old_of(s, w) + added_of(s, w, a); }
+
+  bool rejects(const HitSeries& s, const Window& w, const Added& a) const {
+    const int old_frames = w.before + 1 + w.after;
+    const HitBlock old = old_of(s, w), added = added_of(s, w, a);
+    const double p = double(std::min(old_frames, a.frames())) / (old_frames + a.frames());
+    if ((old.photons + added.photons) * p < kPhotonsInBlock) return false;
+    return std::abs(block_contrast(old, old_frames, added, a.frames())) > threshold_;
+  }
+  /// Would the mean of the region shift by more than the noise that the kernel's mean loses with the added frames?
+  bool matters(const HitSeries& s, const Window& w, const Added& a, const HitBlock& kernel) const {
+    const double old_frames = w.before + 1 + w.after, frames = old_frames + a.frames();
+    const HitBlock all = all_of(s, w, a);
+    if (!(all.flux > 0) || !(kernel.flux > 0)) return all.flux > 0;
+    const double shift = old_of(s, w).flux / all.flux * frames / old_frames - 1;   // of the mean, relative
+    return shift * shift > kernel.squares / (kernel.flux * kernel.flux) * (frames / old_frames - 1);
+  }
+
+  const WindowSeries& series_;
+  int at_;
+  double threshold_ = 0;
+};
+
+/// Of each element its photons by frame: entries [first[i], first[i + 1]).
+struct HitTable {
+  struct Entry {
+    const formats::MeshElement* counted;
+    std::uint32_t frame;
+  };
+  std::vector<std::size_t> first;
+  std::vector<Entry> entries;
+  std::span<const Entry> of(std::size_t element) const { return {entries.data() + first[element], first[element + 1] - first[element]}; }
+};
+
+HitTable table_of(std::span<const FrameCounts* const> frames, const std::vector<formats::MeshElement>& elements) {
+  std::unordered_map<std::uint64_t, std::size_t> sides;   // first element
+  const auto key = [](const formats::MeshElement& e) { return std::uint64_t(e.surface) << 32 | std::uint64_t(e.triangle) << 1 | e.side; };
+  for (std::size_t i = 0; i < elements.size(); i += std::size_t(elements[i].cuts) * elements[i].cuts) sides.emplace(key(elements[i]), i);
+  const auto each = [&](const auto& visit) {
+    for (std::uint32_t f = 0; f < frames.size(); ++f)
+      for (const formats::MeshElement& e : frames[f]->elements) {
+        const auto found = sides.find(key(e));
+        if (found == sides.end()) continue;   // it has no area now
+        if (elements[found->second].cuts != e.cuts) throw std::invalid_argument("collect_windows: a triangle is cut otherwise in frame " + std::to_string(frames[f]->frame));
+        visit(found->second + e.cell, HitTable::Entry{&e, f});
+      }
+  };
+  HitTable table;
+  table.first.assign(elements.size() + 1, 0);
+  each([&](std::size_t i, const HitTable::Entry&) { ++table.first[i + 1]; });
+  for (std::size_t i = 0; i < elements.size(); ++i) table.first[i + 1] += table.first[i];
+  table.entries.resize(table.first.back());
+  std::vector<std::size_t> next(table.first.begin(), table.first.end() - 1);
+  each([&](std::size_t i, const HitTable::Entry& entry) { table.entries[next[i]++] = entry; });
+  return table;
+}
+
+/// The unit of an entry's counts.
+double unit_of(std::span<const FrameCounts* const> frames, const HitTable::Entry& entry) { return frames[entry.frame]->unit; }
+
+HitBlock hits_of(const formats::MeshElement& e, double unit) {
+  return {double(e.photons), unit * luminance(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2]))), unit * unit * e.squares()};
+}
+
+/// Regions of elements: those in a cube that face along one axis and belong to one object.
+class Regions {
+ public:
+  Regions(std::size_t frames, double edge) : frames_(frames), per_m_(1 / edge) {}
+  /// The region of an element, which it joins.
+  std::uint32_t add(const formats::MeshElement& e) {
+    const auto n = formats::decode_normal(e.normal);
+    std::size_t axis = 0;
+    for (std::size_t c = 1; c < 3; ++c)
+      if (std::abs(n[c]) > std::abs(n[axis])) axis = c;
+    std::uint64_t key = mix64(std::uint64_t(e.object) * 6 + axis * 2 + (n[axis] < 0));
+    for (std::size_t c = 0; c < 3; ++c) key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(e.position[c]) * per_m_))));
+    const auto [found, is_new] = numbers_.try_emplace(key, std::uint32_t(all_.size()));
+    if (is_new) all_.push_back({HitSeries(frames_), 0});
+    all_[found->second].area += double(e.area);
+    return found->second;
+  }
+  struct Region {
+    HitSeries series;
+    double area;                             ///< m^2
+  };
+  Region& operator[](std::uint32_t region) { return all_[region]; }
+  const Region& operator[](std::uint32_t region) const { return all_[region]; }
+  void sum_up() {
+    for (Region& r : all_) r.series.sum_up();
+  }
+
+ private:
+  std::size_t frames_;
+  double per_m_;
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
+  std::vector<Region> all_;
+};
+
+/// The regions around each element.
+class Surroundings {
+ public:
+  Surroundings(std::span<const FrameCounts* const> frames, const HitTable& table, const std::vector<formats::MeshElement>& elements, double edge)
+      : kernels_(frames.size(), edge), rings_(frames.size(), 3 * edge), all_(frames.size()), of_(elements.size()) {
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      of_[i] = {kernels_.add(elements[i]), rings_.add(elements[i])};
+      for (const HitTable::Entry& entry : table.of(i)) {
+        const HitBlock hits = hits_of(*entry.counted, unit_of(frames, entry));
+        kernels_[of_[i][0]].series.at(entry.frame) += hits;
+        rings_[of_[i][1]].series.at(entry.frame) += hits;
+        all_.at(entry.frame) += hits;
+      }
+    }
+    kernels_.sum_up();
+    rings_.sum_up();
+    all_.sum_up();
+  }
+  const HitSeries& kernel(std::size_t element) const { return kernels_[of_[element][0]].series; }
+  double kernel_area(std::size_t element) const { return kernels_[of_[element][0]].area; }
+  const HitSeries& ring(std::size_t element) const { return rings_[of_[element][1]].series; }
+  const HitSeries& all() const { return all_; }
+
+ private:
+  Regions kernels_, rings_;
+  HitSeries all_;
+  std::vector<std::array<std::uint32_t, 2>> of_;
+};
+
+/// The frames around `at` that no jump parts from it.
+std::pair<int, int> between_jumps(std::span<const FrameCounts* const> frames, int at) {
+  int first = at, last = at;
+  while (first > 0 && !frames[std::size_t(first)]->jump) --first;
+  while (last + 1 < int(frames.size()) && !frames[std::size_t(last) + 1]->jump) ++last;
+  return {first, last};
+}
+
+/// Writes the photons of the window into the element. Returns their flux in a frame [unit], for the area that the element has.
+Rgbd put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries, int now, const Window& window, bool changes_size, formats::MeshElement& e) {
+  e.before = std::uint8_t(window.before);
+  e.after = std::uint8_t(window.after);
+  Rgbd flux{0.0};
+  for (const HitTable::Entry& entry : entries) {
+    if (int(entry.frame) < now - window.before || int(entry.frame) > now + window.after) continue;
+    const formats::MeshElement& counted = *entry.counted;
+    const double size = changes_size && counted.area > 0 ? double(e.area) / double(counted.area) : 1;
+    e.photons += counted.photons;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double sum = unit_of(frames, entry) * double(counted.sums[c]);
+      e.sums[c] += std::llrint(std::min(sum, kLargestSum));
+      flux[int(c)] += size * sum;
+    }
+  }
+  return flux * (1 / double(window.before + 1 + window.after));
+}
+
+}  // namespace
+
+double block_contrast(const HitBlock& old, int old_frames, const HitBlock& added, int added_frames) {
+  const double p = double(added_frames) / (old_frames + added_frames), flux = old.flux + added.flux, squares = old.squares + added.squares;
+  if (!(squares > 0)) return 0;
+  const double z = (added.flux - p * flux) / std::sqrt(p * (1 - p) * squares);
+  const double skewness = (1 - 2 * p) / std::sqrt(p * (1 - p)) * std::sqrt(squares) / flux;
+  return z - skewness * (z * z - 1) / 6;
+}
+
+WindowThresholds::WindowThresholds(const WindowOptions& options) : reach_(options.reach) {
+  int most = 0;
+  each_step(reach_, [&](int, int) { most += kRegions; });
+  for (int tests = 0; tests <= most; ++tests)
+    by_tests_.push_back(two_sided_quantile(-std::expm1(std::log1p(-options.false_alarms) / std::max(1, tests))));
+}
+
+void HitSeries::sum_up() {
+  for (std::size_t i = 1; i < until_.size(); ++i) until_[i] += until_[i - 1];
+}
+
+Window grow_window(const WindowSeries& series, int at, int frames, const WindowThresholds& thresholds) {
+  const int reach = thresholds.reach();
+  const Added most{std::min(at, reach), std::min(frames - 1 - at, reach)};
+  const Grower grower(series, at, frames, most, thresholds);
+  Window window;
+  Sides open{most.before > 0, most.after > 0};
+  for (int start = 0; open.any() && start < reach; start = block_end(start)) {
+    const int end = std::min(block_end(start), reach);
+    const Window old = window;
+    for (int distance = start + 1; distance <= end; ++distance) {
+      const Added added{open.before ? std::max(0, std::min(distance, most.before) - window.before) : 0,
+                        open.after ? std::max(0, std::min(distance, most.after) - window.after) : 0};
+      const Sides sides = grower.sides(window, added);
+      open = {open.before && sides.before, open.after && sides.after};
+      if (sides.before) window.before += added.before;
+      if (sides.after) window.after += added.after;
+    }
+    if (end > start + 1) {
+      const Sides sides = grower.sides(old, {window.before - old.before, window.after - old.after});
+      if (!sides.before) window.before = old.before;
+      if (!sides.after) window.after = old.after;
+      open = {open.before && sides.before, open.after && sides.after};
+    }
+    open = {open.before && window.before < most.before, open.after && window.after < most.after};
+  }
+  return window;
+}
+
+CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::size_t at, std::uint32_t moving, const WindowOptions& options,
+                               std::vector<formats::MeshElement>& elements) {
+  const auto [first, last] = between_jumps(frames, int(at));
+  frames = frames.subspan(std::size_t(first), std::size_t(last - first + 1));
+  const int now = int(at) - first;
+  const HitTable table = table_of(frames, elements);
+  const Surroundings around(frames, table, elements, std::sqrt(4 * std::numbers::pi) * options.width);
+  const WindowThresholds thresholds(options);
+  const double widest = options.width * std::sqrt(std::max(1.0, (2 * options.reach + 1) * kPhotonsInKernel / kPhotonsInWindow));
+  CollectedLight result{std::vector<Rgbd>(elements.size(), Rgbd(0.0)), std::vector<float>(elements.size(), 0)};
+  parallel_chunks(elements.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const HitSeries& kernel = around.kernel(i);
+      if (kernel.block(0, int(frames.size()) - 1).photons == 0) continue;
+      HitSeries own(frames.size());
+      for (const HitTable::Entry& entry : table.of(i)) own.at(entry.frame) += hits_of(*entry.counted, unit_of(frames, entry));
+      own.sum_up();
+      const Window window = grow_window({&own, &kernel, &around.ring(i), &around.all()}, now, int(frames.size()), thresholds);
+      result.flux[i] = put_window(frames, table.of(i), now, window, elements[i].surface >= moving, elements[i]);
+      const double photons = kernel.block(now - window.before, now + window.after).photons;
+      result.widths[i] = float(photons > 0 ? std::clamp(kernel_width(around.kernel_area(i), photons, kPhotonsInWindow), options.width, widest) : widest);
+    }
+  });
+  return result;
+}
+
+}  // namespace tempolux
