@@ -21,6 +21,7 @@ class KnownLight {
  public:
   const RecordStore* records = nullptr;   ///< kind indirect where the eye looks
   const MeshLight* mesh = nullptr;        ///< in place of records: a light texture of kind indirect
+  bool mesh_has_caustic = false;          ///< and of kind caustic: all of it counts as indirect then
   const LocalisedLight* localised = nullptr;   ///< in place of records: of what stands, and of what movers change
   const PointLookup* points = nullptr;    ///< all kinds where a ray from a matte surface ends
   const PhotonLight* photons = nullptr;   ///< kind caustic; indirect, too, if it has it and there are no records
@@ -38,9 +39,9 @@ class KnownLight {
   /// record is near: a ray of the hemisphere is to find it. `direct_view`: the camera ray itself met the place; then records with
   /// larger radii are tried before, as one of the pixel's own is a fraction of a pixel away.
   std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const;
-  bool has_caustic() const { return photons != nullptr; }
-  /// Irradiance of kind caustic; only if has_caustic().
-  Rgb caustic(Vec3 position, const LitSurface& surface) const { return photons->caustic(position, surface); }
+  bool has_caustic() const { return photons || (mesh && mesh_has_caustic); }
+  /// Irradiance of kind caustic; only if has_caustic(). 0 where indirect() has it.
+  Rgb caustic(Vec3 position, const LitSurface& surface) const { return photons ? photons->caustic(position, surface) : Rgb(0.0f); }
   /// What a point tells of the light at a hit.
   struct Told {
     Rgb irradiance{0.0f};
