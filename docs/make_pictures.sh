@@ -1,5 +1,5 @@
 #!/bin/sh
-# Make the pictures of README.md again, into docs/images: sh docs/make_pictures.sh [BIN]
+# Make the pictures of README.md and docs/chain.md again, into docs/images: sh docs/make_pictures.sh [BIN]
 # Run at the top of the tree; BIN is the folder with the tools. Takes about four CPU minutes; all from scenes of the tree.
 bin=${1:-build/release/bin} out=docs/images scene=pipelines/scenes/S2_cornell_moving.glb
 work=$(mktemp -d) || exit 3
@@ -8,14 +8,9 @@ set -e
 mkdir -p $out
 info="$bin/tempolux-info" draw='python3 -B docs/draw.py'
 
-# The demo's frames, every sixth.
-for f in 0 6 12 18 24 30 36 42; do
-  "$bin/photon-trace" $scene --frame $f --photons 200k --kinds indirect -o "$work/p.photons"
-  "$bin/irradcache-build" $scene --frame $f --photons "$work/p.photons" --size 640x360 --keep-points "$work/p.irradpoints" -o "$work/c.irradcache"
-  "$bin/frame-render" $scene --frame $f --size 640x360 --irradcache "$work/c.irradcache" --points "$work/p.irradpoints" \
-    -o "$work/$(printf %04d $f).exr"
-done
-"$info" --sheet $out/demo.png --columns 4 --tile 240 "$work"/00??.exr
+# The demo's frames, every sixth: as the README's command makes them.
+make -s -f Makefile.example demo BIN="$(cd "$bin" && pwd)" OUT="$work/demo" FRAMES=0-47x6
+"$info" --sheet $out/demo.png --columns 4 --tile 240 "$work"/demo/frames/00??.exr
 
 # One frame through the chain, at 320x180.
 "$bin/scene-plan" $scene --frames 0-47 -o "$work/plan" -q

@@ -15,6 +15,6 @@ for folder in state shown stands photons moved refined stands_points points spli
   rmdir "$folder" 2> /dev/null
 done
 find frames -maxdepth 1 -type f -regextype egrep -regex 'frames/-?[0-9]+[.](exr|png)' -delete 2> /dev/null
-rm -f plan.mk plan.json sheet.png walk.log
+rm -f plan.mk plan.json sheet.png walk.log film.mp4 compare.html
 rmdir frames "$OUT" 2> /dev/null
 exit 0

@@ -8,20 +8,25 @@ absolute() {   # absolute NAME: the variable, if it names a file, by its whole p
   case $value in '' | /* | none) ;; *) eval "$1=\$PWD/\$value" ;; esac
   export "${1?}"
 }
-[ -n "$SCENE" ] || SCENE=$TOP/pipelines/scenes/S2_cornell_moving.glb
+[ -n "$SCENE" ] || SCENE=$TOP/pipelines/scenes/evening.glb
 if [ -z "$BIN" ]; then
   if [ -f "$TOP/CMakeLists.txt" ]; then BIN=$TOP/build/release/bin; else BIN=$(command -v scene-plan); BIN=${BIN%/*}; fi
 fi
-for name in SCENE OUT BIN ENVIRONMENT VOLUME; do absolute $name; done
-goal=$1
+for name in SCENE OUT OTHER BIN ENVIRONMENT VOLUME; do absolute $name; done
+goal=$1 film=
 case $goal in "${OUT#"$PWD/"}"/*) goal=${goal#"${OUT#"$PWD/"}/"} ;; esac
 dry=; case "${MAKEFLAGS%% *}" in *n*) [ "${MAKEFLAGS#-}" = "$MAKEFLAGS" ] && dry=yes ;; esac
-if [ "$goal" = tidy ]; then exec "$BIN/scene-plan" --tidy "$OUT"; fi
+export PIPELINES="$TOP/pipelines"
+case $goal in
+  tidy) exec "$BIN/scene-plan" --tidy "$OUT";;
+  compare) exec sh "$PIPELINES/compare.sh" "$OUT" "$OTHER" "$OUT/compare.html";;
+  film) film=yes goal=demo;;
+esac
 
 # The wish as options. What is empty is left to the preset.
 set -- "$SCENE" --frames "$FRAMES" --size "$SIZE" --quality "$QUALITY" --channels "$CHANNELS" --camera "$CAMERA" \
   --method "$METHOD" --filter "$FILTER" --indirect "$INDIRECT" --moving "$MOVING" --split "$SPLIT" --strategy "$STRATEGY" \
-  --key-distance "$KEY_DISTANCE" --report "$(echo "$REPORT_FRAMES" | tr " " ,)" --reference-samples "$PATHS"
+  --key-distance "$KEY_DISTANCE" --report "$(echo "$REPORT_FRAMES" | tr " " ,)" --reference-samples "$REFERENCE_SAMPLES"
 for pair in update:UPDATE refine:REFINE photons:PHOTONS rays:RAYS pixel-error:ERROR halve-above:THRESHOLD light-units:LIGHT_UNITS \
   environment-color:SKY environment:ENVIRONMENT volume:VOLUME point-words:POINTS record-words:CACHE pixel-words:PIXELS \
   smoke-words:SMOKE texture-words:TEXTURES; do
@@ -31,13 +36,25 @@ done
 case $SURFACES in gather) ;; textures) set -- "$@" --textures ;; *) echo "SURFACES=$SURFACES: gather or textures" >&2; exit 2 ;; esac
 # shellcheck disable=SC2086
 set -- "$@" $VOLUME_OPTIONS $TIME --recipes "$TOP/pipelines/stages.mk" --recipes "$TOP/pipelines/walkthrough.sh"
-if [ "$goal" = estimate ]; then exec "$BIN/scene-plan" "$@" --estimate --jobs 2; fi
 
-rules=$TOP/pipelines/stages.mk plan=plan.mk folder=$OUT
-if [ -n "$dry" ]; then   # make -n: plan aside, leave no trace
-  [ -x "$BIN/scene-plan" ] || { echo "$RUN $BIN/scene-plan $* -o $OUT"; exit; }
+export PIPELINES="$TOP/pipelines" RULES="$TOP/pipelines/stages.mk"
+plan=plan.mk folder=$OUT
+aside() {   # a folder that is removed at the end, by a signal too
   aside=$(mktemp -d) || exit 3
   trap 'rm -rf "$aside"' EXIT
+  trap 'exit 130' INT TERM
+}
+makes() { goal=$1; shift; ${MAKE:-make} --no-print-directory -f "$RULES" PLAN="$plan" "$@" "$goal"; }
+estimate() {   # options of scene-plan: the first picture, small, at two sizes
+  aside
+  $RUN "$BIN/scene-plan" "$@" --samples "$aside" || exit
+  for plan in small.mk large.mk; do PROGRESS='' makes demo -s -C "$aside" > /dev/null || exit; done
+  "$BIN/scene-plan" --estimate "$aside"
+}
+if [ "$goal" = estimate ]; then estimate "$@"; exit; fi
+if [ -n "$dry" ]; then   # make -n: plan aside, leave no trace
+  [ -x "$BIN/scene-plan" ] || { echo "$RUN $BIN/scene-plan $* -o $OUT"; exit; }
+  aside
   echo "$RUN $BIN/scene-plan $* -o $OUT"
   "$BIN/scene-plan" "$@" -o "$aside" -q || exit
   plan=$aside/plan.mk
@@ -46,5 +63,21 @@ else
   # shellcheck disable=SC2086
   $RUN "$BIN/scene-plan" "$@" -o "$OUT" || exit
 fi
-export PIPELINES="$TOP/pipelines" RULES="$rules"
-[ "$goal" = plan ] || ${MAKE:-make} --no-print-directory -C "$folder" -f "$rules" PLAN="$plan" "$goal"
+[ "$goal" = plan ] && exit
+if [ -n "$dry" ]; then makes "$goal" -C "$folder"; exit; fi
+
+# Which commands will run: those that make -n shows. progress.sh counts them.
+PROGRESS=$(mktemp) BEGAN=$(date +%s)
+trap 'rm -f "$PROGRESS"' EXIT
+MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n 2> /dev/null | sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' > "$PROGRESS"
+TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
+: > "$PROGRESS"
+export TOTAL WEIGHT PROGRESS BEGAN
+[ "$TOTAL" = 0 ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" begin)
+if [ "$TOTAL" -ge 500 ]; then   # hours and disk are worth short runs of each stage
+  (estimate "$@")
+  df -h "$OUT" | awk 'NR == 2 { print "free where OUT is: " $4 }'
+fi
+makes "$goal" -C "$folder" || exit
+[ "$TOTAL" = 0 ] || [ "$goal" != demo ] || (cd "$OUT" && sh "$PIPELINES/progress.sh" end)
+[ -z "$film" ] || { cd "$OUT" && sh "$PIPELINES/film.sh"; }

@@ -15,7 +15,7 @@ scene  = "$$SCENE" $(words) $(shared)
 seen   = $(scene) --camera "$$CAMERA"
 quiet  = $(if $V,,@)
 run    = $(quiet)$(say)$(RUN) "$$BIN"
-say    = $(if $V,,echo "$(or $(notdir $@),$@)" &&)
+say    = $(if $V,,sh "$$PIPELINES/progress.sh" say $@ &&)# counted by run.sh before
 .SUFFIXES:
 .PHONY: demo report
 demo: $(frames) $(previews) sheet.png $(log)
@@ -70,9 +70,12 @@ keys/%.exr:
 	$(run)/frame-render $(seen) -o $@ --stats keys/$*.json
 # Between keys: an interval is warped or halved (walkthrough.sh says how); then each of its frames is warped and completed.
 walk/%.done:
-	+$(quiet)MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
+	$(walk_rule)
 walked/%.exr:
-	$(quiet)RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
+	$(quiet)$(say)RUN='$(RUN)' SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" frame $@ $(words)
+# make runs a line that names $(MAKE) even for -n: here it stands in a variable.
+walk_rule = $(if $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS)))),,+)$(quiet)$(say)MAKE_FILES='$(MAKE) -f "$$RULES" PLAN="$(PLAN)"' RUN='$(RUN)' \
+  SHARED="$(shared)" sh "$$PIPELINES/walkthrough.sh" interval $@ $(words)
 
 # A frame shows a picture; shown/FRAME-KEY says which. Frames that show the same are copies of one.
 picture = $(filter-out shown/%,$|)
@@ -85,7 +88,7 @@ shown/exposure-%:
 exposure = --exposure "$$(cat $(filter shown/exposure-%,$|))"
 preview = $(RUN) "$$BIN"/tempolux-info --png frames/.$1.$$$$.png $(exposure) $(picture) && \
   $(publish) 'rm -f shown/$1-*.png; mv -f frames/.'$1.$$$$'.png frames/$1.png && touch $2'
-sheet = rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && touch $1
+sheet = rm -f shown/sheet-*; $(RUN) "$$BIN"/tempolux-info --sheet sheet.png --columns 8 --tile 160 $(exposure) $(marks) $(frames) && $(RUN) "$$BIN"/tempolux-info --account $(frames) && touch $1
 # A walkthrough's keys have a border in the sheet; its log says where keys were placed and why.
 marks = $(if $(log),$$(sh "$$PIPELINES/walkthrough.sh" marks))
 walk_log = rm -f shown/walk-*; sh "$$PIPELINES/walkthrough.sh" log $(intervals) > walk.log && touch $1

@@ -2,12 +2,13 @@
 # walkthrough.sh -- what METHOD=walkthrough does beyond rules (walkthrough.md). Run inside OUT by stages.mk.
 #
 #     walkthrough.sh interval TARGET KEY_A KEY_B MIDDLE KEY_MIDDLE THRESHOLD LEFT RIGHT
-#     walkthrough.sh frame TARGET INTERVAL FRAME OPTION...
+#     walkthrough.sh frame TARGET INTERVAL FRAME CHANNELS OPTION...
 #     walkthrough.sh log INTERVAL...          what was decided, in the order of frames
 #     walkthrough.sh marks                    by walk.log the frames that are keys, as an option for the sheet
 #
 # An interval lies between two key pictures; LEFT and RIGHT are its halves, "-" where nothing lies between. TARGET says "warp", or
-# "split" if the picture of the middle frame became a key. A frame looks there which keys it is warped from. OPTIONs are its light.
+# "split" if the picture of the middle frame became a key. A frame looks there which keys it is warped from. OPTIONs are its light. CHANNELS: what of it the
+# filter writes; "-": it is not filtered.
 # The environment has BIN, RUN, SHARED, CAMERA and MAKE_FILES, the command that makes files of the plan.
 set -e
 command=$1; shift
@@ -21,28 +22,25 @@ warp() { tool ibr-warp "$@" --scene "$SCENE" --camera "$CAMERA"; }
 
 sum_of() { name=$1; shift; total=0; for file; do total=$((total + $(count_of "$name" "$file"))); done; echo "$total"; }
 
-# Both keys warped to frame $1 in folder $2: exit 1 if they differ by more than $threshold where neither is masked. Adds to $differences. A
-# threshold in percent is of AQM.
+# Both keys warped to frame $1 in folder $2: exit 1 if a viewer sees in more than the share $threshold of what is not masked what either errs by. Adds the share
+# to $seen, in percent.
 differ() {
   warp "$a" "$b" --frame "$1" -o "$2/w.exr" --mask "$2/why.exr" --flow "$2/flow.exr" --separate --compression none --stats "$2/$1.warp.json" || exit
   [ "$(count_of traced "$2/$1.warp.json")" -lt "$(count_of pixels "$2/$1.warp.json")" ] || return 0
-  case $threshold in *%) figure=percent; set -- "$@" --flow "$2/flow.exr" ;; *) figure=relmse; set -- "$@" --fail-by relmse ;; esac
-  frame=$1 folder=$2 code=0; shift 2
-  $RUN "$BIN/aqm-compare" "$folder/w_1.exr" "$folder/w_2.exr" --except "$folder/why.exr" --fail-above "$threshold" --quiet --json "$folder/compare.json" \
-    "$@" || code=$?
+  code=0
+  $RUN "$BIN/aqm-compare" "$2/w_1.exr" "$2/w_2.exr" --either --flow "$2/flow.exr" --except "$2/why.exr" --fail-by aqm --fail-above "$threshold" \
+    --quiet --json "$2/compare.json" || code=$?
   [ $code -le 1 ] || exit $code
-  differences="$differences $(count_of $figure "$folder/compare.json")"
+  seen="$seen $(count_of percent "$2/compare.json")"
   return $code
 }
 
-# Do the keys differ in the middle, or, as AQM judges, after one, two or three quarters of the interval? How much is masked there?
+# Is what the keys give for frames at one, two and three quarters of the interval as good as rendered? How much is masked there?
 decide() {
-  a=$1 b=$2 middle=$3 threshold=$4 try=$5 differences= verdict=warp causes= distant=0
-  first=$(number "$(frame_of "$a")") last=$(number "$(frame_of "$b")") at=$(number "$middle") unit=
-  case $threshold in *%) at="$(((3 * first + last) / 4)) $at $(((first + 3 * last) / 4))" unit=% ;; esac
-  before=$first
+  a=$1 b=$2 middle=$3 threshold=$4 try=$5 seen= verdict=warp causes= distant=0
+  first=$(number "$(frame_of "$a")") last=$(number "$(frame_of "$b")") before=$first
   set --
-  for f in $at; do
+  for f in $(((3 * first + last) / 4)) "$(number "$middle")" $(((first + 3 * last) / 4)); do
     [ "$f" -gt "$before" ] || continue   # short intervals have fewer frames
     before=$f
     differ "$f" "$try" || verdict=split
@@ -56,8 +54,8 @@ decide() {
   done
   # What no key sees grows with their distance: halving it saves half of that in every frame, and costs a key.
   [ $((distant * (last - first))) -gt $((2 * pixels)) ] && verdict=split
-  difference=$(printf '%s\n' $differences | sort -g | tail -n 1)
-  echo "$(frame_of "$a") $(frame_of "$b")  middle $middle  difference ${difference:-none}${difference:+$unit}  traced $(percent "$traced" "$pixels"):$causes  $verdict"
+  seen=$(printf '%s\n' $seen | sort -g | tail -n 1)
+  echo "$(frame_of "$a") $(frame_of "$b")  middle $middle  seen ${seen:-none}${seen:+%}  traced $(percent "$traced" "$pixels"):$causes  $verdict"
 }
 
 interval() {
@@ -79,7 +77,7 @@ interval() {
 }
 
 frame() {
-  target=$1 interval=$2 frame=$3; shift 3
+  target=$1 interval=$2 frame=$3 channels=$4; shift 4
   while read -r verdict x y left right < "$interval"; [ "$verdict" = split ]; do
     if [ "$frame" = "$x" ]; then cp "$y" "$target.part.$$" && mv "$target.part.$$" "$target"; return; fi
     if [ "$(number "$frame")" -lt "$(number "$x")" ]; then interval=$left; else interval=$right; fi
@@ -88,7 +86,9 @@ frame() {
   trap 'rm -f "$part".*' EXIT
   n=$(number "$frame")
   warp "$x" "$y" --frame "$n" -o "$part.warp.exr" --mask "$part.mask.exr" --compression none --stats "${target%.exr}.warp.json"
-  tool frame-render "$SCENE" --frame "$n" "$@" --camera "$CAMERA" --base "$part.warp.exr" --mask "$part.mask.exr" -o "$target" --stats "${target%.exr}.json"
+  if [ "$channels" = - ]; then completed=$target; else completed=$part.raw.exr; set -- "$@" --compression none; fi
+  tool frame-render "$SCENE" --frame "$n" "$@" --camera "$CAMERA" --base "$part.warp.exr" --mask "$part.mask.exr" -o "$completed" --stats "${target%.exr}.json"
+  [ "$channels" = - ] || $RUN "$BIN/st-filter" "$completed" --channels "$channels" -o "$target"
 }
 
 # What was decided, halves after the whole.

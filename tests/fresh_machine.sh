@@ -2,7 +2,7 @@
 # Do the README's commands work on a machine that has nothing? sh tests/fresh_machine.sh [FOLDER]
 #
 # Puts a minimal Debian 12 into FOLDER (default: a new one under /tmp, removed at the end), clones this repository there as
-# it is committed, runs the first line of README.md and its two commands inside, then those of MORE (MORE=.ci/run; a line
+# it is committed, runs the apt-get line of README.md and its two commands inside, then those of MORE (MORE=.ci/run; a line
 # each), and prints the minutes each took. Needs root and a Debian mirror (MIRROR=http://...). Ends with 77 where it cannot
 # be tried, 1 if a command failed.
 top=$(cd "$(dirname "$0")/.." && pwd)
@@ -46,7 +46,7 @@ inside() {
   echo "exit $code after $((seconds / 60)) min $((seconds % 60)) s"
   [ $code = 0 ] || { tail -n 40 "$scratch/log"; exit 1; }
 }
-inside "$(sed -n '1s/.*`\(apt-get [^`]*\)`.*/\1/p' "$root/tempolux/README.md")"
+inside "$(sed -n 's/^    \(apt-get [^#]*[^# ]\)  *#.*/\1/p' "$root/tempolux/README.md")"
 sed -n 's/^    \(make -f Makefile.example\( check\)\{0,1\}\)  *#.*/\1/p' "$root/tempolux/README.md" | sort -u > "$scratch/commands"
 [ "$(wc -l < "$scratch/commands")" = 2 ] || { echo 'FAILED: README.md does not begin with two commands'; exit 1; }
 printf '%s\n' "$MORE" | grep . >> "$scratch/commands"

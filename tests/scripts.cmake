@@ -43,6 +43,8 @@ foreach(script rerun make_asks plan_example plan_refuses content_camera drop_kin
            WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
   set_tests_properties(pipelines.${script} PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
 endforeach()
+add_test(NAME pipelines.looks COMMAND sh tests/pipelines/looks.sh $<TARGET_FILE_DIR:scene-plan> WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+set_tests_properties(pipelines.looks PROPERTIES TIMEOUT 300)
 add_test(NAME pipelines.from_blender COMMAND sh tests/pipelines/from_blender.sh $<TARGET_FILE_DIR:scene-plan> WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
 set_tests_properties(pipelines.from_blender PROPERTIES TIMEOUT 300 SKIP_RETURN_CODE 77)
 # Make against a new OUT: a random walk over what a user can change, names, ranges, two makes at once.

@@ -17,11 +17,11 @@
 #include "lib/aqm/difference.h"
 #include "lib/image/exr_io.h"
 #include "lib/report/comparison.h"
-#include "tools/common/compare_inputs.h"
 #include "tools/common/option_words.h"
 #include "tools/common/percent_option.h"
 #include "tools/common/tool_main.h"
-#include "tools/common/vision_options.h"
+#include "tools/stages/compare_inputs.h"
+#include "tools/stages/vision_options.h"
 
 using namespace tempolux;
 
@@ -31,11 +31,11 @@ struct Options {
   std::string test, reference, layer, mask, except, smooth, json, difference, metric = "error", fail_by = "rmse";
   tools::VisionWords vision;
   std::vector<std::string> halves;
-  bool own_halves = false, allow_stale = false;
+  bool own_halves = false, either = false, allow_stale = false;
   double fail_above = -1, difference_scale = 0;
   std::uint64_t min_object_pixels = 64;
 
-  bool needs_vision() const { return metric == "aqm" || fail_by == "aqm" || vision.used(); }
+  bool needs_vision() const { return either || metric == "aqm" || fail_by == "aqm" || vision.used(); }
   std::string layer_or_rgb() const { return layer == "RGB" ? "" : layer; }
   std::vector<std::string> references() const { return halves.empty() ? std::vector{reference} : halves; }
 };
@@ -61,6 +61,7 @@ void declare(tools::Tool& tool, Options& o) {
       ->type_name("{error,aqm}")
       ->capture_default_str();
   tools::declare_vision(tool, o.vision);
+  app.add_flag("--either", o.either, "the two frames err alike, such as one frame warped from two keys: AQM of what either errs by, their difference / sqrt 2");
   tool.count_option("--min-object-pixels", o.min_object_pixels, "flag the bias of objects of fewer pixels");
   tool.output_option(o.json, "write all figures as JSON; -: standard output", "--json");
   tool.output_option(o.difference, "write x - r: EXR, or PNG (grey 0, red above, blue below)",
@@ -189,7 +190,7 @@ Comparison compare_frames(tools::Tool& tool, const Options& o, const std::vector
     builder.add(pair, frames[i].value_or(loaded.frame_number()), loaded.inputs().test.name);
     if (o.needs_vision()) {
       tool.stats().phase("vision");
-      if (!viewing) viewing = tools::vision_options(o.vision, loaded);
+      if (!viewing) viewing = tools::vision_options(o.vision, loaded), viewing->of_either = o.either;
       const JudgedFrame judged = judge_frame(pair, loaded.flow(), *viewing, loaded.inputs().test.name);
       builder.add(judged.quality, *viewing);
       outputs.write(judged, loaded, *viewing, frames[i]);

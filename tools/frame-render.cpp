@@ -16,22 +16,23 @@
 #include "lib/core/random.h"
 #include "lib/image/exr_io.h"
 #include "lib/material/smooth_material.h"
+#include "lib/render/audit.h"
 #include "lib/render/coverage_channel.h"
 #include "lib/render/frame_renderer.h"
 #include "lib/render/influence_channels.h"
 #include "lib/render/learn_lights.h"
 #include "lib/render/seen_channels.h"
+#include "lib/render/seen_spheres.h"
 #include "lib/scene/light_units.h"
-#include "tools/common/audit_input.h"
-#include "tools/common/base_frame.h"
-#include "tools/common/frame_account.h"
-#include "tools/common/frame_output.h"
-#include "tools/common/indirect_light.h"
-#include "tools/common/light_grid_file.h"
-#include "tools/common/localised_cache.h"
-#include "tools/common/scene_input.h"
 #include "tools/common/option_words.h"
+#include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/base_frame.h"
+#include "tools/stages/frame_account.h"
+#include "tools/stages/frame_output.h"
+#include "tools/stages/indirect_light.h"
+#include "tools/stages/light_grid_file.h"
+#include "tools/stages/influence_options.h"
 
 using namespace tempolux;
 
@@ -39,12 +40,13 @@ namespace {
 
 struct Options {
   std::string scene, output, integrator = "auto", compression = "zip", mask, base, lights;
-  std::vector<std::string> channels{"RGBA", "Z", "N", "id"}, audit;
+  std::vector<std::string> channels{"RGBA", "Z", "N", "id"};
   FrameOptions frame;
   tools::IndirectLightOptions light;
   double pixel_error = -1;
   bool half_float = false, learn_lights = false, keep_outliers = false;
-  int width = 640, height = 360, audit_paths = -1;
+  int width = 640, height = 360;
+  double audit = 0;   ///< share of the frame's rays
 
   bool only_learns() const { return output.ends_with(".lightgrid"); }
   bool traces_paths() const { return light.photons.empty() && light.irradcache.empty() && light.points.empty() && light.meshirrad.empty(); }
@@ -87,31 +89,17 @@ void warn_of_missing_light(tools::Tool& tool, const SceneFrame& frame) {
             ": what point, spot and sun lights send by way of mirrors and smooth glass is missing: no path finds it; photons do (--photons)");
 }
 
-/// Paths that light is to be compared with. By themselves: where photons leave more than kUncertain of the picture's light open, kPathShare of the frame's camera rays; none where paths
-/// lack light that the frame has.
-std::size_t audit_path_count(const Options& options, const std::vector<AuditEntry>& by_photons, const SceneFrame& frame, const RenderedFrame& rendered) {
-  constexpr double kUncertain = 0.01, kPathShare = 0.02;
-  if (options.audit_paths >= 0) return std::size_t(options.audit_paths);
-  if (options.traces_paths() || (!frame.lights.empty() && first_smooth_material(frame) != kNone)) return 0;
-  const bool known = std::ranges::any_of(by_photons, [](const AuditEntry& entry) {
-    return entry.part == "picture" && entry.layer == Layer::indirect && entry.share_error() <= kUncertain;
-  });
-  return known ? 0 : std::size_t(kPathShare * double(rendered.rays.camera));
-}
-
-/// Bias of the frame's layers by splats of --audit; by paths as well where photons leave more than 1 % of the picture's light uncertain.
-std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const RenderScene& scene, const CameraView& view, const FrameOptions& frame_options,
-                              const RenderedFrame& rendered) {
-  if (options.audit.empty()) return {};
+/// Bias of the frame's layers. Half of the effort is photons, the other half paths from the eye, but where paths lack light that the frame has.
+std::vector<AuditEntry> audit(tools::Tool& tool, const Options& options, const RenderScene& scene, const EmissionTable& table, const CameraView& view,
+                              const FrameOptions& frame_options, const RenderedFrame& rendered) {
+  if (!(options.audit > 0)) return {};
   tool.stats().phase("audit", true);
   Image ids{view.width(), view.height(), {}, {}, {}, {}};
   add_data_channels(scene, view, {"id"}, {}, {}, ids);
   FrameAudit audit(view, rendered, ids.channels.front().ids, frame_options.mask);
-  audit.add_splats(scene.tracer, tools::audit_photons(tool, options.audit, scene.frame(), scene.frame().frame));
-  const std::vector<AuditEntry> by_photons = audit.entries();
-  const std::size_t paths = audit_path_count(options, by_photons, scene.frame(), rendered);
-  if (paths == 0) return by_photons;
-  audit.add_paths(scene, frame_options, paths);
+  const AuditEffort effort = audit_effort(options.audit, rendered.rays, mix64(frame_options.seed + std::uint64_t(scene.frame().frame)));
+  audit.add_photons(scene.tracer, aimed_lights(scene.tracer, table, view), effort);
+  if (frame_options.known && (scene.frame().lights.empty() || first_smooth_material(scene.frame()) == kNone)) audit.add_paths(scene, frame_options, effort);
   return audit.entries();
 }
 
@@ -162,7 +150,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   frame_options.progress = [&](double fraction) { tool.progress(fraction); };
   const RenderedFrame rendered = render_frame(scene, view, frame_options);
 
-  const std::vector<AuditEntry> audited = audit(tool, options, scene, view, frame_options, rendered);
+  const std::vector<AuditEntry> audited = audit(tool, options, scene, input.emission(frame.frame), view, frame_options, rendered);
   tool.stats().phase("data channels", true);
   Image image{options.width, options.height, {}, {}, {}, {}};
   add_data_channels(scene, view, options.channels, next.get(), previous.get(), image);
@@ -246,8 +234,6 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--integrator path reads no photons and no cache; leave them out, or the integrator");
   options.light.photons_alone = options.integrator == "photons";
   tools::check_influence(options.light.influence);
-  if (options.audit_paths > 0 && options.audit.empty()) throw InputError("--audit-paths: name photons with --audit FILE");
-  if (options.audit_paths > 0 && options.traces_paths()) throw InputError("--audit-paths: paths would be compared with paths; leave it out");
   if (options.mask.empty() != options.base.empty()) throw InputError("--mask and --base need each other");
   if (!options.base.empty() && options.frame.halves)
     throw InputError(
@@ -267,11 +253,6 @@ void check(Options& options, const std::vector<int>& frames) {
     throw InputError("--pixel-error 0: --seen-error needs it to share samples out; leave it out");
   if (halves) options.frame.pixel_error = 0;
   options.frame.sample_halves = wants_sample_halves(options.channels);
-  options.frame.independent_halves = wants_independent_halves(options.channels);
-  if (options.frame.independent_halves && options.frame.samples % 2 != 0)
-    throw InputError("--spp " + std::to_string(options.frame.samples) + ": the channels halves need an even number of samples");
-  if (options.frame.independent_halves && halves)
-    throw InputError("--channels halves and --halves or --target-error: halves are channels or files; leave out one");
   check_channels(options.channels);
 }
 
@@ -345,10 +326,8 @@ void add_options(tools::Tool& tool, Options& options) {
                "so does --integrator path");
   add_light_options(tool, options);
   app.add_option("--audit", options.audit,
-                 ".photons file, or a pattern, or STATIC,DYNAMIC: say how far direct, caustic and indirect light are off, measured by these photons as the camera sees them")
-      ->delimiter(',')->type_name("FILES");
-  app.add_option("--audit-paths", options.audit_paths, "with --audit: camera rays of which paths find the light as well; -1: 2 % of all where photons leave more than 1 % of the picture's light uncertain")
-      ->capture_default_str()->check(tools::number_between(-1, 1 << 24));
+                 "say how far direct, caustic and indirect light are off, measured by photons and paths of the audit's own, which take about this share of the frame's rays; 0: off")
+      ->capture_default_str()->check(tools::number_between(0.0, 100.0));
   app.add_flag("--learn-lights", options.learn_lights,
                "first learn by rays from where the sky, suns and lamps reach what is seen, and aim light samples by that; with -o FILE.lightgrid "
                "learn for the cameras of all frames named, write that and no frame");

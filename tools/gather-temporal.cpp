@@ -16,10 +16,10 @@
 #include "lib/gather/bright_points.h"
 #include "lib/gather/cache_files.h"
 #include "lib/render/known_light.h"
-#include "tools/common/kept_files.h"
 #include "tools/common/option_words.h"
-#include "tools/common/photon_windows.h"
+#include "tools/stages/photon_windows.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/kept_files.h"
 
 using namespace tempolux;
 
@@ -29,7 +29,7 @@ struct Options {
   std::vector<std::string> inputs;   // final SCENE
   std::string points, high, previous, output, cache, dynamic, age_weight = "2", refresh_rule = "adaptive";
   int width = 640, height = 360;
-  bool resume = false, free_radii = false;
+  bool resume = false;
   GatherOptions gather;
   PlacementOptions placement;
   TemporalOptions temporal;
@@ -154,14 +154,12 @@ void gather_frame(tools::Tool& tool, tools::SceneInput& input, const Options& op
     rays.bright = &*bright;
   }
   const TemporalGather gather(scene, rays, options.placement, options.temporal, tools::sample_unit(frame));
-  const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-    seen_through(tracer, view, looks, seen);
-  };
+  const PixelView seen = [&](const Look& look) { return seen_through(tracer, view, look); };
   tool.stats().phase("records", true);
   TemporalCounts counts;
   if (chain.before) gather.advance(chain.kept, counts);
   RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
-  gather.place(views, options.width, options.height, chain.kept, store, counts, [&](double done) { tool.progress(done); });
+  gather.place(seen, options.width, options.height, chain.kept, store, counts, [&](double done) { tool.progress(done); });
   tool.stats().phase("write");
   write_cache(options, frame, store, history, cache_output);
   chain.files.write(chain.kept, frame, points, history, kept_output);
@@ -217,7 +215,6 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--min-weight", options.placement.min_weight,
                  "sum of records' weights at which a pixel is covered")
       ->capture_default_str()->check(tools::number_between(1e-6, 0.99));
-  app.add_flag("--free-radii", options.free_radii, "leave radii as each record's own rays tell");
   tool.leave_out_of_history(app.add_flag("--resume", options.resume, "take frames that an earlier run of this command has finished as they are"));
   tool.size_option("--size", options.width, options.height, "picture for which records are placed, pixels");
   tool.output_option(options.cache, ".irradcache file, or a pattern: the records of the frame", "--cache")->required();
@@ -236,7 +233,6 @@ int main(int argc, char** argv) {
   return tool.run([&] {
     const std::vector<int>& frames = tool.common().frames;
     check(tool.app(), options, frames);
-    options.placement.clamp_neighbours = !options.free_radii;
     options.temporal.rule = options.refresh_rule == "fixed" ? RefreshRule::fixed : RefreshRule::adaptive;
     options.temporal.age_weight = options.age_weight == "1"   ? AgeWeight::linear
                                   : options.age_weight == "2" ? AgeWeight::square

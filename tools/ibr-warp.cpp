@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "formats/error.h"
+#include "lib/aqm/animation_quality.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
 #include "lib/image/why_mask.h"
@@ -24,7 +25,7 @@
 #include "tools/common/keep_memory.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
-#include "tools/common/warp_keys.h"
+#include "tools/stages/warp_keys.h"
 
 using namespace tempolux;
 
@@ -136,7 +137,11 @@ void warp_frame(tools::Tool& tool, const Options& options, tools::SceneInput& in
   const PixelFlow flow = flow_of_view(seen, {&frames.at(number + 1), &frames.camera(number + 1)},
                                       {&frames.at(number - 1), &frames.camera(number - 1)}, input.time().fps);
   tool.stats().phase("warp", true);
-  WarpTarget target{&seen.camera(), &seen.seen(), {}, &flow.speed, {}};
+  WarpTarget target{&seen.camera(), &seen.seen(), {}, &flow.speed, {}, {}};
+  VisionOptions viewer{vision::display_named("office")};
+  viewer.display.pixels_per_degree = options.pixels_per_degree;
+  viewer.frames_per_second = input.time().fps;
+  target.see_gloss = [&](const GlossInDoubt& doubt) { return error_probability(doubt.picture, doubt.error, doubt.counted, flow, viewer); };
   target.look = [&](std::span<const RasterPoint> at, FacePoint* points) { seen.look(at, points); };
   if (!has_layer(*keys[0].key, "specular")) {
     target.gloss = seen.gloss();
@@ -169,7 +174,7 @@ void warp_view(tools::Tool& tool, const Options& options, const std::vector<tool
   const formats::Identity identity = identity_in(other);
   const tools::KeysOfFrame placed(keys, camera, identity);
   tool.stats().phase("warp", true);
-  WarpedFrame warped = warp({&camera, &seen, {}, nullptr, {}}, placed.get(), options.warp);
+  WarpedFrame warped = warp({&camera, &seen, {}, nullptr, {}, {}}, placed.get(), options.warp);
   if (std::find(warped.why.begin(), warped.why.end(), 0u) == warped.why.end())
     tool.warn(options.view + ": the keys give none of its pixels; do they show the same scene?");
   Image image{other.width, other.height, {}, {}, other.numbers, other.matrices};
@@ -211,7 +216,7 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--channels", options.channels, "data beside the keys' colour: Z, N, P, id, albedo, motion")
       ->delimiter(',')->type_name("NAMES")->default_str("Z,N,id");
   app.add_option("--specular-share", options.warp.specular_share,
-                 "mirrors, glass and gloss are masked where they give more than this share of the light and the keys differ as much")
+                 "mirrors, glass and gloss that one key alone shows are masked where they give more than this share of the light; where both do, a viewer decides")
       ->capture_default_str()->check(tools::number_between(0, 1));
   app.add_option("--edge-share", options.warp.edge_share,
                  "edges are masked where the keys differ by more than this share of the light")

@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "formats/error.h"
-#include "tools/common/build_records.h"
-#include "tools/common/importance.h"
-#include "tools/common/localised_cache.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/build_records.h"
+#include "tools/stages/importance.h"
+#include "tools/stages/influence_options.h"
 
 using namespace tempolux;
 
@@ -56,7 +56,7 @@ void check(const CLI::App& app, const Options& options, const std::vector<int>& 
   if (!options.update.empty() && options.map == "static")
     throw InputError("--update: makes points of the whole scene; leave out --map static");
   if (mode == "points")
-    refuse_unread(app, "points", {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--high-samples", "--records", "--rays", "--error-bound", "--free-radii",
+    refuse_unread(app, "points", {"--influence-low", "--influence-high", "--influence-absolute", "--points", "--high-samples", "--records", "--rays", "--error-bound",
                                   "--min-radius-px", "--min-weight", "--size", "--mask", "--keep-points"});
   else if (!options.points.empty())
     refuse_unread(app, "a run with --points",
@@ -105,19 +105,13 @@ void add_options(tools::Tool& tool, Options& options) {
   app.add_option("--light-samples", options.point.light_samples, "shadow rays per point for direct light")
       ->capture_default_str()->check(tools::number_between(1, 4096));
   app.add_option("--rays", options.gather.rays,
-                 "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many, all "
-                 "of it up "
-                 "to 8 times where light comes from a small share of it")
+                 "gather rays per record; parts of its hemisphere where light is uneven get up to 9 times as many")
       ->capture_default_str()
       ->check(tools::number_between(1, 1 << 20));
   app.add_option("--error-bound", options.placement.error_bound,
                  "radius of a record / harmonic mean distance to what it sees: smaller is finer; records count where normals "
                  "differ by less than 50 degrees times this, from 5 to 20")
       ->capture_default_str()->check(tools::number_between(1e-3, 2.0));
-  app.add_flag(
-      "--free-radii", options.free_radii,
-      "leave radii as each record's own rays tell; else none exceeds a neighbour's by more than the error bound x "
-      "their distance: what is small is missed by many");
   app.add_option("--min-radius-px", options.placement.min_radius_px, "smallest radius of a record, pixels")
       ->capture_default_str()->check(tools::number_above(0));
   app.add_option("--min-weight", options.placement.min_weight, "sum of records' weights at which a pixel is covered")
@@ -144,7 +138,6 @@ int main(int argc, char** argv) {
     const std::vector<int>& frames = tool.common().frames;
     check(tool.app(), options, frames);
     options.point.count = std::uint32_t(options.point_count);
-    options.placement.clamp_neighbours = !options.free_radii;
     const bool makes_points = options.mode() == "points" || !options.photons.empty();
     std::optional<tools::Importance> importance;
     const auto seeded = [&](int frame) -> const Options& {   // for a file of this frame, alone or of a range

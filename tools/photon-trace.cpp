@@ -21,12 +21,13 @@
 #include "formats/photons/layout.h"
 #include "lib/photon/dynamic_map.h"
 #include "lib/photon/photon_map.h"
+#include "lib/render/seen_spheres.h"
 #include "lib/scene/standing.h"
-#include "tools/common/importance.h"
 #include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
-#include "tools/common/update_photons.h"
+#include "tools/stages/importance.h"
+#include "tools/stages/update_photons.h"
 
 using namespace tempolux;
 
@@ -108,7 +109,7 @@ std::shared_ptr<const PhotonTracer> tracer_at(tools::SceneInput& input, const st
                                               const PhotonOptions& options, int frame_number) {
   SceneFrame frame = input.at(frame_number);
   EmissionTable emission = input.emission(frame.frame);
-  emission.aim = tools::spheres_in_scene(view, frame.origin);
+  emission.aim = spheres_in_scene(view, frame.origin);
   const auto traced = std::make_shared<TracedFrame>(std::move(frame), std::move(emission), options);
   return {traced, &traced->photons};
 }
@@ -120,7 +121,7 @@ void trace_frame(tools::Tool& tool, tools::SceneInput& input, const Options& opt
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(frame_number);
   EmissionTable emission = input.emission(frame.frame);
-  emission.aim = tools::spheres_in_scene(view, frame.origin);
+  emission.aim = spheres_in_scene(view, frame.origin);
   tool.stats().phase("build");
   const Tracer tracer(frame, standing);
   const Lights lights(frame, emission);
@@ -185,7 +186,7 @@ void trace_standing(tools::Tool& tool, tools::SceneInput& input, const Options& 
     hashes.push_back(movers.hash);
   }
   EmissionTable emission = input.emission(frame.frame);
-  emission.aim = tools::spheres_in_scene(view, frame.origin);
+  emission.aim = spheres_in_scene(view, frame.origin);
   tool.stats().phase("build");
   const Tracer tracer(frame);
   const Lights lights(frame, emission);
@@ -256,7 +257,7 @@ void trace_difference(tools::Tool& tool, tools::SceneInput& input, const Options
   const SceneFrame frame = input.at(frame_number);
   const SceneFrame standing = standing_scene(frame);
   EmissionTable emission = input.emission(frame.frame);
-  emission.aim = tools::spheres_in_scene(view, frame.origin);
+  emission.aim = spheres_in_scene(view, frame.origin);
   check_paths(tool, input, file, paths.header, standing, emission_hash(emission, frame.segment), frame.frame);
   if (tool.app().get_option("--seed")->count() > 0 && tool.common().seed != paths.header.seed)
     throw InputError("--seed " + std::to_string(tool.common().seed) + ": of --map dynamic the static map has it: " + std::to_string(paths.header.seed));

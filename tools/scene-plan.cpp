@@ -5,7 +5,6 @@
 // Writes out/plan.json, out/plan.mk and out/state/*. If neither the scene nor the options nor the programs have changed it
 // only looks and writes nothing. Format: formats/plan/plan.md.
 //
-//     scene-plan room.glb --frames 0-47 --estimate --size 960x540
 //     scene-plan --tidy out
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -21,29 +20,23 @@
 #include "lib/plan/estimate.h"
 #include "tools/common/option_words.h"
 #include "tools/common/percent_option.h"
-#include "tools/common/pilot.h"
-#include "tools/common/planning.h"
-#include "tools/common/tidy.h"
+#include "tools/stages/samples.h"
+#include "tools/stages/planning.h"
+#include "tools/stages/tidy.h"
 
 using namespace tempolux;
 
 namespace {
 
 struct Options {
-  std::string scene, folder = "out", tidy_folder, quality = "final", method = "frames", filter = "auto", report;
+  std::string scene, folder = "out", tidy_folder, samples, estimate, quality = "final", method = "frames", filter = "auto", report;
   std::vector<std::string> recipes;
   double tidy_hours = 24;
-  bool estimate = false, json = false;
-  int jobs = 1;
   Wish wish;
 };
 
 void remove_left_overs(tools::Tool& tool, const Options& options) {
-  const tools::Tidied short_runs = tools::tidy_folders(tools::short_run_stem());
-  tools::Tidied tidied = tools::tidy(options.tidy_folder, options.tidy_hours * 3600);
-  tidied.removed += short_runs.removed;
-  tidied.kept += short_runs.kept;
-  tidied.bytes += short_runs.bytes;
+  const tools::Tidied tidied = tools::tidy(options.tidy_folder, options.tidy_hours * 3600);
   std::cout << "removed " << tidied.removed << " unfinished files of " << tidied.bytes << " bytes, kept " << tidied.kept
             << " that may still be written\n";
   tool.stats().count("removed", double(tidied.removed));
@@ -55,15 +48,16 @@ std::size_t index_of(const char* const (&names)[n], const std::string& name) {
 }
 
 /// The wish in full, its words checked.
-Wish wish_of(const tools::Tool& tool, const Options& options) {
+Wish wish_of(tools::Tool& tool, const Options& options) {
   Wish wish = options.wish;
   wish.quality = Quality(index_of(kQualities, options.quality));
   wish.method = FrameMethod(index_of(kFrameMethods, options.method));
   wish.filter = options.filter == "auto" ? Wish::kAutoFilter : options.filter == "none" ? 0 : std::stoi(options.filter);
   wish.camera = tool.common().camera;
-  const std::vector<std::string> shared = tools::shared_arguments(tool.common());
-  for (std::size_t i = 0; i < shared.size(); ++i)   // what files hold counts, not where they lie
-    if (i == 0 || (shared[i - 1] != "--environment" && shared[i - 1] != "--volume")) wish.common += shared[i] + '\n';
+  // Of the options that all stages share those that states of the scene do not hold.
+  for (const CLI::Option* option : tool.app().get_options())
+    if (const auto& shared = tools::kSharedWords; std::ranges::find(shared, option->get_name()) != shared.end())
+      for (const std::string& word : option->results()) wish.common += option->get_name() + ' ' + word + '\n';
   for (const auto& [name, words] : {std::pair{"--point-words", wish.points}, {"--record-words", wish.records}, {"--pixel-words", wish.pixels},
                                     {"--channels", wish.channels}, {"--texture-words", wish.texture_words}, {"--smoke-words", wish.smoke_words},
                                     {"--update", wish.update}, {"--refine", wish.refine}, {"--strategy", wish.strategy}})
@@ -77,25 +71,17 @@ Wish wish_of(const tools::Tool& tool, const Options& options) {
   return with_preset(wish);
 }
 
-void plan_range(tools::Tool& tool, const Options& options, bool write, const std::string& arguments) {
-  Wish wish = wish_of(tool, options);
+void plan_range(tools::Tool& tool, const Options& options, const std::string& arguments) {
+  const Wish wish = wish_of(tool, options);
   std::optional<tools::PlanFolder> folder;
-  if (write) folder.emplace(options.folder);
-  if (folder && !options.estimate && folder->up_to_date(arguments)) return tool.say(options.folder + ": nothing has changed");
-  Inputs none("");
-  const ToolHash tool_hash = tools::tool_hashes(folder ? folder->inputs() : none, options.recipes);
-  const tools::Planned planned = tools::make_planned(tool, options.scene, wish, tool_hash, folder ? &*folder : nullptr);
-  std::string estimate_as_json;
-  if (options.estimate) {
-    tool.stats().phase("estimate");
-    const int processors = usable_processor_count(), threads = tool.common().threads;
-    const Estimate estimate = tools::estimate_run(options.scene, planned, wish, tool);
-    estimate_as_json = estimate_json(estimate, processors, options.jobs, threads);
-    std::cout << (options.json ? estimate_as_json : estimate_text(estimate, processors, options.jobs, threads));
-  }
+  if (options.samples.empty()) folder.emplace(options.folder);
+  if (folder && folder->up_to_date(arguments)) return tool.say(options.folder + ": nothing has changed");
+  tool.stats().phase("load");
+  tools::Planner planner(tool, options.scene, wish, options.recipes, folder ? &*folder : nullptr);
   tool.stats().phase("write");
-  if (folder) folder->write(planned, tool_hash, arguments, tool.history_line(), estimate_as_json);
-  for (const PlannedSegment& segment : planned.plan.segments)
+  if (!folder) return tools::write_samples(options.samples, planner, wish);
+  folder->write(planner.planned(), planner.tool_hash(), arguments, tool.history_line());
+  for (const PlannedSegment& segment : planner.planned().plan.segments)
     for (const Reason& reason : segment.decisions.reasons)
       tool.say("frames " + std::to_string(segment.first) + "-" + std::to_string(segment.last) + ": " + reason.stage + ": " + reason.because);
 }
@@ -134,8 +120,8 @@ void add_wishes(tools::Tool& tool, Options& options) {
       ->type_name("SHARE");
   app.add_option("--strategy", wish.strategy, "which groups of photons --update takes, as photon-trace --strategy")->capture_default_str();
   app.add_option("--key-distance", wish.key_distance, "frames between the first keys of a walkthrough")->capture_default_str()->check(tools::number_between(2, 1000));
-  app.add_option("--halve-above", wish.threshold, "relMSE between two keys above which an interval is halved; 5%: AQM, the share seen to differ; 0: the preset's")
-      ->capture_default_str()->check(tools::number_between(0, 100))->transform(tools::percent([&] { wish.threshold_of_seen = true; }));
+  app.add_option("--halve-above", wish.threshold, "an interval between keys is halved if a viewer sees in more than this share of its pixels, such as 5%, that "
+                 "they are wrong (AQM)")->capture_default_str()->check(tools::number_between(0, 1))->transform(tools::percent([] {}));
   app.add_option("--report", options.report, "frames to compare with path tracing; ends: the first and the last")->type_name("FRAMES");
   app.add_option("--reference-samples", wish.reference_samples, "samples of a pixel of what they are compared with")->capture_default_str()
       ->check(tools::number_between(2, 1 << 20));
@@ -147,22 +133,20 @@ int main(int argc, char** argv) {
   tools::Tool tool("scene-plan", "Decide what a range of frames needs, and say from which files each picture is made.", argc, argv);
   Options options;
   CLI::App& app = tool.app();
-  app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; needed but for --tidy");
-  const CLI::Option* output = tool.output_option(options.folder, "folder for plan.json, plan.mk and state/, and of all files that they name; with "
-                                                 "--estimate only if it is given")->capture_default_str();
+  app.add_option("scene", options.scene, "glTF scene, .gltf or .glb; needed but for --tidy and --estimate");
+  tool.output_option(options.folder, "folder for plan.json, plan.mk and state/, and of all files that they name")->capture_default_str();
   add_wishes(tool, options);
   const auto add = [&](CLI::Option* option) {
     tool.leave_out_of_history(option);
     return option;
   };
   add(app.add_option("--recipes", options.recipes, "files that hold the rules: a change of theirs is a change of all that they make"))->type_name("FILE");
-  add(app.add_flag("--estimate", options.estimate, "print what the run will cost: CPU seconds and bytes of each stage, from short runs on this machine"));
-  add(app.add_flag("--json", options.json, "print the estimate as JSON"));
-  add(app.add_option("--jobs", options.jobs, "processes at a time to estimate for, as make -j"))
-      ->type_name("N")->capture_default_str()->check(tools::number_between(1, 100000));
+  add(app.add_option("--samples", options.samples, "instead of a plan: two small ones in this folder, for make to make and --estimate to read"))
+      ->type_name("FOLDER");
+  add(app.add_option("--estimate", options.estimate, "instead: print what a run will cost, CPU seconds and bytes of each stage, from the samples in this folder "
+                     "(make -f Makefile.example estimate)"))->type_name("FOLDER");
   add(app.add_option("--tidy", options.tidy_folder,
-                     "instead: remove unfinished files of killed runs from this folder and those in it, and from the folder "
-                     "for temporary files what killed --estimate left"))->type_name("FOLDER");
+                     "instead: remove unfinished files of killed runs from this folder and those in it"))->type_name("FOLDER");
   add(app.add_option("--tidy-hours", options.tidy_hours, "unfinished files of other hosts count as left over after so many hours"))
       ->type_name("HOURS")->capture_default_str()->check(tools::number_between(0));
   tool.common_options(tools::uses_scene | tools::uses_camera | tools::uses_frames);
@@ -170,13 +154,11 @@ int main(int argc, char** argv) {
   std::string arguments = std::filesystem::current_path().string();
   for (int i = 1; i < argc; ++i) arguments.append(argv[i]).push_back('\0');
   return tool.run([&] {
-    if (options.tidy_folder.empty() && options.scene.empty()) throw InputError("scene is required; see scene-plan --help");
-    if (!options.tidy_folder.empty()) {
-      if (!options.scene.empty()) throw InputError("--tidy FOLDER needs no scene; leave it out");
-      remove_left_overs(tool, options);
-    } else {
-      plan_range(tool, options, !options.estimate || output->count() > 0, hash_hex(arguments));
-    }
+    const bool plans = options.tidy_folder.empty() && options.estimate.empty();
+    if (plans == options.scene.empty()) throw InputError(plans ? "scene is required; see scene-plan --help" : "--tidy and --estimate need no scene; leave it out");
+    if (plans) plan_range(tool, options, hash_hex(arguments));
+    else if (!options.estimate.empty()) std::cout << estimate_text(tools::estimate_from(options.estimate), usable_processor_count());
+    else remove_left_overs(tool, options);
     return int(tools::exit_ok);
   });
 }

@@ -2,7 +2,7 @@
 //
 //     st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o 10.exr
 //     st-filter f.####.exr --flow flow.####.exr --frames 0-47 -o filtered.####.exr
-//     st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad          (tools/common/filter_mesh.h)
+//     st-filter mesh room.glb --frame 12 --photons 12.photons -o 12.meshirrad          (tools/stages/filter_mesh.h)
 //
 // Frames of frame-render --channels halves,... are filtered where their halves prove that it pays. How: docs/methods/st-filter.md. Channels: formats/frames/frames.md; flow: formats/flow/flow.md.
 #include <CLI/CLI.hpp>
@@ -15,14 +15,13 @@
 
 #include "formats/error.h"
 #include "lib/filter/filter_frame.h"
-#include "lib/filter/filter_halves.h"
 #include "lib/image/channel_groups.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
 #include "tools/common/keep_memory.h"
-#include "tools/common/filter_mesh.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/filter_mesh.h"
 
 using namespace tempolux;
 
@@ -44,8 +43,7 @@ struct Names {
 /// A frame that is read, with what the filter needs of it.
 struct LoadedFrame {
   Image image;
-  std::unique_ptr<LightFrame> light;     ///< of a frame without halves
-  std::unique_ptr<FrameHalves> halves;   ///< of one with them
+  std::unique_ptr<WindowLight> light;  ///< none of a frame that is filtered alone
   FlowFrame flow;
 };
 
@@ -53,7 +51,11 @@ class FilterRun {
  public:
   /// sequence: each frame is filtered in its turn, with those around it; else one is.
   FilterRun(tools::Tool& tool, const Options& options, std::vector<Names> names, bool sequence)
-      : tool_(tool), options_(options), names_(std::move(names)), sequence_(sequence) {}
+      : tool_(tool),
+        options_(options),
+        names_(std::move(names)),
+        sequence_(sequence),
+        windowed_(sequence ? options.width > 1 : names_.size() > 1) {}
 
   /// Filters frame `at` of the list with those from `first` to `last`.
   void run(std::size_t first, std::size_t at, std::size_t last, const std::string& file, std::optional<int> number) {
@@ -62,24 +64,14 @@ class FilterRun {
     const std::string& name = names_[at].frame;
     LoadedFrame& middle = load(at, true);
     tool_.stats().phase("filter", true);
-    std::optional<FrameFilter> plain;
-    std::optional<HalvesFilter> halves;
-    if (middle.halves) halves.emplace(*middle.halves, middle.flow, at - first, last - at, options_.filter);
-    else plain.emplace(middle.image, WindowFrame{middle.light.get(), &middle.flow}, at - first, last - at, options_.filter);
-    const auto add = [&](std::size_t i) {
-      const LoadedFrame& other = load(i, sequence_);
-      tool_.stats().phase("filter", true);
-      if (!middle.halves != !other.halves) throw InputError(names_[i].frame + ": frames of a window have halves or none has; write all with the same --channels");
-      naming(name, [&] {
-        if (halves) halves->add(*other.halves, other.flow);
-        else plain->add({other.light.get(), &other.flow});
-      });
-      if (!sequence_) loaded_.erase(i);   // two frames in memory, however many there are
-    };
-    for (std::size_t i = at; i > first; --i) add(i - 1);
-    for (std::size_t i = at + 1; i <= last; ++i) add(i);
-    Image image = halves ? halves->finish(std::move(middle.image)) : plain->finish(std::move(middle.image));
-    naming(name, [&] { if (!options_.channels.empty()) keep_channels(options_.channels, image); });
+    Image image;
+    naming(name, [&] {
+      if (first == last)
+        image = filter_alone(std::move(middle.image), options_.filter);
+      else
+        image = filter_window(first, at, last, middle);
+      if (!options_.channels.empty()) keep_channels(options_.channels, image);
+    });
     image.text["tempolux:history"] += tool_.history_line(number);
     tool_.stats().phase("write");
     save_exr(output.temporary_path(), image,
@@ -91,6 +83,19 @@ class FilterRun {
   }
 
  private:
+  Image filter_window(std::size_t first, std::size_t at, std::size_t last, LoadedFrame& middle) {
+    FrameFilter filter(*middle.light, middle.flow, at - first, last - at, options_.filter);
+    const auto add = [&](std::size_t i) {
+      const LoadedFrame& other = load(i, sequence_);
+      tool_.stats().phase("filter", true);
+      filter.add(*other.light, other.flow);
+      if (!sequence_) loaded_.erase(i);  // two frames in memory, however many there are
+    };
+    for (std::size_t i = at; i > first; --i) add(i - 1);
+    for (std::size_t i = at + 1; i <= last; ++i) add(i);
+    return filter.finish(std::move(middle.image));
+  }
+
   /// What is wrong is said with the file's name before it.
   template <class Body>
   static void naming(const std::string& file, const Body& body) {
@@ -117,10 +122,7 @@ class FilterRun {
     else if (image.find("forward.u") || image.find("backward.u"))
       loaded.flow = to_filter ? FlowFrame(image, image.width, image.height, names.frame)
                               : FlowFrame(std::move(image), image.width, image.height, names.frame);
-    naming(names.frame, [&] {
-      if (has_halves(image)) loaded.halves = std::make_unique<FrameHalves>(image);
-      else loaded.light = std::make_unique<LightFrame>(to_filter ? LightFrame(image) : LightFrame(std::move(image)));
-    });
+    if (windowed_) naming(names.frame, [&] { loaded.light = std::make_unique<WindowLight>(image, false); });
     explain(names, loaded);
     if (!to_filter) image = {};
     return loaded;
@@ -133,7 +135,7 @@ class FilterRun {
     };
     const auto wanted = [&](const std::string& channel) {
       if (all && (options_.channels.empty() || is_named(channel))) return true;
-      return all ? is_read_to_filter(channel) : is_read_by_others(channel);
+      return is_read_to_filter(channel);
     };
     Image image = load_exr(file, {.allow_nan = colour, .wanted = wanted, .our_names = true});
     tool_.depends_on(file);
@@ -146,9 +148,8 @@ class FilterRun {
       warn("motion", names.frame + ": no flow (forward.u, forward.v, backward.u, backward.v) and no --flow; filtered as if nothing moved");
     else if (!loaded.flow.empty() && !(loaded.flow.has_forward() && loaded.flow.has_backward()))
       warn("direction", (names.flow.empty() ? names.frame : names.flow) + ": flow in one direction only; the other is taken for its opposite");
-    if (loaded.light && loaded.light->noise == NoiseKnowledge::none)
-      warn("noise", names.frame + ": no variance and no samples; filtered by what cannot be seen at " +
-                        std::to_string(int(options_.filter.pixels_per_degree)) + " pixels per degree");
+    if (!knows_noise(loaded.image))
+      warn("noise", names.frame + ": no noise, variance or albedo; noise cannot be told from texture, so the light stays as it is");
     if (!loaded.image.find("Z") && !loaded.image.find("id.object"))
       warn("surfaces", names.frame + ": neither Z nor id.object; surfaces cannot be told apart");
     if (!identity_in(loaded.image).known()) warn("identity", names.frame + ": does not say which scene it shows; taken as it is");
@@ -160,7 +161,7 @@ class FilterRun {
   tools::Tool& tool_;
   const Options& options_;
   std::vector<Names> names_;
-  bool sequence_;
+  bool sequence_, windowed_;
   std::map<std::size_t, LoadedFrame> loaded_;   ///< of the current window
   std::map<std::string, bool> warned_;
 };
@@ -216,11 +217,10 @@ int main(int argc, char** argv) {
       ->capture_default_str()->check(tools::number_between(1, 63));
   app.add_option("--position", options.position, "which of the frames named is filtered, 1: the first; 0: the one in the middle")
       ->capture_default_str()->check(tools::number_between(0, 1 << 20));
-  app.add_option("--radius", options.filter.radius, "of the window in space, pixels; 0: filter in time alone")
-      ->capture_default_str()->check(tools::number_between(0, kMargin));
-  app.add_option("--pixels-per-degree", options.filter.pixels_per_degree,
-                 "of the viewer's sight, for frames that know neither variance nor samples")
-      ->capture_default_str()->check(tools::number_between(1.0, 1000.0));
+  app.add_option("--scales", options.filter.scales,
+                 "windows of 5 and of 15 pixels: how many of them, the smallest first; 0: filter in time alone")
+      ->capture_default_str()
+      ->check(tools::number_between(0, kMostScales));
   app.add_option("--channels", options.channels,
                  "channels of the output, by groups: RGBA, layers, Z, N, id, albedo, motion ...; without: all that the frame has")
       ->delimiter(',')->type_name("NAMES");

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "formats/error.h"
-#include "tools/common/info_facts.h"
 #include "tools/common/option_words.h"
 #include "tools/common/tool_main.h"
+#include "tools/info/info_facts.h"
 
 using namespace tempolux;
 using tools::Facts;
@@ -22,7 +22,7 @@ namespace {
 
 struct Request {
   std::vector<std::string> files;
-  bool check = false, digest = false, diff = false, json = false;
+  bool check = false, digest = false, diff = false, json = false, account = false;
   std::string format, output, png, sheet, groups, exposure = "auto";
   tools::PictureOptions picture;
 };
@@ -90,6 +90,12 @@ int answer(tools::Tool& tool, Request& request) {
     return equal ? tools::exit_ok : tools::exit_differs;
   }
   if (request.check) return check_files(tool, request);
+  if (request.account) {
+    const tools::FramesAccount account = tools::account_of_frames(request.files);
+    if (!account.line.empty()) std::cout << account.line << '\n';
+    for (const std::string& warning : account.warnings) tool.warn(warning);
+    return tools::exit_ok;
+  }
   if (!request.sheet.empty()) {
     tools::Output output(request.sheet, keep);
     request.picture.progress = [&](double done) { tool.progress(done); };
@@ -132,6 +138,7 @@ int main(int argc, char** argv) {
       app.add_flag("--digest", request.digest, "hash of the data, without header and history");
   CLI::Option* diff =
       app.add_flag("--diff", request.diff, "of two files: where they differ; exit 1 if their data do");
+  CLI::Option* account = app.add_flag("--account", request.account, "of frames together: how far their light is off, as their audits have it");
   app.add_flag("--json", request.json, "facts as JSON instead of text");
   CLI::Option* format =
       app.add_option("--export", request.format, "photons, irradiance points or records as points, with -o: ply or csv")
@@ -162,7 +169,7 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->allow_extra_args(false)
       ->needs(sheet);
-  const std::vector<CLI::Option*> modes{check, digest, diff, format, groups, png, sheet};
+  const std::vector<CLI::Option*> modes{check, digest, diff, account, format, groups, png, sheet};
   for (CLI::Option* one : modes)
     for (CLI::Option* other : modes)
       if (one != other) one->excludes(other);

@@ -17,10 +17,10 @@
 #include "lib/gather/final_gather.h"
 #include "lib/image/exr_io.h"
 #include "lib/image/frame_identity.h"
-#include "tools/common/gather_input.h"
 #include "tools/common/option_words.h"
 #include "tools/common/scene_input.h"
 #include "tools/common/tool_main.h"
+#include "tools/stages/gather_input.h"
 
 using namespace tempolux;
 
@@ -158,7 +158,7 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
     compose_options.seed = tool.common().seed_for_frame(number);
     compose_options.surfaces_by_depth = !base.of_this_scene;
     compose_options.progress = [&](double fraction) { tool.progress(fraction); };
-    tools::GatherPoints points;
+    GatherPoints points;
     if (light.has_rays()) points = tools::read_points(tool, tools::frame_name(options.points, number), frame);
     const PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
     const IncomingRadiance incoming(tracer, lights, lookup, GatherOptions{}.near_factor);

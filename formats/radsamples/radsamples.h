@@ -31,9 +31,9 @@ struct RadsamplesRecord {
   std::uint16_t object = 0xffff;
   SurfaceSet set = SurfaceSet::static_set;
   std::uint8_t fading = 0;               ///< 0; 1 to 3: it is being taken out, its radius times (4 - fading) / 4
-  std::uint32_t narrows_from = 0;        ///< records of this number and later ones may have been narrowed by it
+  std::uint32_t narrows_from = 0;        ///< reserved
   float footprint = 0;                   ///< m: size of a pixel there when it was placed
-  float expected_share = 1, lit_share = 1;  ///< of the hemisphere from which light comes: by others' rays, by its own
+  float expected_share = 1, lit_share = 1;  ///< reserved
   float radius = 1;                      ///< m, > 0: before neighbours narrow it
   float radius_unclamped = 1;            ///< m, >= 0, before limits; +inf: nothing was near
   std::array<float, 3> irradiance{};     ///< W/m^2, >= 0

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "formats/error.h"
 #include "lib/aqm/display_speed.h"
@@ -19,16 +20,20 @@ void check_colour(const Compared& pair, const std::string& name) {
                    "--metric aqm and --flow");
 }
 
-/// Luminance of the reference, or of the mean of its halves.
-std::vector<float> reference_luminance(const Compared& pair, const vision::Display& display,
-                                       double exposure) {
-  if (!pair.halves()) return displayed_luminance(display, pair.reference, exposure);
-  std::vector<std::vector<float>> means(pair.reference.size());
+/// Luminance of a mixture: `share` of the frame, the rest of the reference or of the mean of its halves.
+std::vector<float> shown_luminance(const Compared& pair, double share, const vision::Display& display,
+                                   double exposure) {
+  if (share == 1) return displayed_luminance(display, pair.test, exposure);
+  if (share == 0 && !pair.halves()) return displayed_luminance(display, pair.reference, exposure);
+  std::vector<std::vector<float>> mixtures(pair.test.size());
   std::vector<const std::vector<float>*> planes;
-  for (std::size_t c = 0; c < means.size(); ++c) {
-    means[c].resize(pair.reference[c]->size());
-    for (std::size_t i = 0; i < means[c].size(); ++i) means[c][i] = float(pair.reference_at(c, i));
-    planes.push_back(&means[c]);
+  for (std::size_t c = 0; c < mixtures.size(); ++c) {
+    mixtures[c].resize(pair.test[c]->size());
+    for (std::size_t i = 0; i < mixtures[c].size(); ++i) {
+      const double reference = pair.reference_at(c, i);
+      mixtures[c][i] = float(reference + share * (double((*pair.test[c])[i]) - reference));
+    }
+    planes.push_back(&mixtures[c]);
   }
   return displayed_luminance(display, planes, exposure);
 }
@@ -64,16 +69,42 @@ JudgedFrame judge_frame(const Compared& pair, const PixelFlow* flow, const Visio
                      " pixels, but its flow has " + std::to_string(flow->width) + "x" +
                      std::to_string(flow->height) + "; give the flow of this frame");
   const double exposure = std::exp2(options.exposure_stops), ppd = options.display.pixels_per_degree;
+  const double share = options.of_either ? 0.5 + 0.5 * std::numbers::sqrt2 / 2 : 1;
   const vision::DisplayedPair shown{pair.width, pair.height,
-                                    displayed_luminance(options.display, pair.test, exposure),
-                                    reference_luminance(pair, options.display, exposure), pair.counted};
+                                    shown_luminance(pair, share, options.display, exposure),
+                                    shown_luminance(pair, 1 - share, options.display, exposure), pair.counted};
   const std::vector<float> speed =
       flow ? vision::display_speed(*flow, ppd, options.frames_per_second) : std::vector<float>();
-  vision::Detection detection = vision::detection_map(shown, speed, {ppd, options.gaze});
+  vision::Detection detection = vision::detection_map(shown, speed, {ppd, options.gaze, options.display.distance});
   JudgedFrame judged{count_seen(pair, detection.probability), {}};
   judged.quality.adaptation_luminance = detection.adaptation_luminance;
   judged.probability = std::move(detection.probability);
   return judged;
+}
+
+std::vector<float> error_probability(const std::array<std::vector<float>, 3>& picture, const std::array<std::vector<float>, 3>& error,
+                                     const std::vector<std::uint8_t>& counted, const PixelFlow& flow, VisionOptions options) {
+  std::array<Image, 3> images;   // the picture, more, less
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    images[k].width = flow.width;
+    images[k].height = flow.height;
+    const float share = k == 0 ? 0 : k == 1 ? 0.5f : -0.5f;
+    for (std::size_t c = 0; c < 3; ++c) {
+      std::vector<float>& values = images[k].add(std::string(1, "RGB"[c])).values;
+      for (std::size_t p = 0; p < values.size(); ++p) values[p] = picture[c][p] + share * error[c][p];
+    }
+  }
+  options.exposure_stops = auto_exposure_stops(images[0], "");
+  Compared pair;
+  pair.width = flow.width;
+  pair.height = flow.height;
+  pair.channels = {"R", "G", "B"};
+  for (std::size_t c = 0; c < 3; ++c) {
+    pair.test.push_back(&images[1].channels[c].values);
+    pair.reference.push_back(&images[2].channels[c].values);
+  }
+  pair.counted = counted;
+  return judge_frame(pair, &flow, options, "").probability;
 }
 
 Image probability_image(const JudgedFrame& judged, int width, int height) {

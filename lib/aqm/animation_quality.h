@@ -2,6 +2,7 @@
 // see to differ.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -22,6 +23,9 @@ struct VisionOptions {
   vision::Gaze gaze = vision::Gaze::track;
   double frames_per_second = 24;
   double exposure_stops = 0;  ///< linear values times 2^stops are what the display gets
+  /// Frame and reference are estimates of one picture that err alike and independently. Then either errs by their
+  /// difference over sqrt(2) (root mean square): that is what is judged, around their mean.
+  bool of_either = false;
 };
 
 /// Of `pixels` that count, `seen` have a probability above kSeenProbability.
@@ -50,10 +54,15 @@ struct JudgedFrame {
 double shared_exposure_stops(const ComparedInputs& inputs);
 
 /// Judges a frame as a viewer would who sees it and its reference one after the other. The reference in
-/// halves is their mean. Without flow everything stands still. `name` begins messages. Throws InputError if
+/// halves is their mean. Without flow a still picture is judged, in which eyes look around. `name` begins messages. Throws InputError if
 /// the layer is no colour or the flow has another size.
 JudgedFrame judge_frame(const Compared& pair, const PixelFlow* flow, const VisionOptions& options,
                         const std::string& name);
+
+/// The probability by pixel that a viewer sees that a picture errs by `error`: judged is picture + error / 2 beside picture - error / 2, at the exposure that
+/// suits the picture. Planes are R, G, B; pixels where `counted` is 0 are taken for right.
+std::vector<float> error_probability(const std::array<std::vector<float>, 3>& picture, const std::array<std::vector<float>, 3>& error,
+                                     const std::vector<std::uint8_t>& counted, const PixelFlow& flow, VisionOptions options);
 
 /// The probabilities as an image of one channel, P.
 Image probability_image(const JudgedFrame& judged, int width, int height);

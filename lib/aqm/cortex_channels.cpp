@@ -67,14 +67,13 @@ std::vector<ChannelName> channel_names() {
   return names;
 }
 
-ChannelFilters::ChannelFilters(const ChannelGrid& grid, double pixels_per_degree)
+ChannelFilters::ChannelFilters(const ChannelGrid& grid, double pixels_per_degree, const std::function<double(double)>& still)
     : grid_(grid), pixels_per_degree_(pixels_per_degree), radial_(kBands) {
   for (int band = 1; band <= kBands; ++band) {
     std::vector<double> seen(kTableSteps + 1);
     for (int i = 0; i <= kTableSteps; ++i) {
       const double frequency = kTableEnd * i / kTableSteps;
-      seen[std::size_t(i)] =
-          band_filter(band, frequency) * contrast_sensitivity(frequency * pixels_per_degree, kDriftSpeed);
+      seen[std::size_t(i)] = band_filter(band, frequency) * still(frequency * pixels_per_degree);
     }
     const double most = std::ranges::max(seen);
     most_[std::size_t(band - 1)] = most;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <complex>
+#include <functional>
 #include <vector>
 
 #include "lib/aqm/fourier.h"
@@ -57,7 +58,8 @@ struct ChannelPair {
 /// sees of each frequency, nothing of frequency 0.
 class ChannelFilters {
  public:
-  ChannelFilters(const ChannelGrid& grid, double pixels_per_degree);
+  /// `still`: sensitivity to a frequency, cpd, of what stands still.
+  ChannelFilters(const ChannelGrid& grid, double pixels_per_degree, const std::function<double(double)>& still);
   /// What a channel is to be multiplied by so that a grating of band_frequency() that moves at `speed` deg/s
   /// gives contrast times sensitivity. Other frequencies of the band change with speed as that one does.
   double sensitivity(int band, double speed) const;

@@ -27,9 +27,9 @@ double black_level(double peak, double contrast, double room_lux) {
 
 std::span<const Display> displays() {
   static const std::array<Display, 3> all{
-      Display{"office", 200, 200, black_level(200, 1000, 250), pixels_per_degree(1920, 24, 0.6)},
-      Display{"hdr", 203, 1500, black_level(1500, 1e6, 10), pixels_per_degree(3840, 30, 0.7472)},
-      Display{"dark", 200, 200, black_level(200, 1000, 0), pixels_per_degree(1920, 24, 0.6)}};
+      Display{"office", 200, 200, black_level(200, 1000, 250), pixels_per_degree(1920, 24, 0.6), 0.6},
+      Display{"hdr", 203, 1500, black_level(1500, 1e6, 10), pixels_per_degree(3840, 30, 0.7472), 0.7472},
+      Display{"dark", 200, 200, black_level(200, 1000, 0), pixels_per_degree(1920, 24, 0.6), 0.6}};
   return all;
 }
 

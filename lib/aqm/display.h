@@ -15,6 +15,7 @@ struct Display {
   double peak = 0;   ///< largest luminance: >= white
   double black = 0;  ///< luminance of value 0: its own light and what of the room's it reflects
   double pixels_per_degree = 0;
+  double distance = 0;  ///< of the eye, metres
 };
 
 /// Displays by name: office, hdr, dark.

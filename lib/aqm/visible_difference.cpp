@@ -77,7 +77,7 @@ using BandGains = std::array<std::vector<float>, kBands>;
 
 /// Thresholds per response: sensitivity at the speed around a sample over the response that one unit of
 /// contrast gives, scaled so that a grating at its threshold is seen with probability 1/2. `speed` is across
-/// the retina; empty: everything stands still.
+/// the retina; empty: all is seen as what stands still.
 BandGains band_gains(const ChannelGrid& grid, const ChannelFilters& filters, const std::vector<float>& speed,
                      double response_per_contrast) {
   BandGains gains;
@@ -186,7 +186,11 @@ Detection detection_map(const DisplayedPair& pair, const std::vector<float>& spe
   const double contrast_response = response_per_log_luminance(responses.mean);
   if (!(contrast_response > 0)) return result;  // all black: nothing to see
   const ChannelGrid grid(pair.width, pair.height);
-  const ChannelFilters filters(grid, viewing.pixels_per_degree);
+  const double ppd = viewing.pixels_per_degree, area = double(pair.width) * double(pair.height) / (ppd * ppd);
+  const ChannelFilters filters(grid, ppd, [&](double frequency) {
+    return speed.empty() ? static_contrast_sensitivity(frequency, result.adaptation_luminance, area, viewing.distance)
+                         : contrast_sensitivity(frequency, kDriftSpeed);
+  });
   const BandGains gains = band_gains(grid, filters, retinal_speeds(speed, viewing.gaze), contrast_response);
   const BandTerms terms = all_terms(grid, responses, filters, gains);
   parallel_chunks(std::size_t(pair.height), 16, [&](std::size_t begin, std::size_t end) {

@@ -24,6 +24,7 @@ struct DisplayedPair {
 struct Viewing {
   double pixels_per_degree = 0;
   Gaze gaze = Gaze::track;
+  double distance = 0.6;  ///< of the display, metres
 };
 
 /// What detection_map() finds.
@@ -34,7 +35,7 @@ struct Detection {
 };
 
 /// The probability that a viewer sees a difference at each pixel. `speed` is display_speed(), deg/s; empty:
-/// everything stands still. Equal pictures give 0 everywhere, and the order of the two does not matter. The
+/// nothing is known of motion, and eyes look around in a still picture (static_contrast_sensitivity). Equal pictures give 0 everywhere, and the order of the two does not matter. The
 /// same bytes for any number of threads.
 Detection detection_map(const DisplayedPair& pair, const std::vector<float>& speed, const Viewing& viewing);
 

@@ -31,6 +31,17 @@ double contrast_sensitivity(double frequency, double speed) {
   return c0 * (6.1 + 7.3 * log_speed * log_speed * log_speed) * v * w * w * std::exp(-2 * w * (v + 2) / 45.9);
 }
 
+double static_contrast_sensitivity(double frequency, double luminance, double area, double distance) {
+  const double peak = 0.801 * std::pow(1 + 0.7 / luminance, -0.2), decay = 0.3 * std::pow(1 + 100 / luminance, 0.15);
+  const double accommodation = 0.856 * std::pow(distance, 0.14);
+  const auto at = [&](double f) {
+    if (!(f > 0)) return 0.0;
+    const double size = std::pow(std::pow(3.23 * std::pow(f * f * area, -0.3), 5) + 1, -0.2), falls = decay * f;
+    return size * peak * 0.9 * f * std::exp(-0.9 * falls) * std::sqrt(1 + 0.06 * std::exp(0.9 * falls));
+  };
+  return 250 * std::min(at(frequency / accommodation), at(frequency));
+}
+
 double receptor_response(double luminance) {
   const double x = std::pow(luminance, 0.37);  // L / (L + 12.6 L^.63) without its 0 / 0
   return 100 * x / (x + 12.6);

@@ -76,7 +76,7 @@ struct SmokePixel {
 
 /// All pixels, top row first. `depth`: the frame's Z channel (distance along the view axis), read only with surfaces_by_depth. The same for any
 /// number of threads. Slices are half a voxel long; each scatters by -expm1(-tau) / tau of its source over its length and takes
-/// exp(-tau) of what lies behind (algorithms.md 7.6). Direct light: places drawn in proportion to what they scatter towards the
+/// exp(-tau) of what lies behind (docs/methods/formulas.md). Direct light: places drawn in proportion to what they scatter towards the
 /// eye, and there a sample of the lamps, with what the media leave of it.
 std::vector<SmokePixel> compose_media(const RenderScene& scene, const CameraView& view, const MediaLight& light,
                                       const std::vector<float>& depth, const ComposeOptions& options, RayCounts& counts);

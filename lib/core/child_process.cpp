@@ -40,7 +40,7 @@ constexpr bool kMemoryIsLimited = true;
 constexpr bool kMemoryIsLimited = true;
 #endif
 
-/// Of a helper's words only the first line is passed on; the rest is read and dropped, so that it does not wait.
+/// Only the first line that a helper writes is passed on; the rest is read and dropped, so that the helper does not wait.
 constexpr std::size_t kMostWords = 1024;
 constexpr std::size_t kPiece = 1 << 16;  ///< what a pipe of Linux holds
 
@@ -180,7 +180,7 @@ class Child {
     int status = 0;
     const pid_t got = ::waitpid(child_, &status, options);
     if (got == child_) status_ = status;
-    // ECHILD: this process ignores SIGCHLD, so the kernel has waited for it. How it ended is not known, its output must tell.
+    // ECHILD: this process ignores SIGCHLD, so the kernel has waited for it. How it ended is not known; its output must show it.
     ended_ = got == child_ || (got < 0 && errno == ECHILD);
     return ended_;
   }

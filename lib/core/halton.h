@@ -12,7 +12,7 @@ namespace tempolux {
 ///
 /// i = sum a_k b^k  ->  sum perm_k(a_k) b^(-k-1), for as many digits as fit a 64-bit numerator. Digits are
 /// taken in blocks from tables of at most 2048 entries. Indices that agree modulo b^m agree in the first m
-/// digits of the result, scrambled or not: the property photon groups rest on (algorithms.md 6.2).
+/// digits of the result, scrambled or not: the property photon groups rest on (docs/methods/formulas.md).
 /// Exact for every 64-bit index; the value is rounded once and is always below 1.
 class RadicalInverse {
  public:

@@ -106,7 +106,7 @@ void parallel_ordered(std::size_t chunk_count, std::size_t in_flight,
       work();
     } catch (...) {
       {
-        const std::lock_guard lock(mutex);   // or who is about to wait would not be told
+        const std::lock_guard lock(mutex);   // else a thread that is about to wait would miss the signal
         stop = true;
       }
       changed.notify_all();

@@ -74,7 +74,7 @@ void compact(CandidateList& list, float threshold) {
   }
 }
 
-/// Of the entries equal to `value`, the largest, drops those with the highest photons until k are left.
+/// `value` is the largest. Drops entries equal to it, those with the highest photons first, until k are left.
 void drop_ties(CandidateList& list, float value, std::size_t k) {
   std::vector<std::uint32_t> ties;
   for (std::size_t i = 0; i < list.count; ++i)

@@ -57,7 +57,7 @@ std::size_t parallel_partition(std::span<T> values, std::size_t chunk, const Bel
 }
 
 /// As std::nth_element(values.begin(), values.begin() + n, values.end(), less): less is a strict order without ties. A sample
-/// tells two values that lie close before and behind the one sought; what is outside of them is parted off by all threads.
+/// gives two values that lie close before and behind the one sought; all threads part off what is outside of them.
 template <class T, class Less>
 void parallel_nth_element(std::span<T> values, std::size_t n, const Less& less) {
   constexpr std::size_t kSample = 1 << 10, kMargin = kSample / 16, kChunk = 1 << 15;   // 4 standard deviations of a median's rank

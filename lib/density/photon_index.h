@@ -88,7 +88,7 @@ class PhotonIndex {
   std::size_t size() const { return size_; }
 
   /// The k nearest photons that pass, or all of them if they are fewer, by ascending position in the index.
-  /// Of photons at equal distance the one with the lower position is nearer. A point that is not finite
+  /// If photons are at equal distance, the one with the lower position counts as nearer. A point that is not finite
   /// finds nothing.
   /// Throws std::invalid_argument unless 1 <= k <= kMaxNeighbours.
   void find_nearest(const PhotonQuery& query, int k, NeighbourList& found) const;

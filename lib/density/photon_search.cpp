@@ -215,7 +215,7 @@ struct PhotonSearch {
     if (list.count > 0) tighten(std::min(k, list.count));
   }
 
-  /// By the guess if there is one (finite, above 0); if it was too small, from the beginning.
+  /// Searches within the guess if there is one (finite, above 0), and from the beginning if the guess was too small.
   template <bool kFilter, bool kFlat>
   void nearest(std::size_t k, float max_radius2, float guess2) {
     if (guess2 > 0 && std::isfinite(guess2)) {

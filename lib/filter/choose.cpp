@@ -3,170 +3,244 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lib/filter/light_frame.h"
 #include "lib/filter/rows.h"
+#include "lib/filter/surfaces.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kAround = 2;          ///< pixels: estimates are means over 5 x 5 pixels of a kind, twice
-constexpr float kDark = 0.02f;      ///< of the layer's mean: darker light counts as if it were so bright
-constexpr float kOwnNoise = 0.25f;   ///< share of a pixel's own noise in its scale
-constexpr std::uint8_t kNoNumber = 2;   ///< kind of pixels that no estimate counts: a half is not finite, or too bright for squares
+constexpr int kAround = 4;  ///< pixels
+constexpr int kWindow = (2 * kAround + 1) * (2 * kAround + 1);
+constexpr float kDark = 0.02f;      ///< of the layer's mean
+constexpr float kOwnNoise = 0.25f;  ///< share of a pixel's own noise in its scale
+/// 1 / sum of the squared weights of Neighbourhood::mean: n equal values summed twice have n (2 n^2 + 1) / 3 for the sum of squared
+/// weights, over n^4.
+constexpr float kWorth = [] {
+  const float n = 2 * kAround + 1, line = 3 * n * n * n / (2 * n * n + 1);
+  return line * line;
+}();
 
-using Values = std::vector<float>;
+float squared(float v) { return v * v; }
 
-/// Means over the pixels of the picture within `radius`.
-Values smoothed(const Values& values, int width, int height, int radius) {
-  Values rows(values.size()), out(values.size());
-  const auto at = [&](int x, int y) { return std::size_t(y) * std::size_t(width) + std::size_t(x); };
-  for_each_row(height, [&](int y) {
+/// Sums over the window around each pixel.
+Plane box_sums(const Plane& values, int width, int height) {
+  Plane rows(width, height), out = Plane::unset(width, height);
+  const auto add_up = [&](const auto& from, float* to) {
     for (int x = 0; x < width; ++x) {
-      const int first = std::max(0, x - radius), last = std::min(width - 1, x + radius);
       float sum = 0;
-      for (int i = first; i <= last; ++i) sum += values[at(i, y)];
-      rows[at(x, y)] = sum / float(last - first + 1);
+      for (int d = -kAround; d <= kAround; ++d) sum += from(x, d);
+      to[x] = sum;
     }
+  };
+  for_each_row(height, [&](int y) {
+    const float* row = values.row(y);
+    add_up([row](int x, int d) { return row[x + d]; }, rows.row(y));
   });
   for_each_row(height, [&](int y) {
-    const int first = std::max(0, y - radius), last = std::min(height - 1, y + radius);
-    for (int x = 0; x < width; ++x) {
-      float sum = 0;
-      for (int j = first; j <= last; ++j) sum += rows[at(x, j)];
-      out[at(x, y)] = sum / float(last - first + 1);
-    }
+    const float* row = rows.row(y);
+    const auto stride = std::ptrdiff_t(rows.stride());
+    add_up([row, stride](int x, int d) { return row[x + d * stride]; }, out.row(y));
   });
   return out;
 }
 
-float squared(float v) { return v * v; }
-
 class Choice {
  public:
-  Choice(const Halves& raw, const std::vector<Halves>& candidates, const std::vector<std::uint8_t>& kinds, int width, int height)
-      : raw_(raw), candidates_(candidates), kinds_(kinds), width_(width), height_(height), count_(kinds.size()) {
+  Choice(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark)
+      : raw_(raw),
+        candidates_(candidates),
+        near_(around),
+        width_(std::size_t(around.width())),
+        count_(around.count()),
+        counts_(count_, 1),
+        dark_(dark) {
     for (std::size_t p = 0; p < count_; ++p)
       for (std::size_t c = 0; c < 3; ++c)
-        if (!(std::abs(raw.a[c][p]) < kLargestLight && std::abs(raw.b[c][p]) < kLargestLight)) kinds_[p] = kNoNumber;
+        if (!(std::abs(raw.a[c][p]) < kLargestLight && std::abs(raw.b[c][p]) < kLargestLight)) counts_[p] = 0;
   }
 
   Colours run() {
     take_scale();
-    const Values of_raw = around([&](std::size_t p, std::size_t c) { return squared(raw_.a[c][p] - raw_.b[c][p]) / 4; });
-    const std::vector<Values> shares = take_shares();
-    Halves best;
-    for (std::size_t c = 0; c < 3; ++c) {
-      best.a[c] = mixed(shares, [&](const Halves& h) -> const Values& { return h.a[c]; });
-      best.b[c] = mixed(shares, [&](const Halves& h) -> const Values& { return h.b[c]; });
-    }
-    const Values covariance =
-        around([&](std::size_t p, std::size_t c) { return (best.a[c][p] - best.b[c][p]) * (raw_.a[c][p] - raw_.b[c][p]) / 4; });
-    const Values apart =
-        around([&](std::size_t p, std::size_t c) { return squared(best.a[c][p] + best.b[c][p] - raw_.a[c][p] - raw_.b[c][p]) / 4; });
+    take_best();
     Colours out;
-    for (std::size_t c = 0; c < 3; ++c) {
-      out[c].resize(count_);
-      for (std::size_t p = 0; p < count_; ++p) {
-        const float w = apart[p] > 0 ? std::clamp((of_raw[p] - covariance[p]) / apart[p], 0.0f, 1.0f) : 0.0f;
-        const float m = (raw_.a[c][p] + raw_.b[c][p]) / 2, f = (best.a[c][p] + best.b[c][p]) / 2;
-        out[c][p] = kinds_[p] != kNoNumber ? m + w * (f - m) : std::isfinite(m) ? m : (candidates_.back().a[c][p] + candidates_.back().b[c][p]) / 2;
+    for (std::vector<float>& plane : out) plane.resize(count_);
+    for_each_pixel([&](std::size_t p, int x, int y) {
+      const float w = share(p, x, y);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float m = (raw_.a[c][p] + raw_.b[c][p]) / 2, f = (best_.a[c][p] + best_.b[c][p]) / 2;
+        out[c][p] = counts_[p] ? m + w * (f - m) : std::isfinite(m) ? m : (candidates_.back().a[c][p] + candidates_.back().b[c][p]) / 2;
       }
-    }
+    });
     return out;
   }
 
  private:
+  /// body(index, x, y).
+  template <class Body>
+  void for_each_pixel(const Body& body) const {
+    for_each_row(near_.height(), [&](int y) {
+      for (std::size_t x = 0; x < width_; ++x) body(std::size_t(y) * width_ + x, int(x), y);
+    });
+  }
+
   /// 1 / (light around + part of the pixel's own noise)^2.
   void take_scale() {
-    Values light(count_);
-    double total = 0;
-    for (std::size_t p = 0; p < count_; ++p) {
-      if (kinds_[p] == kNoNumber) continue;
-      for (std::size_t c = 0; c < 3; ++c) light[p] += (raw_.a[c][p] + raw_.b[c][p]) / 6;
-      total += double(light[p]);
-    }
-    light = smoothed(light, width_, height_, kAround);
-    const float dark = std::max(kDark * float(total / double(count_)), 1e-18f);
-    scale_.resize(count_);
-    for (std::size_t p = 0; p < count_; ++p) {
+    Plane light(near_.width(), near_.height());
+    for_each_pixel([&](std::size_t p, int x, int y) {
+      for (std::size_t c = 0; c < 3 && counts_[p]; ++c) light.at(x, y) += (raw_.a[c][p] + raw_.b[c][p]) / 6;
+    });
+    light = box_sums(light, near_.width(), near_.height());
+    scale_.assign(count_, 0.0f);
+    for_each_pixel([&](std::size_t p, int x, int y) {
       float noise = 0;
       for (std::size_t c = 0; c < 3; ++c) noise += std::abs(raw_.a[c][p] - raw_.b[c][p]) / 6;
-      scale_[p] = 1 / squared(std::max(light[p], 0.0f) + dark + kOwnNoise * noise);
-    }
+      if (counts_[p]) scale_[p] = 1 / squared(std::max(light.at(x, y) / float(kWindow), 0.0f) + dark_ + kOwnNoise * noise);
+    });
   }
 
   /// Sums over colours, scaled, as means of what is around.
   template <class Estimate>
-  Values around(const Estimate& estimate) const {
-    Values values(count_);
-    for (std::size_t p = 0; p < count_; ++p) {
-      if (kinds_[p] == kNoNumber) continue;
-      float sum = 0;
-      for (std::size_t c = 0; c < 3; ++c) sum += estimate(p, c);
-      values[p] = sum * scale_[p];
-    }
-    return of_kind(std::move(values));
-  }
-
-  /// Means over pixels around of the same kind, twice: near ones count more.
-  Values of_kind(Values values) const {
-    for (int pass = 0; pass < 2; ++pass) {
-      Values out(count_);
-      for (std::uint8_t kind = 0; kind < 2; ++kind) {
-        Values masked(count_), weight(count_);
-        for (std::size_t p = 0; p < count_; ++p)
-          if (kinds_[p] == kind) masked[p] = values[p], weight[p] = 1;
-        masked = smoothed(masked, width_, height_, kAround);
-        weight = smoothed(weight, width_, height_, kAround);
-        for (std::size_t p = 0; p < count_; ++p)
-          if (kinds_[p] == kind) out[p] = masked[p] / weight[p];
-      }
-      values = std::move(out);
-    }
-    return values;
+  Plane around(const Estimate& estimate) const {
+    Plane values = Plane::unset(near_.width(), near_.height());
+    for_each_pixel([&](std::size_t p, int x, int y) {
+      values.at(x, y) = counts_[p] ? (estimate(p, 0) + estimate(p, 1) + estimate(p, 2)) * scale_[p] : 0;
+    });
+    return near_.mean(values);
   }
 
   /// Of each candidate the share that it has in the best one.
-  std::vector<Values> take_shares() const {
-    std::vector<Values> errors;
-    for (const Halves& f : candidates_)
+  std::vector<Plane> take_shares() const {
+    std::vector<Plane> errors, shares;
+    for (const Halves& f : candidates_) {
       errors.push_back(around([&](std::size_t p, std::size_t c) {
-        const float a = raw_.a[c][p], b = raw_.b[c][p];
-        return (squared(f.a[c][p] - b) + squared(f.b[c][p] - a) - squared(a - b)) / 2 - squared(f.a[c][p] - f.b[c][p]) / 4;
+        const float a = raw_.a[c][p], b = raw_.b[c][p], fa = f.a[c][p], fb = f.b[c][p];
+        return (squared(fa + fb - a - b) - squared(a - b)) / 4 + (fa - fb) * (a - b) / 2;
       }));
-    std::vector<Values> shares(errors.size(), Values(count_, 0));
-    for (std::size_t p = 0; p < count_; ++p) {
+      shares.emplace_back(near_.width(), near_.height());
+    }
+    for_each_pixel([&](std::size_t, int x, int y) {
       std::size_t best = 0;
       for (std::size_t k = 1; k < errors.size(); ++k)
-        if (errors[k][p] < errors[best][p]) best = k;
-      shares[best][p] = 1;
-    }
-    for (Values& share : shares) share = of_kind(std::move(share));
+        if (errors[k].at(x, y) < errors[best].at(x, y)) best = k;
+      shares[best].at(x, y) = 1;
+    });
+    for (Plane& share : shares) share = near_.mean(share);
     return shares;
   }
 
-  template <class Of>
-  Values mixed(const std::vector<Values>& shares, const Of& of) const {
-    Values out(count_, 0);
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      const Values& from = of(candidates_[k]);
-      for (std::size_t p = 0; p < count_; ++p) out[p] += shares[k][p] * from[p];
+  /// The candidates by their shares, and what it errs by.
+  void take_best() {
+    const std::vector<Plane> shares = take_shares();
+    for (std::size_t c = 0; c < 3; ++c)
+      for (const auto half : {&Halves::a, &Halves::b}) {
+        std::vector<float>& mixed = (best_.*half)[c];
+        mixed.assign(count_, 0.0f);
+        for (std::size_t k = 0; k < candidates_.size(); ++k)
+          for_each_pixel([&](std::size_t p, int x, int y) { mixed[p] += shares[k].at(x, y) * (candidates_[k].*half)[c][p]; });
+      }
+    std::array<Plane, 3> own;
+    for (Plane& plane : own) plane = Plane(near_.width(), near_.height());
+    for_each_pixel([&](std::size_t p, int x, int y) {
+      const Estimate e = estimate(p);
+      own[0].at(x, y) = e.gain;
+      own[1].at(x, y) = e.square;
+      own[2].at(x, y) = e.apart;
+    });
+    gain_ = near_.mean(own[0]);
+    square_ = near_.mean(own[1]);
+    apart_ = near_.mean(own[2]);
+  }
+
+  /// Of a pixel, or means: V - C, its square, (F - M)^2; all scaled, sums over colours.
+  struct Estimate {
+    float gain = 0, square = 0, apart = 0;
+  };
+  Estimate estimate(std::size_t p) const {
+    Estimate e;
+    if (!counts_[p]) return e;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float a = raw_.a[c][p], b = raw_.b[c][p], f = best_.a[c][p], g = best_.b[c][p];
+      e.gain += (squared(a - b) - (f - g) * (a - b)) / 4;
+      e.apart += squared(f + g - a - b) / 4;
     }
-    return out;
+    e.gain *= scale_[p];
+    e.apart *= scale_[p];
+    e.square = squared(e.gain);
+    return e;
+  }
+
+  /// w. Inside surfaces the gain may be a standard error more than is found: what is around is worth kWorth pixels, and with noise alone (F - M)^2 is as
+  /// uncertain as V - C.
+  float share(std::size_t p, int x, int y) const {
+    const float gain = gain_.at(x, y), apart = apart_.at(x, y);
+    const float error = near_.kind(p) == 1 ? std::sqrt(2 * std::max(0.0f, square_.at(x, y) - squared(gain)) / kWorth) : 0;
+    return apart > 0 ? std::clamp((gain + error) / apart, 0.0f, 1.0f) : 0.0f;
   }
 
   const Halves& raw_;
   const std::vector<Halves>& candidates_;
-  std::vector<std::uint8_t> kinds_;
-  int width_, height_;
-  std::size_t count_;
-  Values scale_;
+  const Neighbourhood& near_;
+  std::size_t width_, count_;
+  std::vector<std::uint8_t> counts_;  ///< 0: no estimate counts the pixel
+  float dark_;
+  std::vector<float> scale_;
+  Halves best_;
+  Plane gain_, square_, apart_;  ///< means of Estimate
 };
 
 }  // namespace
 
-Colours choose(const Halves& raw, const std::vector<Halves>& candidates, const std::vector<std::uint8_t>& kinds, int width, int height) {
-  return Choice(raw, candidates, kinds, width, height).run();
+Neighbourhood::Neighbourhood(std::vector<std::uint8_t> kinds, int width, int height)
+    : kinds_(std::move(kinds)), width_(width), height_(height) {
+  Plane ones(width, height);
+  for (int y = 0; y < height; ++y) std::fill_n(ones.row(y), width, 1.0f);
+  share_ = sums(ones);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) share_.at(x, y) = 1 / share_.at(x, y);
+}
+
+/// Sums over the pixels of the same kind in the window.
+Plane Neighbourhood::sums(const Plane& values) const {
+  std::array<Plane, 2> of_kind{Plane(width_, height_), Plane(width_, height_)};
+  const auto kinds = [&](int y) { return kinds_.data() + std::size_t(y) * std::size_t(width_); };
+  for_each_row(height_, [&](int y) {
+    const float* from = values.row(y);
+    for (int x = 0; x < width_; ++x) {
+      of_kind[1].row(y)[x] = kinds(y)[x] ? from[x] : 0;
+      of_kind[0].row(y)[x] = kinds(y)[x] ? 0 : from[x];
+    }
+  });
+  for (Plane& plane : of_kind) plane = box_sums(plane, width_, height_);
+  for_each_row(height_, [&](int y) {
+    for (int x = 0; x < width_; ++x) of_kind[0].row(y)[x] = of_kind[kinds(y)[x]].row(y)[x];
+  });
+  return std::move(of_kind[0]);
+}
+
+Plane Neighbourhood::mean(const Plane& values) const {
+  Plane means = sums(values);
+  const auto divide = [&] {
+    for_each_row(height_, [&](int y) {
+      for (int x = 0; x < width_; ++x) means.row(y)[x] *= share_.row(y)[x];
+    });
+  };
+  divide();
+  means = sums(means);
+  divide();
+  return means;
+}
+
+Colours choose(const Halves& raw, const std::vector<Halves>& candidates, const Neighbourhood& around, float dark) {
+  return Choice(raw, candidates, around, dark).run();
+}
+
+float dark_of(const std::array<const std::vector<float>*, 3>& layer) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const std::vector<float>* values : layer)
+    for (const float v : *values)
+      if (std::abs(v) < kLargestLight) sum += double(v), ++count;
+  return std::max(kDark * float(sum / double(std::max<std::size_t>(1, count))), 1e-18f);
 }
 
 }  // namespace tempolux

@@ -1,170 +1,232 @@
 #include "lib/filter/filter_frame.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "formats/error.h"
-#include "lib/filter/collect.h"
+#include "lib/filter/choose.h"
 #include "lib/filter/fit.h"
 #include "lib/filter/picture.h"
 #include "lib/filter/resolve.h"
 #include "lib/filter/rows.h"
 #include "lib/filter/unmix.h"
-#include "lib/filter/visible_blur.h"
+#include "lib/image/channel_groups.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kFirstRadius = 2;   ///< pixels: of the fit that values are compared by
-/// Pixels at edges keep their values, if they are numbers: what they see of which surface is not known.
-void write_inside(const LightFrame& frame, const EdgePlane& light, std::vector<float>& values) {
-  for_each_row(frame.height, [&](int y) {
-    float* to = values.data() + std::size_t(y) * std::size_t(frame.width);
-    for (int x = 0; x < frame.width; ++x)
-      if ((frame.inside.at(x, y) != 0 || frame.use.at(x, y) != 0 || !std::isfinite(to[x])) && !is_too_bright(to[x])) to[x] = light.own_at(x, y);
-  });
+/// Frames of a window that differ in size or layers.
+void check_frame(const LightGroup& frame, const LightGroup& other) {
+  if (other.surfaces.width != frame.surfaces.width || other.surfaces.height != frame.surfaces.height)
+    throw InputError("frames of " + std::to_string(frame.surfaces.width) + "x" + std::to_string(frame.surfaces.height) + " and of " +
+                     std::to_string(other.surfaces.width) + "x" + std::to_string(other.surfaces.height) +
+                     " pixels; all frames of a window have one size");
+  if (other.layers != frame.layers || other.surfaces.albedo[0].empty() != frame.surfaces.albedo[0].empty())
+    throw InputError("frames of a window have different layers; write all with the same --channels");
 }
 
-/// What stands for knowledge of noise where there is none.
-struct PlainWeights {
-  Plane in_time;               ///< 1: the pixel takes light from other frames
-  Plane reach2;                ///< FitOptions
+/// Candidates of one group, by layer.
+class Candidates {
+ public:
+  Candidates(const LightGroup& group, const Coverage& coverage, int scales)
+      : group_(group), coverage_(coverage), scales_(scales), of_layer_(group.layers.size()) {}
+
+  /// Of what was collected of so many frames; the group's raw light is of one.
+  void add(const BothHalves& collected, int frames) {
+    const Plane variance = smoothed(group_.surfaces, group_.variance);
+    std::vector<BothHalves> fitted;
+    const Surfaces& on = group_.surfaces;
+    if (scales_ > 0) fitted.push_back(fit(on, collected, nullptr, frames == 1 ? kSmallAlike : kSmall, variance));
+    if (scales_ > 1) fitted.push_back(fit(on, fitted[0], &fitted[0], kLarge, variance));
+    std::array<std::vector<ColourPlane>, 2> other;
+    for (std::size_t h = 0; h < 2 && !fitted.empty(); ++h) other[h] = unmix(group_, h, collected[h], coverage_, frames, fitted.back()[h]);
+    if (frames > 1) add_candidate(collected, other);
+    for (BothHalves& halves : fitted) {
+      for (std::size_t h = 0; h < 2; ++h) fill(fitted.back()[h], halves[h]);
+      add_candidate(halves, other);
+    }
+  }
+  const std::vector<Halves>& of(std::size_t layer) const { return of_layer_[layer]; }
+
+ private:
+  /// What a small window does not know takes what the largest has found.
+  void fill(const Light& largest, Light& light) const {
+    for_each_row(group_.surfaces.height, [&](int y) {
+      for (int x = 0; x < group_.surfaces.width; ++x)
+        for (std::size_t l = 0; l < light.layers.size() && light.weight.at(x, y) < kFewestPixels; ++l)
+          for (std::size_t c = 0; c < 3 && !light.layers[l][c].empty(); ++c) light.layers[l][c].at(x, y) = largest.layers[l][c].at(x, y);
+    });
+  }
+
+  void add_candidate(const BothHalves& light, const std::array<std::vector<ColourPlane>, 2>& other) {
+    const Surfaces& on = group_.surfaces;
+    const Plane none;
+    for (std::size_t l = 0; l < of_layer_.size(); ++l) {
+      Halves& candidate = of_layer_[l].emplace_back();
+      for (std::size_t h = 0; h < 2; ++h)
+        for (std::size_t c = 0; c < 3; ++c) {
+          std::vector<float>& values = (h == 0 ? candidate.a : candidate.b)[c];
+          values.assign(std::size_t(on.width) * std::size_t(on.height), 0.0f);
+          if (const Plane& own = light[h].layers[l][c]; !own.empty())
+            resolve({own, other[h].empty() ? none : other[h][l][c], on.albedo[c]}, coverage_, on.width, on.height, values);
+        }
+    }
+  }
+
+  const LightGroup& group_;
+  const Coverage& coverage_;
+  int scales_;
+  std::vector<std::vector<Halves>> of_layer_;
 };
 
-PlainWeights plain_weights(const Image& image, const FlowFrame& flow, const FilterOptions& options) {
-  constexpr float kDeviations2 = 8;   // (1 - r^2 / (8 s^2))^2 has the standard deviation s along each axis
-  PlainWeights plain{Plane::unset(image.width, image.height), Plane::unset(image.width, image.height)};
-  const VisibleBlur blur(options.pixels_per_degree);
-  const auto found = image.numbers.find("framesPerSecond");
-  const float fps = found != image.numbers.end() && found->second > 0 ? float(found->second) : 24.0f;
-  for_each_row(image.height, [&](int y) {
-    for (int x = 0; x < image.width; ++x) {
-      FlowFrame::Step step = flow.step(std::size_t(y) * std::size_t(image.width) + std::size_t(x), 1);
-      if (!step.known) step = flow.step(std::size_t(y) * std::size_t(image.width) + std::size_t(x), -1);
-      const float speed = step.known ? fps * std::hypot(step.right, step.down) : 0, sigma = blur.sigma(speed);
-      plain.in_time.at(x, y) = blur.hides(speed) ? 1.0f : 0.0f;
-      plain.reach2.at(x, y) = kDeviations2 * sigma * sigma;
-    }
-  });
-  return plain;
-}
-
-/// Puts what a first fit of the sum of the layers finds in the place of the means that values are compared by: a plane follows light that
-/// changes where a mean lags behind. Its variance is that of as many samples, times 3: at the border of a window a plane knows its value by
-/// 4 times less than a mean does, in the middle by as much.
-void compare_by_fit(const LightFrame& frame, int radius, Collected& collected) {
-  constexpr float kPlane = 3;
-  // A view of the same pixels whose only layer is the sum; the planes are lent and taken back.
-  Collected sum;
-  sum.light.resize(1);
-  for (Plane& plane : sum.light[0]) plane = Plane(frame.width, frame.height);   // 0
-  for_each_row(frame.height, [&](int y) {
-    for (std::size_t c = 0; c < 3; ++c)
-      for (const ColourPlane& layer : collected.light)
-        if (!layer[c].empty())
-          for (int x = 0; x < frame.width; ++x) sum.light[0][c].at(x, y) += layer[c].at(x, y);
-  });
-  sum.weight = std::move(collected.weight);
-  sum.mean = std::move(collected.mean);
-  sum.mean_variance = std::move(collected.mean_variance);
-  Fitted first = fit(frame, sum, {.radius = std::min(kFirstRadius, radius)});
-  collected.weight = std::move(sum.weight);
-  collected.mean = std::move(first.light[0]);
-  collected.mean_variance = std::move(sum.mean_variance);
-  for_each_row(frame.height, [&](int y) {
-    for (int x = 0; x < frame.width; ++x)
-      collected.mean_variance.at(x, y) = kPlane * frame.variance.at(x, y) / std::max(first.support.at(x, y), 1.0f);
-  });
+/// The halves of a layer, as radiance.
+Halves raw_halves(const Image& image, const LightGroup& group, std::size_t l) {
+  const Surfaces& on = group.surfaces;
+  Halves raw;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::vector<float>& mean = image.find(channel_name(group.layers[l], c))->values;
+    raw.a[c] = raw.b[c] = mean;
+    if (group.raw[0].layers[l][c].empty()) continue;
+    for_each_row(on.height, [&](int y) {
+      for (int x = 0; x < on.width; ++x) {
+        const std::size_t p = std::size_t(y) * std::size_t(on.width) + std::size_t(x);
+        const float noise = (group.raw[0].layers[l][c].at(x, y) - group.raw[1].layers[l][c].at(x, y)) / 2 * on.albedo_at(c, x, y);
+        raw.a[c][p] += noise;
+        raw.b[c][p] -= noise;
+      }
+    });
+  }
+  return raw;
 }
 
 }  // namespace
 
-void check_frame(const LightFrame& frame, const LightFrame& other) {
-  if (other.width != frame.width || other.height != frame.height)
-    throw InputError("frames of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + " and of " +
-                     std::to_string(other.width) + "x" + std::to_string(other.height) + " pixels; all frames of a window have one size");
-  if (other.layers != frame.layers || other.albedo[0].empty() != frame.albedo[0].empty())
-    throw InputError("frames of a window have different layers; write all with the same --channels");
+WindowLight::WindowLight(const Image& image, bool alone) : light(image) {
+  if (const auto& matte = light.group(0); matte && !alone)
+    guides = fit(matte->surfaces, matte->raw, nullptr, kSmallAlike, smoothed(matte->surfaces, matte->variance));
 }
 
 struct FrameFilter::State {
-  const LightFrame& frame;
+  const WindowLight& middle;
   const FlowFrame& flow;
   FilterOptions options;
   std::size_t before, after, added = 0;
-  PlainWeights plain;                    ///< empty if noise is known
-  std::optional<Collector> collector;
+  std::array<std::optional<Collector>, 2> collectors;  ///< of the matte layers, by half; mirrors' light has no flow of its own
 
-  bool by_value() const { return frame.noise != NoiseKnowledge::none; }
-  /// Of a frame so many frames away.
-  float weight(std::size_t away) const {
-    constexpr float kEnd = 1.5f;   // standard deviations
-    if (by_value() || away == 0) return 1;
-    const float deviations = kEnd * float(away) / float(std::max(before, after));
-    return std::exp(-0.5f * deviations * deviations);
+  float dark(const Image& image, const std::string& layer) const {
+    if (const auto found = options.dark.find(layer); found != options.dark.end()) return found->second;
+    return dark_of(image.rgb(layer));
+  }
+
+  void filter_group(std::size_t g, const Coverage& coverage, Image& image) {
+    const LightGroup& group = *middle.light.group(g);
+    const Surfaces& on = group.surfaces;
+    Candidates candidates(group, coverage, options.scales);
+    candidates.add(group.raw, 1);
+    if (g == 0 && collectors[0]) candidates.add({collectors[0]->take(), collectors[1]->take()}, int(1 + added));
+    std::vector<std::uint8_t> kinds(image.pixel_count());
+    for (int y = 0; y < on.height; ++y)
+      for (int x = 0; x < on.width; ++x) kinds[std::size_t(y) * std::size_t(on.width) + std::size_t(x)] = on.inside.at(x, y) != 0;
+    const Neighbourhood around(std::move(kinds), on.width, on.height);
+    for (std::size_t l = 0; l < group.layers.size(); ++l) {
+      if (candidates.of(l).empty() || group.raw[0].layers[l][0].empty()) continue;
+      Colours chosen = choose(raw_halves(image, group, l), candidates.of(l), around, dark(image, group.layers[l]));
+      for (std::size_t c = 0; c < 3; ++c) float_channel(image, channel_name(group.layers[l], c))->values = std::move(chosen[c]);
+    }
   }
 };
 
-FrameFilter::FrameFilter(const Image& image, const WindowFrame& middle, std::size_t before, std::size_t after, const FilterOptions& options)
-    : state_(new State{*middle.light, *middle.flow, options, before, after, 0, {}, {}}) {
-  if (options.radius < 0 || options.radius > kMargin) throw std::invalid_argument("FrameFilter: radius");
-  if (!state_->by_value()) state_->plain = plain_weights(image, state_->flow, options);
-  state_->collector.emplace(middle, state_->weight(0), state_->by_value() ? nullptr : &state_->plain.in_time);
+FrameFilter::FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after,
+                         const FilterOptions& options)
+    : state_(new State{middle, flow, options, before, after, 0, {}}) {
+  if (options.scales < 0 || options.scales > kMostScales) throw std::invalid_argument("FrameFilter: scales");
+  if (before + after > 0 && middle.guides)
+    for (std::size_t h = 0; h < 2; ++h) state_->collectors[h].emplace(WindowFrame{&*middle.light.group(0), &*middle.guides, &flow}, h);
 }
 
 FrameFilter::~FrameFilter() = default;
 
-void FrameFilter::add(const WindowFrame& frame) {
+void FrameFilter::add(const WindowLight& frame, const FlowFrame& flow) {
   State& state = *state_;
-  check_frame(state.frame, *frame.light);
   if (state.added >= state.before + state.after) throw std::invalid_argument("FrameFilter: more frames than the window has");
-  const bool is_after = state.added >= state.before;
-  const std::size_t away = state.added - (is_after ? state.before : 0) + 1;
-  if (away == 1) state.collector->start(state.flow, is_after ? 1 : -1);
-  state.collector->add(frame, state.weight(away));
+  if (state.middle.guides.has_value() != frame.guides.has_value())
+    throw InputError("frames of a window have different layers; write all with the same --channels");
+  const bool is_after = state.added >= state.before, first = state.added == (is_after ? state.before : 0);
   ++state.added;
+  if (!frame.guides) return;
+  check_frame(*state.middle.light.group(0), *frame.light.group(0));
+  for (std::optional<Collector>& collector : state.collectors) {
+    if (first) collector->start(is_after ? 1 : -1);
+    collector->add({&*frame.light.group(0), &*frame.guides, &flow});
+  }
 }
 
 Image FrameFilter::finish(Image image) {
-  State& state = *state_;
-  const LightFrame& frame = state.frame;
-  if (state.added != state.before + state.after) throw std::invalid_argument("FrameFilter: frames of the window are missing");
-  const bool by_layers = !frame.layers[0].empty();
-  const LayerSums before = by_layers ? sum_layers(image) : LayerSums{};
-  Collected collected = state.collector->take();
-  state.collector.reset();
-  FitOptions fit_options;
-  fit_options.radius = state.options.radius;
-  fit_options.by_value = state.by_value();
-  if (fit_options.by_value) compare_by_fit(frame, fit_options.radius, collected);
-  else fit_options.reach2 = &state.plain.reach2;
-  Fitted fitted = fit(frame, collected, fit_options);
+  if (state_->added != state_->before + state_->after) throw std::invalid_argument("FrameFilter: frames of the window are missing");
+  const LayerSums before = sum_layers(image);
   const Coverage coverage(image);
-  unmix(frame, collected, coverage, fit_options.radius, int(1 + state.added), fitted);
-
-  for (std::size_t l = 0; l < frame.layers.size(); ++l)
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (fitted.light[l][c].empty()) continue;   // black before and after
-      const EdgePlane light{fitted.light[l][c], fitted.other[l][c], frame.albedo[c]};
-      std::vector<float>& values = float_channel(image, channel_name(frame.layers[l], c))->values;
-      if (coverage.known()) resolve(light, coverage, frame.width, frame.height, values);
-      else write_inside(frame, light, values);
-    }
-  if (coverage.known()) resolve_passing(frame, coverage, image);
-  if (by_layers) renew_picture(before, sum_layers(image), image);
+  for (std::size_t g = 0; g < FrameLight::kGroups; ++g)
+    if (state_->middle.light.group(g)) state_->filter_group(g, coverage, image);
+  renew_picture(before, sum_layers(image), image);
   leave_numbers(image);
   return image;
 }
 
-Image filter_frame(Image image, std::span<const WindowFrame> window, std::size_t middle, const FilterOptions& options) {
-  FrameFilter filter(image, window[middle], middle, window.size() - 1 - middle, options);
-  for (std::size_t i = middle; i > 0; --i) filter.add(window[i - 1]);
-  for (std::size_t i = middle + 1; i < window.size(); ++i) filter.add(window[i]);
-  return filter.finish(std::move(image));
+namespace {
+
+/// Pixels around a tile that its own depend on: the fits' windows, two for what is smoothed and on one surface, the windows of unmix() and
+/// resolve(), those of choose() six times.
+constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 6 * 4; }
+
+Image cut_out(const Image& image, int left, int top, int width, int height) {
+  Image out{width, height, {}, {}, {}, {}};
+  const auto copy = [&](const auto& from, auto& to) {
+    if (from.empty()) return;
+    to.resize(out.pixel_count());
+    for (int y = 0; y < height; ++y)
+      std::copy_n(from.data() + std::size_t(top + y) * std::size_t(image.width) + std::size_t(left), width,
+                  to.data() + std::size_t(y) * std::size_t(width));
+  };
+  for (const Channel& channel : image.channels) {
+    if (!is_read_to_filter(channel.name)) continue;
+    Channel& part = out.channels.emplace_back(Channel{channel.name, {}, {}});
+    copy(channel.values, part.values);
+    copy(channel.ids, part.ids);
+  }
+  return out;
+}
+
+}  // namespace
+
+Image filter_alone(Image image, const FilterOptions& options) {
+  constexpr int kWide = 480, kHigh = 270;
+  FilterOptions of_tile = options;
+  for (const char* layer : {"", "emission", "specular", "direct", "caustic", "indirect"})
+    if (holds(image, channel_name(layer, 0)) && holds(image, channel_name(layer, 1)) && holds(image, channel_name(layer, 2)))
+      of_tile.dark[layer] = dark_of(image.rgb(layer));
+  Image out{image.width, image.height, {}, {}, {}, {}};
+  for (int top = 0; top < image.height; top += kHigh)
+    for (int left = 0; left < image.width; left += kWide) {
+      const int x0 = std::max(0, left - reach()), y0 = std::max(0, top - reach());
+      const int x1 = std::min(image.width, left + kWide + reach()), y1 = std::min(image.height, top + kHigh + reach());
+      Image tile = cut_out(image, x0, y0, x1 - x0, y1 - y0);
+      const WindowLight light(tile, true);
+      const FlowFrame flow;
+      tile = FrameFilter(light, flow, 0, 0, of_tile).finish(std::move(tile));
+      for (const Channel& channel : tile.channels) {
+        if (channel.values.empty() || !(is_in_group(channel.name, "layers") || is_in_group(channel.name, "RGBA"))) continue;
+        Channel* to = float_channel(out, channel.name);
+        std::vector<float>& values = to ? to->values : out.add(channel.name).values;
+        for (int y = top; y < std::min(image.height, top + kHigh); ++y)
+          std::copy_n(channel.values.data() + std::size_t(y - y0) * std::size_t(tile.width) + std::size_t(left - x0),
+                      std::min(kWide, image.width - left), values.data() + std::size_t(y) * std::size_t(image.width) + std::size_t(left));
+      }
+    }
+  for (Channel& channel : out.channels) float_channel(image, channel.name)->values = std::move(channel.values);
+  leave_numbers(image);
+  return image;
 }
 
 }  // namespace tempolux

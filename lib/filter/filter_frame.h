@@ -1,37 +1,49 @@
-// lib/filter/filter_frame.h -- a frame filtered in space and time: fewer samples for the same picture.
+// lib/filter/filter_frame.h -- a frame filtered in space and time where the halves of its samples show that it pays.
 #pragma once
 
+#include <array>
+#include <map>
 #include <memory>
-#include <span>
+#include <optional>
 #include <string>
-#include <vector>
 
-#include "lib/filter/flow_path.h"
+#include "lib/filter/collect.h"
+#include "lib/filter/fit.h"
+#include "lib/filter/light.h"
 
 namespace tempolux {
 
+/// Fits in space. The large windows take what small ones have found that do not overlap, and reach 7 pixels.
+inline constexpr FitOptions kSmall{2, 1, false}, kSmallAlike{2, 1, true}, kLarge{1, 5, false};
+inline constexpr int kMostScales = 2;
+
 struct FilterOptions {
-  int radius = 6;                     ///< pixels of the window in space, at most kMargin
-  double pixels_per_degree = 30;      ///< of the viewer's screen; where nothing is known of noise (visible_blur.h)
+  int scales = kMostScales;           ///< 1: small windows alone; 0: filter in time alone
+  std::map<std::string, float> dark;  ///< by layer dark_of() the whole picture (choose.h); without: of the image at hand
 };
 
-/// Filters the frame `image`: light in kFilteredLayers (or R G B where none of them is there) is collected along the flow
-/// (collect.h) and fitted in space (fit.h), put together at edges where `image` has coverage (resolve.h), multiplied by albedo again. Emission
-/// and specular pass by but at edges; R G B is the sum of the layers in their order where all five are there. Pixels at edges keep their own
-/// values where coverage is not known. Other channels and all attributes are the frame's.
-/// Where nothing is known of noise (LightFrame::noise) frames count by a Gaussian over the window, which ends at 1.5 of its standard
-/// deviation, and pixels by one that cannot be seen, both by the speed of the pixel (VisibleBlur); slow ones take nothing from other frames.
+/// A frame of a window: its light, and the first fits of its matte light.
+struct WindowLight {
+  FrameLight light;
+  std::optional<BothHalves> guides;  ///< none without matte light, nor for a frame that is filtered alone
+  WindowLight(const Image& image, bool alone);
+};
+
+/// Filters a frame with those around it. Each half of the light is fitted by itself at each scale (fit.h), alone and with what was
+/// collected along the flow (collect.h); which pixels count is decided by the other half. Each candidate is put together at edges where
+/// `image` has coverage (unmix.h, resolve.h) and multiplied by albedo again. choose() mixes them with the raw layer. R G B is the sum of
+/// the layers, and what it held beside them. Other channels and all attributes stay.
 class FrameFilter {
  public:
-  /// middle: made of `image`; its light outlives this. before, after: frames of the window. std::invalid_argument for options out of range.
-  FrameFilter(const Image& image, const WindowFrame& middle, std::size_t before, std::size_t after, const FilterOptions& options);
+  /// middle: made of the image; middle and flow outlive this. before, after: frames of the window.
+  FrameFilter(const WindowLight& middle, const FlowFrame& flow, std::size_t before, std::size_t after, const FilterOptions& options);
   ~FrameFilter();
   FrameFilter(const FrameFilter&) = delete;
   FrameFilter& operator=(const FrameFilter&) = delete;
 
   /// The frames of the window in the order in which they are followed: the `before` ones, the nearest first, then the `after` ones. None is
   /// looked at after the call. InputError if it differs from the middle's in size or layers.
-  void add(const WindowFrame& frame);
+  void add(const WindowLight& frame, const FlowFrame& flow);
   /// Once, after all were added.
   Image finish(Image image);
 
@@ -40,10 +52,7 @@ class FrameFilter {
   std::unique_ptr<State> state_;
 };
 
-/// InputError if two frames of a window differ in size or layers.
-void check_frame(const LightFrame& frame, const LightFrame& other);
-
-/// The same of window[middle], all of whose frames are at hand.
-Image filter_frame(Image image, std::span<const WindowFrame> window, std::size_t middle, const FilterOptions& options);
+/// The same without frames around, tile by tile: little memory beside the image's. The same bytes as FrameFilter's but for rounding.
+Image filter_alone(Image image, const FilterOptions& options);
 
 }  // namespace tempolux

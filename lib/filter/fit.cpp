@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "lib/core/parallel.h"
+#include "lib/filter/lane.h"
+#include "lib/filter/rows.h"
 #include "lib/filter/surface_weight.h"
 
 namespace tempolux {
 namespace {
 
-/// Pulls slopes to 0 as if by pixels kPull times all of them, 1 px^2 away: decides where a window has all its pixels in one column.
+/// Pulls slopes to 0 as if by pixels kPull times all of them, 1 place away: decides where a window has all its pixels in one column.
 constexpr float kPull = 0.02f;
+constexpr float kPlane = 3;  ///< variance of a plane's value over that of a mean
+constexpr std::size_t kTaps = std::size_t(kMostPlaces) * kMostPlaces;
+using Taps = std::array<Float8, kTaps>;
 
 /// Sums of weight, weight dx ... over the window, of eight pixels.
 struct Moments {
@@ -20,47 +24,51 @@ struct Moments {
 
 class StripFit {
  public:
-  StripFit(const LightFrame& frame, const Collected& collected, const FitOptions& options, Fitted& out)
-      : frame_(frame), collected_(collected), options_(options), out_(out) {}
+  StripFit(const Surfaces& surfaces, const BothHalves& from, const BothHalves* guides, const FitOptions& options, BothHalves& out)
+      : surfaces_(surfaces), from_(from), guides_(guides), options_(options), out_(out) {}
 
   void run(int y, std::size_t x0) {
     y_ = y;
     x0_ = x0;
-    const std::size_t count = std::min(kEight, std::size_t(frame_.width) - x0);   // the last eight may reach into the margin: never stored
-    const Moments moments = weigh();
-    store8(moments.one, kept_.data());
-    std::copy_n(kept_.begin(), count, out_.support.row(y_) + x0_);
-    to_kernel(moments);
-    for (std::size_t l = 0; l < collected_.light.size(); ++l)
-      if (!collected_.light[l][0].empty()) apply(collected_.light[l], out_.light[l], count);
+    count_ = std::min(kEight, std::size_t(surfaces_.width) - x0);  // the last eight may reach into the margin: never stored
+    Float8* same = same_.data();
+    for (int dy = -options_.radius; dy <= options_.radius; ++dy) {
+      const SurfaceEight row(surfaces_, y, dy * options_.stride, x0);
+      for (int dx = -options_.radius; dx <= options_.radius; ++dx) *same++ = row.surface(dx * options_.stride);
+    }
+    alignas(32) std::array<float, kEight> support;
+    for (std::size_t h = 0; h < 2; ++h) {
+      if (h == 0 || !options_.alike) {
+        const Moments moments = weigh(h);
+        store8(moments.one, support.data());
+        to_kernel(moments);
+      }
+      std::copy_n(support.begin(), count_, out_[h].weight.row(y_) + x0_);
+      for (std::size_t l = 0; l < from_[h].layers.size(); ++l)
+        if (!from_[h].layers[l][0].empty()) apply(from_[h].layers[l], out_[h].layers[l]);
+    }
   }
 
  private:
-  static constexpr std::size_t kMostTaps = 2 * kMargin + 1;
+  Float8 at(const Plane& plane, int dx, int dy) const {
+    return load8(plane.row(y_ + dy * options_.stride) + std::ptrdiff_t(x0_) + dx * options_.stride);
+  }
 
-  Float8 at(const Plane& plane, int dx, int dy) const { return load8(plane.row(y_ + dy) + std::ptrdiff_t(x0_) + dx); }
-
-  /// Fills weights_.
-  Moments weigh() {
+  /// Fills weights_, of half h.
+  Moments weigh(std::size_t h) {
     const int radius = options_.radius;
+    const Light* other = guides_ ? &(*guides_)[1 - h] : nullptr;
     Moments sums;
-    own_variance_ = at(collected_.mean_variance, 0, 0);
-    Float8 square{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      own_mean_[c] = at(collected_.mean[c], 0, 0);
-      square += own_mean_[c] * own_mean_[c];
-    }
-    own_variance_ += rounding_variance(square);
-    Float8* weight = weights_.data();
+    if (other) take_own(*other);
+    std::size_t tap = 0;
     for (int dy = -radius; dy <= radius; ++dy) {
-      const SurfaceEight surface(frame_, y_, dy, x0_, collected_.weight.row(y_ + dy));
       Float8 one{}, x{}, xx{};
-      for (int dx = -radius; dx <= radius; ++dx, ++weight) {
-        *weight = surface.weight(dx);
-        if (options_.reach2) *weight *= left_of_reach(dx, dy);
-        if (options_.by_value) *weight *= agreement(dx, dy);
-        const Float8 fx = all8(float(dx)), first = *weight * fx;
-        one += *weight;
+      for (int dx = -radius; dx <= radius; ++dx, ++tap) {
+        Float8 weight = same_[tap] * at(from_[h].weight, dx, dy);
+        if (other) weight *= agreement(*other, dx, dy);
+        weights_[tap] = weight;
+        const Float8 fx = all8(float(dx)), first = weight * fx;
+        one += weight;
         x += first;
         xx = multiply_add(first, fx, xx);
       }
@@ -75,111 +83,148 @@ class StripFit {
     return sums;
   }
 
-  Float8 left_of_reach(int dx, int dy) const {
-    const Float8 left = 1 - float(dx * dx + dy * dy) / at(*options_.reach2, 0, 0);
-    return where(left > 0, left * left);
+  void take_own(const Light& light) {
+    Float8 square{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      own_guide_[c] = at(light.guide[c], 0, 0);
+      square += own_guide_[c] * own_guide_[c];
+    }
+    own_variance_ = at(light.guide_variance, 0, 0) + rounding_variance(square);
   }
 
-  /// value_weight() of the means.
-  Float8 agreement(int dx, int dy) const {
+  /// value_weight() of the guides.
+  Float8 agreement(const Light& light, int dx, int dy) const {
     Float8 difference{};
     for (std::size_t c = 0; c < 3; ++c) {
-      const Float8 off = own_mean_[c] - at(collected_.mean[c], dx, dy);
+      const Float8 off = own_guide_[c] - at(light.guide[c], dx, dy);
       difference = multiply_add(off, off, difference);
     }
-    return value_weight(difference, own_variance_ + at(collected_.mean_variance, dx, dy));
+    const Float8 z = 1 - difference / (kValueErrors * kValueErrors * (own_variance_ + at(light.guide_variance, dx, dy)) + kTinyVariance);
+    return where(z > 0, z * z);
   }
 
-  /// The plane's value at the pixel is a weighted sum of differences to the pixel's own: weights_ become those weights,
+  /// The plane's value at the pixel is a weighted sum of differences to the pixel's own, with the weights
   ///     weight (1 / one + to_x (dx - mx) + to_y (dy - my)),   their sum is 1.
   /// Coordinates are counted from the window's centre of weight: two slopes are left to solve for.
   void to_kernel(const Moments& moments) {
-    alignas(32) std::array<float, kEight> flat{}, slope_x{}, slope_y{};
-    for (std::size_t i = 0; i < kEight; ++i) {
-      const double one = double(moments.one[i]);
-      if (!(one > 0)) continue;
-      const double per_weight = 1 / one, mx = double(moments.x[i]) * per_weight, my = double(moments.y[i]) * per_weight,
-                   pull = double(kPull) * one;
-      const double xx = double(moments.xx[i]) - one * mx * mx + pull, yy = double(moments.yy[i]) - one * my * my + pull,
-                   xy = double(moments.xy[i]) - one * mx * my;
-      const double determinant = xx * yy - xy * xy;   // positive: pull is
-      const double to_x = -(mx * yy - my * xy) / determinant, to_y = -(my * xx - mx * xy) / determinant;
-      flat[i] = float(per_weight - to_x * mx - to_y * my);
-      slope_x[i] = float(to_x);
-      slope_y[i] = float(to_y);
-      kept_[i] = float(per_weight);
-    }
-    const Float8 a = load8(flat.data()), b = load8(slope_x.data()), c = load8(slope_y.data());
-    Float8* kernel = kernel_.data();
-    const Float8* weight = weights_.data();
+    const Int8 any = moments.one > 0;
+    const Float8 one = where(any, moments.one) + where(~any, all8(1)), per_weight = where(any, 1 / one);
+    const Float8 mx = moments.x / one, my = moments.y / one, pull = kPull * one;
+    const Float8 xx = moments.xx - moments.x * mx + pull, yy = moments.yy - moments.y * my + pull, xy = moments.xy - moments.x * my;
+    const Float8 determinant = xx * yy - xy * xy;   // positive: pull is
+    const Float8 b = (my * xy - mx * yy) / determinant, c = (mx * xy - my * xx) / determinant, a = per_weight - b * mx - c * my;
+    store8(per_weight, per_weight_.data());
+    std::size_t tap = 0;
     for (int dy = -options_.radius; dy <= options_.radius; ++dy) {
       const Float8 of_row = multiply_add(c, all8(float(dy)), a);
-      for (int dx = -options_.radius; dx <= options_.radius; ++dx) *kernel++ = *weight++ * multiply_add(b, all8(float(dx)), of_row);
+      for (int dx = -options_.radius; dx <= options_.radius; ++dx, ++tap)
+        kernel_[tap] = weights_[tap] * multiply_add(b, all8(float(dx)), of_row);
     }
   }
 
   /// Sum over the window of factors (value - own), for three planes. Differences: what is constant comes out to the bit.
-  std::array<Float8, 3> sum_of(const std::vector<Float8>& factors, const ColourPlane& from) const {
+  std::array<Float8, 3> sum_of(const Taps& factors, const ColourPlane& from) const {
     const std::array<Float8, 3> own{at(from[0], 0, 0), at(from[1], 0, 0), at(from[2], 0, 0)};
     Float8 r{}, g{}, b{};
-    const Float8* factor = factors.data();
+    std::size_t tap = 0;
     for (int dy = -options_.radius; dy <= options_.radius; ++dy)
-      for (int dx = -options_.radius; dx <= options_.radius; ++dx, ++factor) {
-        r = multiply_add(*factor, at(from[0], dx, dy) - own[0], r);
-        g = multiply_add(*factor, at(from[1], dx, dy) - own[1], g);
-        b = multiply_add(*factor, at(from[2], dx, dy) - own[2], b);
+      for (int dx = -options_.radius; dx <= options_.radius; ++dx, ++tap) {
+        r = multiply_add(factors[tap], at(from[0], dx, dy) - own[0], r);
+        g = multiply_add(factors[tap], at(from[1], dx, dy) - own[1], g);
+        b = multiply_add(factors[tap], at(from[2], dx, dy) - own[2], b);
       }
     return {r, g, b};
   }
 
-  void apply(const ColourPlane& from, ColourPlane& to, std::size_t count) {
+  void apply(const ColourPlane& from, ColourPlane& to) {
     const std::array<Float8, 3> sums = sum_of(kernel_, from);
     bool below = false;
     for (std::size_t c = 0; c < 3; ++c) {
       const float* own = from[c].row(y_) + x0_;
       float* value = to[c].row(y_) + x0_;
-      for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t i = 0; i < count_; ++i) {
         value[i] = own[i] + sums[c][i];
         below |= value[i] < 0;
       }
     }
-    if (below) raise(from, to, count);
+    if (below) raise(from, to);
   }
 
   /// A plane that falls below 0 in the middle gives way to the mean, or 0 if that is above it.
-  void raise(const ColourPlane& from, ColourPlane& to, std::size_t count) {
+  void raise(const ColourPlane& from, ColourPlane& to) {
     const std::array<Float8, 3> sums = sum_of(weights_, from);
     for (std::size_t c = 0; c < 3; ++c) {
       const float* own = from[c].row(y_) + x0_;
       float* value = to[c].row(y_) + x0_;
-      for (std::size_t i = 0; i < count; ++i) value[i] = std::max(value[i], std::min(own[i] + sums[c][i] * kept_[i], 0.0f));
+      for (std::size_t i = 0; i < count_; ++i) value[i] = std::max(value[i], std::min(own[i] + sums[c][i] * per_weight_[i], 0.0f));
     }
   }
 
-  const LightFrame& frame_;
-  const Collected& collected_;
+  const Surfaces& surfaces_;
+  const BothHalves& from_;
+  const BothHalves* guides_;
   const FitOptions& options_;
-  Fitted& out_;
+  BothHalves& out_;
   int y_ = 0;
-  std::size_t x0_ = 0;
+  std::size_t x0_ = 0, count_ = 0;
   Float8 own_variance_{};
-  std::array<Float8, 3> own_mean_{};
-  std::vector<Float8> weights_ = std::vector<Float8>(kMostTaps * kMostTaps), kernel_ = weights_;   ///< of the window, row after row
-  alignas(32) std::array<float, kEight> kept_{};   ///< 1 / sum of the weights
+  std::array<Float8, 3> own_guide_{};
+  Taps same_, weights_, kernel_;                        ///< of the window, row after row
+  alignas(32) std::array<float, kEight> per_weight_{};  ///< 1 / sum of the weights
 };
+
+/// What further fits and other frames compare the light by.
+void take_guide(const Surfaces& surfaces, const Plane& variance, Light& light) {
+  for (Plane& plane : light.guide) plane = Plane(surfaces.width, surfaces.height);
+  light.guide_variance = Plane::unset(surfaces.width, surfaces.height);
+  for_each_row(surfaces.height, [&](int y) {
+    for (std::size_t c = 0; c < 3; ++c)
+      for (const ColourPlane& layer : light.layers)
+        if (!layer[c].empty())
+          for (int x = 0; x < surfaces.width; ++x) light.guide[c].row(y)[x] += layer[c].row(y)[x];
+    for (int x = 0; x < surfaces.width; ++x)
+      light.guide_variance.row(y)[x] = kPlane * variance.row(y)[x] / std::max(light.weight.row(y)[x], 1.0f);
+  });
+}
 
 }  // namespace
 
-Fitted fit(const LightFrame& frame, const Collected& collected, const FitOptions& options) {
-  Fitted out;
-  out.support = Plane::unset(frame.width, frame.height);
-  out.light.resize(collected.light.size());
-  for (std::size_t l = 0; l < out.light.size(); ++l)
-    for (std::size_t c = 0; c < 3 && !collected.light[l][c].empty(); ++c) out.light[l][c] = Plane::unset(frame.width, frame.height);
-  parallel_chunks(std::size_t(frame.height), 8, [&](std::size_t first, std::size_t last) {
-    StripFit strip(frame, collected, options, out);
+BothHalves fit(const Surfaces& surfaces, const BothHalves& from, const BothHalves* guides, const FitOptions& options,
+               const Plane& variance) {
+  BothHalves out;
+  for (std::size_t h = 0; h < 2; ++h) {
+    out[h].weight = Plane::unset(surfaces.width, surfaces.height);
+    out[h].layers.resize(from[h].layers.size());
+    for (std::size_t l = 0; l < out[h].layers.size(); ++l)
+      for (std::size_t c = 0; c < 3 && !from[h].layers[l][c].empty(); ++c)
+        out[h].layers[l][c] = Plane::unset(surfaces.width, surfaces.height);
+  }
+  parallel_chunks(std::size_t(surfaces.height), 8, [&](std::size_t first, std::size_t last) {
+    StripFit strip(surfaces, from, guides, options, out);
     for (int y = int(first); y < int(last); ++y)
-      for (std::size_t x = 0; x < std::size_t(frame.width); x += kEight) strip.run(y, x);
+      for (std::size_t x = 0; x < std::size_t(surfaces.width); x += kEight) strip.run(y, x);
+  });
+  for (Light& half : out) take_guide(surfaces, variance, half);
+  return out;
+}
+
+Plane smoothed(const Surfaces& surfaces, const Plane& values) {
+  constexpr int kNear = 2;
+  Plane out = Plane::unset(surfaces.width, surfaces.height);
+  for_each_row(surfaces.height, [&](int y) {
+    for (std::size_t x = 0; x < std::size_t(surfaces.width); x += kEight) {
+      Float8 sum{}, count{};
+      for (int dy = -kNear; dy <= kNear; ++dy) {
+        const SurfaceEight row(surfaces, y, dy, x);
+        for (int dx = -kNear; dx <= kNear; ++dx) {
+          const Float8 weight = row.surface(dx) * load8(surfaces.use.row(y + dy) + std::ptrdiff_t(x) + dx);
+          count += weight;
+          sum = multiply_add(weight, load8(values.row(y + dy) + std::ptrdiff_t(x) + dx), sum);
+        }
+      }
+      for (std::size_t i = 0; i < std::min(kEight, std::size_t(surfaces.width) - x); ++i)
+        out.row(y)[x + i] = count[i] > 0 ? sum[i] / count[i] : values.row(y)[x + i];
+    }
   });
   return out;
 }

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "lib/filter/light_frame.h"
 #include "lib/image/image.h"
 
 namespace tempolux {
@@ -36,12 +35,6 @@ struct FlowFrame {
 
   std::vector<float> forward_u_, forward_v_, backward_u_, backward_v_;
   std::vector<std::uint32_t> valid_;
-};
-
-/// One frame of the window.
-struct WindowFrame {
-  const LightFrame* light = nullptr;
-  const FlowFrame* flow = nullptr;
 };
 
 /// How far from its beginning flow there and back may end: pixels, and share of its length.

@@ -14,6 +14,11 @@ std::string channel_name(const std::string& layer, std::size_t c) {
   return layer.empty() ? kComponents[c] : layer + "." + kComponents[c];
 }
 
+bool holds(const Image& image, const std::string& name) {
+  const Channel* channel = image.find(name);
+  return channel && !channel->values.empty();
+}
+
 Channel* float_channel(Image& image, const std::string& name) {
   Channel* channel = image.find(name);
   return channel && !channel->values.empty() ? channel : nullptr;

@@ -13,6 +13,8 @@ inline constexpr std::array<const char*, 3> kComponents{"R", "G", "B"};
 
 /// "direct.R", or "R" of no layer. c: 0, 1, 2.
 std::string channel_name(const std::string& layer, std::size_t c);
+/// Is the channel there, with samples?
+bool holds(const Image& image, const std::string& name);
 /// nullptr if there is none, or it has no samples.
 Channel* float_channel(Image& image, const std::string& name);
 

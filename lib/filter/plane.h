@@ -11,7 +11,7 @@
 namespace tempolux {
 
 /// Pixels beyond the picture, as far as any window reaches. They hold T{}.
-inline constexpr int kMargin = 8;
+inline constexpr int kMargin = 16;
 
 template <class T>
 class PlaneT {

@@ -5,30 +5,29 @@
 #include <cstddef>
 
 #include "lib/filter/lane.h"
-#include "lib/filter/light_frame.h"
+#include "lib/filter/surfaces.h"
 
 namespace tempolux {
 
-/// Rows of pixels p and of those (dx, dy) away. weight(i) is `use` of the pixel away if it is on the surface of pixel i, as PixelSurfaces::same
-/// says, else 0.
+/// Rows of pixels p and of those (dx, dy) away: 1 for those on one surface, as PixelSurfaces::same says, else 0.
 class SurfaceRow {
  public:
-  /// `use`: row y + dy of LightFrame::use or of another plane in its place.
-  SurfaceRow(const LightFrame& frame, int y, int dx, int dy, const float* use)
-      : object_(frame.object.row(y)), other_object_(frame.object.row(y + dy) + dx), w_(frame.w.row(y)),
-        other_w_(frame.w.row(y + dy) + dx), w_right_(frame.w_right.row(y)), w_down_(frame.w_down.row(y)), nx_(frame.nx.row(y)),
-        ny_(frame.ny.row(y)), nz_(frame.nz.row(y)), other_nx_(frame.nx.row(y + dy) + dx), other_ny_(frame.ny.row(y + dy) + dx),
-        other_nz_(frame.nz.row(y + dy) + dx), other_use_(use + dx), dx_(float(dx)), dy_(float(dy)) {}
+  SurfaceRow(const Surfaces& of, int y, int dx, int dy)
+      : object_(of.object.row(y)),
+        other_object_(of.object.row(y + dy) + dx),
+        w_(of.w.row(y)),
+        other_w_(of.w.row(y + dy) + dx),
+        w_right_(of.w_right.row(y)),
+        w_down_(of.w_down.row(y)),
+        nx_(of.nx.row(y)),
+        ny_(of.ny.row(y)),
+        nz_(of.nz.row(y)),
+        other_nx_(of.nx.row(y + dy) + dx),
+        other_ny_(of.ny.row(y + dy) + dx),
+        other_nz_(of.nz.row(y + dy) + dx),
+        dx_(float(dx)),
+        dy_(float(dy)) {}
 
-  SurfaceRow(const LightFrame& frame, int y, int dx, int dy) : SurfaceRow(frame, y, dx, dy, frame.use.row(y + dy)) {}
-
-  float weight(std::size_t i) const { return other_use_[i] * surface(i); }
-  /// weights[i] = weight(first + i) for i below count, at most kStrip.
-  void weigh(std::size_t first, std::size_t count, Lane& weights) const {
-    const SurfaceRow row = *this;   // a local object: nothing that is written can change it
-    for (std::size_t i = 0; i < count; ++i) weights[i] = row.weight(first + i);
-  }
-  /// Whether it is of use or not.
   float surface(std::size_t i) const {
     const float facing = nx_[i] * other_nx_[i] + ny_[i] * other_ny_[i] + nz_[i] * other_nz_[i];
     const float length2 = nx_[i] * nx_[i] + ny_[i] * ny_[i] + nz_[i] * nz_[i];
@@ -41,36 +40,43 @@ class SurfaceRow {
 
  private:
   const std::uint32_t *object_, *other_object_;
-  const float *w_, *other_w_, *w_right_, *w_down_, *nx_, *ny_, *nz_, *other_nx_, *other_ny_, *other_nz_, *other_use_;
+  const float *w_, *other_w_, *w_right_, *w_down_, *nx_, *ny_, *nz_, *other_nx_, *other_ny_, *other_nz_;
   float dx_, dy_;
 };
 
 /// The same of eight pixels (x + i, y) and those (dx, dy) away, for one dy: what is the pixels' own is taken once.
 class SurfaceEight {
  public:
-  SurfaceEight(const LightFrame& frame, int y, int dy, std::size_t x, const float* use)
-      : object_(load8(frame.object.row(y) + x)), nx_(load8(frame.nx.row(y) + x)), ny_(load8(frame.ny.row(y) + x)), nz_(load8(frame.nz.row(y) + x)),
-        facing_(PixelSurfaces::kSameNormal * (nx_ * nx_ + ny_ * ny_ + nz_ * nz_)), w_right_(load8(frame.w_right.row(y) + x)),
-        other_object_(frame.object.row(y + dy) + x), other_w_(frame.w.row(y + dy) + x), other_nx_(frame.nx.row(y + dy) + x),
-        other_ny_(frame.ny.row(y + dy) + x), other_nz_(frame.nz.row(y + dy) + x), other_use_(use + x) {
+  SurfaceEight(const Surfaces& frame, int y, int dy, std::size_t x)
+      : object_(load8(frame.object.row(y) + x)),
+        nx_(load8(frame.nx.row(y) + x)),
+        ny_(load8(frame.ny.row(y) + x)),
+        nz_(load8(frame.nz.row(y) + x)),
+        facing_(PixelSurfaces::kSameNormal * (nx_ * nx_ + ny_ * ny_ + nz_ * nz_)),
+        w_right_(load8(frame.w_right.row(y) + x)),
+        other_object_(frame.object.row(y + dy) + x),
+        other_w_(frame.w.row(y + dy) + x),
+        other_nx_(frame.nx.row(y + dy) + x),
+        other_ny_(frame.ny.row(y + dy) + x),
+        other_nz_(frame.nz.row(y + dy) + x) {
     const Float8 w = load8(frame.w.row(y) + x), down = load8(frame.w_down.row(y) + x) * float(dy);
     expected_ = w + down;
     allowed_ = PixelSurfaces::kSameDepth * w + abs8(down);
   }
 
-  Float8 weight(int dx) const {
-    const Float8 facing =
-        multiply_add(nx_, load8(other_nx_ + dx), multiply_add(ny_, load8(other_ny_ + dx), nz_ * load8(other_nz_ + dx)));
+  /// 1 or 0.
+  Float8 surface(int dx) const {
+    const Float8 facing = multiply_add(nx_, load8(other_nx_ + dx), multiply_add(ny_, load8(other_ny_ + dx), nz_ * load8(other_nz_ + dx)));
     const Float8 right = w_right_ * float(dx), off = abs8(load8(other_w_ + dx) - expected_ - right);
     const Int8 same = (object_ == load8(other_object_ + dx)) & (facing >= facing_) & (off <= allowed_ + abs8(right));
-    return where(same, load8(other_use_ + dx));
+    return where(same, all8(1));
   }
 
  private:
   Int8 object_;
   Float8 nx_, ny_, nz_, facing_, w_right_, expected_, allowed_;
   const std::uint32_t* other_object_;
-  const float *other_w_, *other_nx_, *other_ny_, *other_nz_, *other_use_;
+  const float *other_w_, *other_nx_, *other_ny_, *other_nz_;
 };
 
 }  // namespace tempolux

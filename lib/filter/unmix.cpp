@@ -8,31 +8,40 @@
 namespace tempolux {
 namespace {
 
+constexpr int kRadius = 6;              ///< pixels
+constexpr std::size_t kMostLayers = 3;  ///< of a group
+
 class Unmixing {
  public:
-  Unmixing(const LightFrame& frame, const Collected& collected, const Coverage& coverage, int radius, int frames, Fitted& fitted)
-      : frame_(frame), collected_(collected), coverage_(coverage), radius_(radius), fitted_(fitted), frames_(frames) {}
+  Unmixing(const LightGroup& group, std::size_t half, const Light& collected, const Coverage& coverage, int frames, Light& fitted,
+           std::vector<ColourPlane>& other)
+      : surfaces_(group.surfaces),
+        raw_(group.raw[half]),
+        collected_(collected),
+        coverage_(coverage),
+        fitted_(fitted),
+        other_(other),
+        frames_(frames) {}
 
   void pixel(int x, int y) {
     const bool own = !is_known(x, y);
     const bool other = coverage_.other(x, y) != 0;
     if (!own && !other) return;
-    for (std::size_t l = 0; other && l < frame_.light.size(); ++l)
-      for (std::size_t c = 0; c < 3 && !is_black(l); ++c) fitted_.other[l][c].at(x, y) = fitted_.light[l][c].at(x, y);
+    for (std::size_t l = 0; other && l < raw_.layers.size(); ++l)
+      for (std::size_t c = 0; c < 3 && !is_black(l); ++c) other_[l][c].at(x, y) = fitted_.layers[l][c].at(x, y);
     sums_ = {};
     count_ = 0;
-    for (int dy = -radius_; dy <= radius_; ++dy)
-      for (int dx = -radius_; dx <= radius_; ++dx)
-        if (frame_.has_pixel(x + dx, y + dy) && frame_.on_surface(x, y, dx, dy)) add(x + dx, y + dy, own);
-    for (std::size_t l = 0; l < frame_.light.size(); ++l)
+    for (int dy = -kRadius; dy <= kRadius; ++dy)
+      for (int dx = -kRadius; dx <= kRadius; ++dx)
+        if (surfaces_.has_pixel(x + dx, y + dy) && surfaces_.on_surface(x, y, dx, dy)) add(x + dx, y + dy, own);
+    for (std::size_t l = 0; l < raw_.layers.size(); ++l)
       for (std::size_t c = 0; c < 3 && !is_black(l); ++c) {
         const Sums& s = sums_[l][c];
         const double mean = count_ > 0 ? s.plain / count_ : double(mixed(l, c, x, y));
-        const double fitted = own ? double(fitted_.support.at(x, y)) / frames_ : 0;   // pixels' worth
+        const double fitted = own ? double(fitted_.weight.at(x, y)) / frames_ : 0;  // pixels' worth
         const double plain = fitted > 0 ? 0 : 1;
-        const double unmixed =
-            (s.product + plain * mean + fitted * double(fitted_.light[l][c].at(x, y))) / (s.square + plain + fitted);
-        (own ? fitted_.light : fitted_.other)[l][c].at(x, y) = float(std::max(unmixed, std::min(mean, 0.0)));
+        const double unmixed = (s.product + plain * mean + fitted * double(fitted_.layers[l][c].at(x, y))) / (s.square + plain + fitted);
+        (own ? fitted_.layers : other_)[l][c].at(x, y) = float(std::max(unmixed, std::min(mean, 0.0)));
       }
   }
 
@@ -41,12 +50,12 @@ class Unmixing {
     double plain = 0, product = 0, square = 0;
   };
 
-  bool is_black(std::size_t layer) const { return collected_.light[layer][0].empty(); }
-  bool is_known(int x, int y) const { return fitted_.support.at(x, y) >= kFewestPixels; }
-  float albedo(std::size_t c, int x, int y) const { return frame_.albedo[c].empty() ? 1 : frame_.albedo[c].at(x, y); }
+  bool is_black(std::size_t layer) const { return collected_.layers[layer][0].empty(); }
+  bool is_known(int x, int y) const { return fitted_.weight.at(x, y) >= kFewestPixels; }
+  float albedo(std::size_t c, int x, int y) const { return surfaces_.albedo_at(c, x, y); }
   /// Light of all that the pixel sees: of all frames where it is an edge in all of them, else of this one.
   float mixed(std::size_t l, std::size_t c, int x, int y) const {
-    const Plane& plane = (collected_.weight.at(x, y) == 0 ? collected_.light : frame_.light)[l][c];
+    const Plane& plane = (collected_.weight.at(x, y) == 0 ? collected_ : raw_).layers[l][c];
     return plane.empty() ? 0 : plane.at(x, y);
   }
 
@@ -55,19 +64,20 @@ class Unmixing {
     if (is_known(x, y) == own || (!own && other == 0) || (own && collected_.weight.at(x, y) > 0)) return;
     ++count_;
     float share = 1;
-    std::array<std::array<double, 3>, kFilteredLayers.size()> known{};
+    std::array<std::array<double, 3>, kMostLayers> known{};
     const auto take_off = [&](int nx, int ny, float part) {
       share -= part;
-      for (std::size_t l = 0; l < frame_.light.size(); ++l)
-        for (std::size_t c = 0; c < 3 && !is_black(l); ++c) known[l][c] += double(part * albedo(c, nx, ny) * fitted_.light[l][c].at(nx, ny));
+      for (std::size_t l = 0; l < raw_.layers.size(); ++l)
+        for (std::size_t c = 0; c < 3 && !is_black(l); ++c)
+          known[l][c] += double(part * albedo(c, nx, ny) * fitted_.layers[l][c].at(nx, ny));
     };
     float around = 0;
     coverage_.for_each_share(x, y, [&](int dx, int dy, float part) {
       around += part;
-      if (frame_.has_pixel(x + dx, y + dy) && is_known(x + dx, y + dy)) take_off(x + dx, y + dy, part);
+      if (surfaces_.has_pixel(x + dx, y + dy) && is_known(x + dx, y + dy)) take_off(x + dx, y + dy, part);
     });
     if (!own) take_off(x, y, std::max(1 - around - other, 0.0f));
-    for (std::size_t l = 0; l < frame_.light.size(); ++l)
+    for (std::size_t l = 0; l < raw_.layers.size(); ++l)
       for (std::size_t c = 0; c < 3 && !is_black(l); ++c) {
         const double light = double(mixed(l, c, x, y));
         sums_[l][c].plain += light;
@@ -76,29 +86,31 @@ class Unmixing {
       }
   }
 
-  const LightFrame& frame_;
-  const Collected& collected_;
+  const Surfaces& surfaces_;
+  const Light &raw_, &collected_;
   const Coverage& coverage_;
-  int radius_;
-  Fitted& fitted_;
+  Light& fitted_;
+  std::vector<ColourPlane>& other_;
   double frames_, count_ = 0;
-  std::array<std::array<Sums, 3>, kFilteredLayers.size()> sums_{};
+  std::array<std::array<Sums, 3>, kMostLayers> sums_{};
 };
 
 }  // namespace
 
-void unmix(const LightFrame& frame, const Collected& collected, const Coverage& coverage, int radius, int frames, Fitted& fitted) {
-  // What is in `other` counts in pixels alone that have a share of it.
-  fitted.other.resize(fitted.light.size());
+std::vector<ColourPlane> unmix(const LightGroup& group, std::size_t half, const Light& collected, const Coverage& coverage, int frames,
+                               Light& fitted) {
+  const Surfaces& surfaces = group.surfaces;
+  std::vector<ColourPlane> other(fitted.layers.size());
   const bool any_other = coverage.has_other();
-  for (std::size_t l = 0; l < fitted.light.size(); ++l)
-    for (std::size_t c = 0; c < 3 && any_other && !fitted.light[l][c].empty(); ++c) fitted.other[l][c] = Plane(frame.width, frame.height);
+  for (std::size_t l = 0; l < other.size(); ++l)
+    for (std::size_t c = 0; c < 3 && any_other && !fitted.layers[l][c].empty(); ++c) other[l][c] = Plane(surfaces.width, surfaces.height);
   // Only light of pixels that are known is read, only that of others written: any order will do.
-  parallel_chunks(std::size_t(frame.height), 8, [&](std::size_t first, std::size_t last) {
-    Unmixing unmixing(frame, collected, coverage, radius, frames, fitted);
+  parallel_chunks(std::size_t(surfaces.height), 8, [&](std::size_t first, std::size_t last) {
+    Unmixing unmixing(group, half, collected, coverage, frames, fitted, other);
     for (int y = int(first); y < int(last); ++y)
-      for (int x = 0; x < frame.width; ++x) unmixing.pixel(x, y);
+      for (int x = 0; x < surfaces.width; ++x) unmixing.pixel(x, y);
   });
+  return other;
 }
 
 }  // namespace tempolux

@@ -216,7 +216,6 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
   const Vec3 geometric = dot(place.normal_geometric, normal) < 0 ? -place.normal_geometric : place.normal_geometric;
   const Media* const media = tracer_.frame().media.get();
   BrightLight light;
-  double sum = 0, squares = 0;
   if (sites_of_.empty()) return light;
   const LightTree::Start start = tree_->start(place.position, normal);
   for (std::uint32_t number = 0; number < std::uint32_t(samples); ++number) {
@@ -249,26 +248,11 @@ BrightLight BrightPoints::arriving(const Receiver& at, int samples, const PathRa
       light.translational[std::size_t(c)] += along * (power[c] / (d2 * d2));
       light.rotational[std::size_t(c)] += turn * (power[c] / (d2 * d2));
     }
-    const double all = channel_sum(e);
-    sum += all;
-    squares += all * all;
-    light.light_times_radiance += all * channel_sum(seen);
   }
-  light.lit_samples = squares > 0 ? sum * sum / squares : 0;
   return light;
 }
 
 void add_bright_light(const BrightLight& light, IrradianceRecord& record) {
-  const double low = channel_sum(Rgbd(record.irradiance)), high = channel_sum(light.irradiance), all = low + high;
-  if (!(high > 0)) return;
-  // Samples that carry the light: E^2 / variance of both parts, each as if of independent equal ones.
-  const double low2 = low > 0 ? low * low / std::max(1e-3, double(record.lit_cells)) : 0;
-  record.lit_cells = float(all * all / (low2 + high * high / std::max(1e-3, light.lit_samples)));
-  // Share of the hemisphere: E^2 / (pi integral of L^2 cos).
-  if (record.expected_share > 0) {
-    const double rays2 = low > 0 ? low * low / double(record.expected_share) : 0;
-    record.expected_share = float(std::min(1.0, all * all / (rays2 + M_PI * light.light_times_radiance)));
-  }
   record.irradiance = Rgb(Rgbd(record.irradiance) + light.irradiance);
   for (std::size_t c = 0; c < 3; ++c) {
     record.translational[c] = Vec3(Vec3d(record.translational[c]) + light.translational[c]);

@@ -30,8 +30,6 @@ struct BrightOptions {
 struct BrightLight {
   Rgbd irradiance{0.0};                    ///< W/m^2
   std::array<Vec3d, 3> rotational{}, translational{};   ///< as IrradianceRecord's
-  double light_times_radiance = 0;         ///< sum of irradiance x radiance, channels added: how much of the hemisphere it fills
-  double lit_samples = 0;                  ///< how many samples carry it: (sum)^2 / sum of squares
 };
 
 /// Light L(y) that surfaces send out is divided in two: of the light of irradiance point p a share h_p is the high part
@@ -116,7 +114,7 @@ class BrightPoints {
   std::optional<LightTree> tree_;    ///< spots
 };
 
-/// Adds it to a record of rays alone, its gradients and what its radius follows from, too (lit_cells, expected_share).
+/// Adds it and its gradients to a record of rays alone.
 void add_bright_light(const BrightLight& light, IrradianceRecord& record);
 
 }  // namespace tempolux

@@ -10,8 +10,6 @@
 namespace tempolux {
 namespace {
 
-constexpr int kFewRays = 64;         ///< of lit_share()
-
 /// Rays from one place, and what comes back along them.
 struct Shots {
   const GatherDirections directions;
@@ -48,7 +46,7 @@ struct Shots {
 }  // namespace
 
 FinalGather::FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options)
-    : reach_(tracer), incoming_(tracer, lights, points, options.near_factor, options.bright), options_(options), few_(std::min(kFewRays, options.rays)) {
+    : reach_(tracer), incoming_(tracer, lights, points, options.near_factor, options.bright), options_(options) {
   for (std::size_t i = 0; i < strata_.size(); ++i) strata_[i] = GatherStrata(std::max(1, int((std::int64_t(options.rays) << i) >> kFewer)));
 }
 
@@ -57,25 +55,15 @@ void FinalGather::look_around(const SurfacePoint& from, IrradianceRecord& record
   record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);
 }
 
-float FinalGather::lit_share(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const {
-  Shots shots(from, normal, few_, options_.seed ^ 0x6c69745f73686172ull);
-  for (const std::uint32_t c : few_.order) shots.aim(c, 0);
-  shots.shoot(incoming_, counts);
-  thread_local Hemisphere sky;
-  sky.reset(few_.rings, few_.sectors);
-  for (std::size_t i = 0; i < shots.rays.size(); ++i) sky.radiance[shots.cells[i]] = shots.radiance[i];
-  return sky.lit_cells() / float(few_.order.size());
-}
-
-IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share, float ray_share) const {
+IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share) const {
   thread_local Hemisphere sky;
   thread_local std::vector<std::uint8_t> further;
-  std::size_t times = kFewer;   // twofold
-  while (times + 1 < strata_.size() && expected_share * float(1 << (times - kFewer)) < kEnoughLit) ++times;
-  for (std::size_t fewer = 0; fewer < kFewer && ray_share <= 0.5f; ++fewer, ray_share *= 2) --times;
-  const std::vector<std::uint32_t>& order = strata_[times].order;
-  Shots shots(from, normal, strata_[times], options_.seed);
-  sky.reset(strata_[times].rings, strata_[times].sectors);
+  std::size_t halvings = 0;
+  for (; halvings < kFewer && ray_share <= 0.5f; ++halvings) ray_share *= 2;
+  const GatherStrata& strata = strata_[kFewer - halvings];
+  const std::vector<std::uint32_t>& order = strata.order;
+  Shots shots(from, normal, strata, options_.seed);
+  sky.reset(strata.rings, strata.sectors);
   const float closest = closest_distance(from);
   const Bsdf bsdf = incoming_.bsdf_at(from, normal);
   const bool coated = bsdf.has_specular() && bsdf.has_diffuse();
@@ -92,7 +80,7 @@ IrradianceRecord FinalGather::gather(const SurfacePoint& from, Vec3 normal, Gath
     sky.radiance[shots.cells[i]] = shots.radiance[i];
     sky.inverse_distance[shots.cells[i]] = 1 / std::max(shots.distance[i], closest);   // 0 for a miss
   }
-  IrradianceRecord record = record_of_first_rays(sky, shots.directions.frame(), from, normal, expected_share);
+  IrradianceRecord record = record_of_first_rays(sky, shots.directions.frame(), from, normal);
 
   // More rays where light is uneven: a cell's value becomes the mean of all of its own.
   sky.further_rays(further);

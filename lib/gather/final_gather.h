@@ -27,24 +27,17 @@ class FinalGather {
   FinalGather(const Tracer& tracer, const Lights& lights, const PointLookup& points, const GatherOptions& options);
 
   /// Irradiance at `from` over the hemisphere about `normal` (unit, on the lit side), with its gradients, by about
-  /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). Where less than kEnoughLit of
-  /// them is expected to carry the light, 2, 4 or 8 times as many, as it takes to make up for that: what a handful of rays
-  /// finds is noise, and its radius depends on what was found. No bias comes of it as long as `expected_share` does not follow from
-  /// this place's own rays: it is for the neighbours to tell, or for lit_share(). Under a coat light counts
+  /// `rays` cells of equal weight, one ray each and more where light is uneven (hemisphere.h). Under a coat light counts
   /// by Bsdf::arrival_weight, as photons do: what the coat reflects more of at grazing angles does not reach the Lambert
-  /// lobe. radius_unclamped receives the harmonic mean distance, radius the distance across the tangent plane to the
-  /// nearest of what the outermost ring met (limit_radius makes the validity of both). Random numbers come from the
-  /// position: the record of a place does not depend on which records were made before, but for expected_share. ray_share: of
-  /// `rays` that it needs, 1/8 to 1; the next power of two that is not less.
-  IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float expected_share = 1, float ray_share = 1) const;
+  /// lobe. radius_unclamped receives the harmonic mean distance; limit_radius makes the radius of it. Random numbers come from the
+  /// position: the record of a place does not depend on which records were made before. ray_share: of
+  /// `rays` that the place needs, 1/8 to 1; the next power of two that is not less.
+  IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
   /// Sets the clearance of a record gathered there, as far as its radius: once that is limited.
   void look_around(const SurfacePoint& from, IrradianceRecord& record) const;
   /// Adds to a record of rays alone what GatherOptions::bright_samples explicit samples bring, if there are bright points. Random numbers are those of `key`,
   /// which gather_key() of the record's place and normal is.
   void add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record, GatherCounts& counts) const;
-  /// Share of the hemisphere from which light comes (Hemisphere::lit_cells), by at most 64 rays that gather() does not use.
-  float lit_share(const SurfacePoint& from, Vec3 normal, GatherCounts& counts) const;
-  static constexpr float kEnoughLit = 1.0f / 16;
 
   /// What rays bring.
   const IncomingRadiance& incoming() const { return incoming_; }
@@ -56,8 +49,7 @@ class FinalGather {
   IncomingRadiance incoming_;
   GatherOptions options_;
   static constexpr std::size_t kFewer = 3;
-  std::array<GatherStrata, 4 + kFewer> strata_;   ///< of 1/8, 1/4, 1/2, 1, 2, 4 and 8 times `rays`
-  GatherStrata few_;                        ///< of lit_share()
+  std::array<GatherStrata, kFewer + 1> strata_;   ///< of 1/8, 1/4, 1/2 and 1 times `rays`
 };
 
 }  // namespace tempolux

@@ -140,16 +140,6 @@ void Hemisphere::further_rays(std::vector<std::uint8_t>& counts) const {
     }
 }
 
-float Hemisphere::lit_cells() const {
-  double sum = 0, square = 0;
-  for (const Rgb& l : radiance) {
-    const double value = channel_sum(Rgbd(l));
-    sum += value;
-    square += value * value;
-  }
-  return square > 0 ? float(sum * sum / square) : 0.0f;
-}
-
 float Hemisphere::harmonic_distance() const {
   double sum = 0, hits = 0;
   for (const float inverse : inverse_distance) {
@@ -159,10 +149,9 @@ float Hemisphere::harmonic_distance() const {
   return sum > 0 ? float(hits / sum) : INFINITY;
 }
 
-float Hemisphere::nearest_across() const {
-  float nearest = 0;
-  for (int k = 0; k < sectors_; ++k) nearest = std::max(nearest, inverse_distance[cell(rings_ - 1, k)]);
-  return nearest > 0 ? 1 / nearest : INFINITY;
+float Hemisphere::seen_share() const {
+  const auto hits = std::count_if(inverse_distance.begin(), inverse_distance.end(), [](float inverse) { return inverse > 0; });
+  return float(hits) / float(inverse_distance.size());
 }
 
 }  // namespace tempolux

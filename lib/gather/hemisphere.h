@@ -27,7 +27,7 @@ class Hemisphere {
   ///     E     = pi/(M N) sum L_jk
   ///     dE/dn = pi/(M N) sum_k v_k sum_j T_j L_jk                                      [Ward & Heckbert 1992]
   ///
-  /// v_k at the middle of sector k + 90 degrees; T_j is the ring's mean of tan t (algorithms.md 8.2: the sign is that
+  /// v_k at the middle of sector k + 90 degrees; T_j is the ring's mean of tan t (docs/methods/formulas.md: the sign is that
   /// of E(n) = E + (n_i x n) . dE/dn).
   void irradiance_and_rotational_gradient(const Frame& frame, IrradianceRecord& record) const;
 
@@ -45,13 +45,10 @@ class Hemisphere {
   void further_rays(std::vector<std::uint8_t>& counts) const;
   static constexpr int kMostFurther = 8;
 
-  /// How many cells carry the light: (sum L)^2 / sum L^2 over the cells' mean channel; 0 in the dark.
-  float lit_cells() const;
-  /// Harmonic mean of the distances of what is there, m; infinity if there is nothing. The sky does not count: the light
-  /// gathered comes from the rest, however little of the hemisphere it fills, and changes as one moves by it.
+  /// Harmonic mean of the distances of what is there, m; infinity if there is nothing.
   float harmonic_distance() const;
-  /// Of what the outermost ring met, the nearest, m; infinity if nothing.
-  float nearest_across() const;
+  /// Share of the cells in which something is.
+  float seen_share() const;
 
  private:
   std::size_t cell(int j, int k) const { return std::size_t(j) * std::size_t(sectors_) + std::size_t(k); }

@@ -78,7 +78,7 @@ InfluenceField::InfluenceField(std::span<const IrradianceRecord> records, std::s
 }
 
 float InfluenceField::at(Vec3 position, Vec3 normal) const {
-  const std::optional<Rgb> found = store_.irradiance(position, normal, true);
+  const std::optional<Rgb> found = store_.irradiance(position, normal);
   if (!found) return INFINITY;
   const float influence = found->r;
   if (thresholds_.absolute || !(influence > 0)) return influence;

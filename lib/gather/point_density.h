@@ -30,7 +30,7 @@ struct DensityOptions {
 /// each of the k-1 photons is one with probability (light that can be reached / all light in it), and (k-1) /
 /// (all light in it) has the mean 1 (irradiance_estimate.h). For that the same test (Reach) must decide on
 /// photons and on area: clipping the area alone gains light at thin walls, dropping photons alone loses it in
-/// corners (prototype.md 7).
+/// corners.
 class PointDensity {
  public:
   /// Where light is up to 16 times as sparse as where photons lie, k of them are still found.

@@ -77,7 +77,7 @@ std::vector<unsigned char> request_for(const std::string& path, const std::strin
   return request;
 }
 
-/// Of what the helper printed; nothing of it is believed.
+/// Reads what the helper printed. Every number is checked, as the helper has read a stranger's file.
 std::optional<Interleaved> parse(const std::vector<unsigned char>& printed, std::uint64_t max_pixels) {
   ImagePipeHead head;
   if (printed.size() < sizeof head) return {};

@@ -17,9 +17,9 @@ namespace tempolux {
 /// its neighbours' should be. Nothing seen: w = 0.
 class PixelSurfaces {
  public:
-  /// Cosine of the largest angle (26 degrees) between normals of one surface; algorithms.md 1.6.
+  /// Cosine of the largest angle (26 degrees) between normals of one surface (docs/methods/formulas.md).
   static constexpr float kSameNormal = 0.9f;
-  /// Relative error of depth that is always allowed; algorithms.md 1.4.
+  /// Relative error of depth that is always allowed (docs/methods/formulas.md).
   static constexpr float kSameDepth = 1e-3f;
 
   explicit PixelSurfaces(const Image& image);
@@ -44,7 +44,7 @@ class PixelSurfaces {
   /// 1 for each pixel that is not on the same surface as all of its eight neighbours, both ways asked.
   std::vector<std::uint8_t> edges() const;
 
-  // By pixel, for loops that test many at once. Objects are bits of id.object; normals are 0, 0, 0 where nothing is seen or known.
+  // One entry a pixel, for loops that test many at once. Objects are bits of id.object; normals are 0, 0, 0 where nothing is seen or known.
   std::vector<std::uint32_t> object;
   std::vector<float> w, w_right, w_down;   ///< 1/m; its change per pixel: the smaller of the two one-sided differences
   std::vector<float> nx, ny, nz;

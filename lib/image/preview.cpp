@@ -64,7 +64,7 @@ bool any_negative(const Planes& planes) {
   });
 }
 
-/// Of the pixel's components the one of largest magnitude, with its sign.
+/// The pixel's component of largest magnitude, with its sign.
 float largest_component(const Planes& planes, std::size_t pixel) {
   float largest = 0;
   for (const auto* plane : planes)

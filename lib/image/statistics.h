@@ -11,7 +11,7 @@
 
 namespace tempolux {
 
-/// Of one channel, over its finite values. min, max and mean are 0 if there is none.
+/// Statistics of one channel over its finite values. min, max and mean are 0 if there is none.
 struct ChannelStatistics {
   std::string name;
   bool ids = false;

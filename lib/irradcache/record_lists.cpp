@@ -49,7 +49,7 @@ void RecordStore::for_each_cell_of(const Level& level, const IrradianceRecord& r
   const double reach = off + width / 2 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
   for_each_cell(local, r.radius, level.inverse_cell, [&](Cell cell) {
     const Vec3d middle{(double(cell.x) + 0.5) * width, (double(cell.y) + 0.5) * width, (double(cell.z) + 0.5) * width};
-    body(cell, std::abs(dot(middle - local, normal)) <= reach);
+    if (std::abs(dot(middle - local, normal)) <= reach) body(cell);
   });
 }
 
@@ -59,15 +59,11 @@ RecordStore::Entry RecordStore::entry_of(std::uint32_t record) const {
 
 void RecordStore::list(Level& level, std::uint32_t record) const {
   const Entry entry = entry_of(record);
-  for_each_cell_of(level, records_[record], [&](Cell cell, bool near) {
-    const std::size_t at = bucket_of(cell, level.buckets.size());
-    const auto put = [&](Bucket& bucket) {
-      if (bucket.ends_with(record)) return false;   // two cells of one hash: once
-      bucket.add(entry);
-      return true;
-    };
-    put(level.around[at]);
-    if (near) level.listed += put(level.buckets[at]);
+  for_each_cell_of(level, records_[record], [&](Cell cell) {
+    Bucket& bucket = level.buckets[bucket_of(cell, level.buckets.size())];
+    if (bucket.ends_with(record)) return;   // two cells of one hash: once
+    bucket.add(entry);
+    ++level.listed;
   });
 }
 
@@ -79,9 +75,7 @@ void RecordStore::pack(Level& level) const {
   };
   std::vector<Listed> all;
   for (const std::uint32_t record : level.members)
-    for_each_cell_of(level, records_[record], [&](Cell cell, bool near) {
-      if (near) all.push_back({hash_of(cell), record});
-    });
+    for_each_cell_of(level, records_[record], [&](Cell cell) { all.push_back({hash_of(cell), record}); });
   std::size_t count = kFirstBuckets;
   while (4 * count <= all.size()) count *= 4;
   const auto mask = std::uint32_t(count - 1);

@@ -54,7 +54,6 @@ RecordStore::Level& RecordStore::level_of(float radius) {
   level.inverse_cell = std::ldexp(1.0, -exponent);
   if (options_.only_read) return level;
   level.buckets.resize(kFirstBuckets);
-  level.around.resize(kFirstBuckets);
   return level;
 }
 
@@ -67,7 +66,6 @@ bool RecordStore::add(const IrradianceRecord& record) {
     return true;
   }
   level->buckets.assign(4 * level->buckets.size(), {});
-  level->around.assign(level->buckets.size(), {});
   level->listed = 0;
   for (std::uint32_t member : level->members) list(*level, member);
   return true;
@@ -100,18 +98,14 @@ RecordStore::Level* RecordStore::keep(const IrradianceRecord& record) {
 void RecordStore::shrink(std::uint32_t record, float radius) {
   for (Level& level : levels_) {
     if (!std::binary_search(level.members.begin(), level.members.end(), record)) continue;
-    for_each_cell(Vec3d(records_[record].position), records_[record].radius, level.inverse_cell, [&](Cell c) {
-      const std::size_t at = bucket_of(c, level.buckets.size());
-      level.buckets[at].set_radius(record, radius);
-      level.around[at].set_radius(record, radius);
-    });
+    for_each_cell(Vec3d(records_[record].position), records_[record].radius, level.inverse_cell,
+                  [&](Cell c) { level.buckets[bucket_of(c, level.buckets.size())].set_radius(record, radius); });
   }
   records_[record].radius = radius;
 }
 
 template <class Found>
-inline bool RecordStore::any_near(std::vector<Bucket> Level::*listed, float least_cosine, Vec3 position, Vec3 normal,
-                                  const Found& found) const {
+inline bool RecordStore::any_near(float least_cosine, Vec3 position, Vec3 normal, const Found& found) const {
   const Vec3d local(position);
   if (options_.only_read) {
     // Where the lists are is asked of all levels at once: they lie far apart in memory.
@@ -128,28 +122,11 @@ inline bool RecordStore::any_near(std::vector<Bucket> Level::*listed, float leas
     }
   } else {
     for (const Level& level : levels_) {
-      const std::vector<Bucket>& buckets = level.*listed;
-      const Bucket& bucket = buckets[bucket_of(cell_at(local, level.inverse_cell), buckets.size())];
+      const Bucket& bucket = level.buckets[bucket_of(cell_at(local, level.inverse_cell), level.buckets.size())];
       if (any_of(bucket.eights(), position, normal, least_cosine, found)) return true;
     }
   }
   return false;
-}
-
-void RecordStore::clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first) {
-  std::vector<std::pair<std::uint32_t, float>> near;
-  TEMPOLUX_CHECK(!options_.only_read);
-  any_near(&Level::around, options_.least_cosine, record.position, record.normal, [&](const Entry& entry) {
-    if (const float d = length(entry.position - record.position);
-        d < entry.radius && dot(entry.normal, record.normal) > options_.least_cosine)
-      near.emplace_back(entry.record, d);
-    return false;
-  });
-  const auto reach = [](const IrradianceRecord& r) { return std::max(r.radius, r.radius_unclamped); };
-  const float own = reach(record);
-  for (const auto& [i, d] : near) record.radius = std::min(record.radius, reach(records_[i]) + slope * d);
-  for (const auto& [i, d] : near)
-    if (i >= first && own + slope * d < records_[i].radius) shrink(i, own + slope * d);
 }
 
 inline float RecordStore::weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal) const {
@@ -163,8 +140,7 @@ inline float RecordStore::weight_of(const Entry& entry, float radius, float leas
   const float weight = std::max(0.0f, (1 - std::sqrt(d2) / radius) * (1 - angle));
   if (!(weight > 0)) return 0;
   const Clearance& seen = records_[entry.record].clearance;
-  const bool relaxed = radius > entry.radius && seen.shares == Clearance::kOpen;
-  return relaxed || seen.contains(d, entry.normal) ? weight : 0;
+  return seen.contains(d, entry.normal) ? weight : 0;
 }
 
 inline void RecordStore::accumulate(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal,
@@ -191,7 +167,7 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal) c
 RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal, float least_cosine) const {
   Interpolated result;
   Rgb sum{0.0f};
-  any_near(&Level::buckets, least_cosine, position, normal, [&](const Entry& entry) {
+  any_near(least_cosine, position, normal, [&](const Entry& entry) {
     accumulate(entry, entry.radius, least_cosine, position, normal, sum, result);
     return false;
   });
@@ -199,22 +175,21 @@ RecordStore::Interpolated RecordStore::interpolate(Vec3 position, Vec3 normal, f
   return result;
 }
 
-std::optional<RecordStore::Expected> RecordStore::expected(Vec3 position, Vec3 normal) const {
-  float weights = 0, lit = 0, further = 0;
-  any_near(&Level::buckets, options_.least_cosine, position, normal, [&](const Entry& entry) {
+float RecordStore::expected_further_share(Vec3 position, Vec3 normal) const {
+  float weights = 0, further = 0;
+  any_near(options_.least_cosine, position, normal, [&](const Entry& entry) {
     const float weight = weight_of(entry, entry.radius, options_.least_cosine, position, normal);
     weights += weight;
-    lit += weight * records_[entry.record].lit_share;
     further += weight * records_[entry.record].further_share;
     return false;
   });
-  return weights > 0 ? std::optional(Expected{lit / weights, further / weights}) : std::nullopt;
+  return weights > 0 ? further / weights : 0;
 }
 
 float RecordStore::weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const {
   const Vec3 position = records_[record].position, normal = records_[record].normal;
   float sum = 0;
-  any_near(&Level::buckets, options_.least_cosine, position, normal, [&](const Entry& entry) {
+  any_near(options_.least_cosine, position, normal, [&](const Entry& entry) {
     if (entry.record < record && (marked.empty() || !marked[entry.record]))
       sum += weight_of(entry, entry.radius, options_.least_cosine, position, normal);
     return false;
@@ -225,7 +200,7 @@ float RecordStore::weight_of_earlier(std::uint32_t record, std::span<const std::
 bool RecordStore::covers(Vec3 position, Vec3 normal, float weight, float least_reach) const {
   const auto covered = [&](float least_cosine, float reach) {
     float sum = 0;
-    return any_near(&Level::buckets, least_cosine, position, normal, [&](const Entry& entry) {
+    return any_near(least_cosine, position, normal, [&](const Entry& entry) {
       return (sum += weight_of(entry, std::min(entry.radius, reach), least_cosine, position, normal)) >= weight;
     });
   };
@@ -233,20 +208,9 @@ bool RecordStore::covers(Vec3 position, Vec3 normal, float weight, float least_r
   return least_reach > 0 && options_.least_cosine > kWideCosine && covered(kWideCosine, least_reach);
 }
 
-std::optional<Rgb> RecordStore::irradiance(Vec3 position, Vec3 normal, bool relaxed) const {
-  Interpolated found = interpolate(position, normal);
-  if (!(found.weight > 0) && relaxed) found = interpolate_relaxed(position, normal);
+std::optional<Rgb> RecordStore::irradiance(Vec3 position, Vec3 normal) const {
+  const Interpolated found = interpolate(position, normal);
   return found.weight > 0 ? std::optional(found.irradiance) : std::nullopt;
-}
-
-RecordStore::Interpolated RecordStore::interpolate_relaxed(Vec3 position, Vec3 normal) const {
-  Interpolated result;
-  Rgb sum{0.0f};
-  for (std::uint32_t i = 0; i < records_.size(); ++i)
-    accumulate({records_[i].position, records_[i].radius, records_[i].normal, i}, kRelaxed * records_[i].radius,
-               options_.least_cosine, position, normal, sum, result);
-  if (result.weight > 0) result.irradiance = sum * (1 / result.weight);
-  return result;
 }
 
 }  // namespace tempolux

@@ -22,10 +22,8 @@ struct IrradianceRecord {
   std::array<Vec3, 3> rotational{};     ///< per channel: E(n) = E + (n_i x n) . g [W/m^2]
   std::array<Vec3, 3> translational{};  ///< per channel: E(x) = E + (x - x_i) . g [W/m^3]
   float radius = 0;                     ///< m: validity, after clamping
-  float radius_unclamped = 0;           ///< m: before it was limited by pixels, scene and neighbours
-  float lit_cells = INFINITY;           ///< how many gather rays carry the irradiance (hemisphere.h); not in files
-  float lit_share = 1;                  ///< lit_cells / all cells; not in files
-  float expected_share = 1;             ///< what was thought of lit_share before its own rays; not in files
+  float radius_unclamped = 0;           ///< m: before pixels limited it
+  float seen_share = 1;                 ///< of its gather rays: met something; not in files
   float further_share = 0;              ///< further rays per cell that its unevenness would call for; not in files
   Clearance clearance;                  ///< what was seen around it, about `normal`: beyond it does not count
   std::uint32_t object = 0;             ///< the object it rides on
@@ -34,7 +32,7 @@ struct IrradianceRecord {
 struct InterpolationOptions {
   /// Records whose normal is farther off do not count: n n_i > least_cosine, in [0, 1).
   float least_cosine = 0.94f;
-  bool only_read = false;               ///< all records come at once, clamp_with_neighbours() is not asked for
+  bool only_read = false;               ///< all records come at once
 };
 
 /// least_cosine of records placed with this error bound (lib/gather/place_records.h): on curved surfaces a bright spot rises
@@ -63,13 +61,6 @@ class RecordStore {
   /// The same for many. A store that is only read takes its records by one call of this: its lists are made once, each in one
   /// piece of memory.
   void add(std::span<const IrradianceRecord> records);
-  /// Neighbour clamping [after Krivanek et al. 2006]: what is near one record cannot be much farther from its neighbours,
-  /// though all of their rays may have missed it. For the records i that are valid where `record` is, d apart:
-  ///     r <- min(r, R_i + slope d),   then   r_i <- min(r_i, R + slope d),
-  /// R: radius_unclamped, or r if that is larger. What follows from gradients, which are noise, stays with its record.
-  /// slope: radius / distance to what is seen, the error bound. Records below `first` stay as they are. To be called before
-  /// add(record).
-  void clamp_with_neighbours(IrradianceRecord& record, float slope, std::size_t first = 0);
   /// Gives a record a smaller radius. Not of a store that is only read.
   void shrink(std::uint32_t record, float radius);
   std::span<const IrradianceRecord> records() const { return records_; }
@@ -92,25 +83,15 @@ class RecordStore {
   /// (clearance). Where no record counts those in the
   /// angle of kWideCosine do.
   Interpolated interpolate(Vec3 position, Vec3 normal) const;
-  /// What the records that are valid at a place say of the light there, before it is gathered: means, so weighted.
-  struct Expected {
-    float lit_share = 1, further_share = 0;
-  };
-  /// None if no record is valid there.
-  std::optional<Expected> expected(Vec3 position, Vec3 normal) const;
+  /// Weighted mean of further_share over the records that are valid at a place; 0 if none is.
+  float expected_further_share(Vec3 position, Vec3 normal) const;
   /// Sum of the weights at a record's own place of those added before it, but for those marked (empty: none is).
   float weight_of_earlier(std::uint32_t record, std::span<const std::uint8_t> marked) const;
   /// Is the sum of the weights there at least `weight`? Looks no farther once it is. Or is it, were no radius larger than
   /// least_reach, in the angle of kWideCosine? Where normals turn faster than records may be fine, they need not be finer.
   bool covers(Vec3 position, Vec3 normal, float weight, float least_reach = 0) const;
-  /// The same with every record's radius kRelaxed times as large: for the few points, fractions of a pixel beyond
-  /// an edge, that no record quite reaches. Looks at all records: slow.
-  Interpolated interpolate_relaxed(Vec3 position, Vec3 normal) const;
-  /// Irradiance by interpolate(), or where no record counts and `relaxed` is asked for by interpolate_relaxed(); none if there
-  /// is none so either.
-  std::optional<Rgb> irradiance(Vec3 position, Vec3 normal, bool relaxed) const;
-
-  static constexpr float kRelaxed = 4;
+  /// Irradiance by interpolate(); none where no record counts.
+  std::optional<Rgb> irradiance(Vec3 position, Vec3 normal) const;
 
  private:
   /// What decides whether a record counts at a point.
@@ -144,15 +125,14 @@ class RecordStore {
     std::size_t listed = 0;             ///< entries in all buckets
     std::vector<std::uint32_t> members;
     std::vector<Bucket> buckets;        ///< by the hash of the cell, a power of two of them: what may be valid in it
-    std::vector<Bucket> around;         ///< likewise: all of which the sphere meets it
-    /// If only read, in place of buckets and around: bucket b is eights[first[b]] to eights[first[b + 1]].
+    /// If only read, in place of buckets: bucket b is eights[first[b]] to eights[first[b + 1]].
     std::vector<std::uint32_t> first;
     std::vector<Eight> eights;
   };
   Level& level_of(float radius);
   Level* keep(const IrradianceRecord& record);
   void list(Level& level, std::uint32_t record) const;
-  /// body(cell, near) for the cells that the validity sphere meets; near: the record may be valid in it.
+  /// body(cell) for the cells that a record may be valid in.
   template <class Body> void for_each_cell_of(const Level& level, const IrradianceRecord& record, const Body& body) const;
   Entry entry_of(std::uint32_t record) const;
   void pack(Level& level) const;
@@ -161,8 +141,7 @@ class RecordStore {
   static bool any_of(std::span<const Eight> eights, Vec3 position, Vec3 normal, float least_cosine, const Found& found);
   /// Is found(entry) true of a record that may be valid at the point? Each is asked once, until one is.
   template <class Found>
-  bool any_near(std::vector<Bucket> Level::*listed, float least_cosine, Vec3 position, Vec3 normal,
-                const Found& found) const;
+  bool any_near(float least_cosine, Vec3 position, Vec3 normal, const Found& found) const;
   Interpolated interpolate(Vec3 position, Vec3 normal, float least_cosine) const;
   /// Of a record at a point, were its radius another one; 0 where it is not valid.
   float weight_of(const Entry& entry, float radius, float least_cosine, Vec3 position, Vec3 normal) const;

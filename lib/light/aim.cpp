@@ -16,6 +16,12 @@ Vec2 disc_point(double u, double v) {
   return sample_disc_concentric({below_one(u), below_one(v)});
 }
 
+/// 1 - cosine of half the angle that a sphere covers, seen from outside of it. Exact for small angles, too.
+double one_minus_cos(double radius, Vec3d to_centre) {
+  const double sine2 = std::min(1.0, radius * radius / dot(to_centre, to_centre));
+  return sine2 / (1 + std::sqrt(1 - sine2));
+}
+
 }  // namespace
 
 Aim::Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_radius)
@@ -38,6 +44,7 @@ Aim::Aim(std::span<const AimSphere> spheres, Vec3 scene_centre, double scene_rad
   const double aimed = 1 - kUniform - (around.empty() ? 0 : kAround);
   for (const AimSphere& sphere : spheres) add(sphere.centre, sphere.radius, aimed * sphere.weight / sum);
   given_ = discs_.size();
+  given_share_ = aimed;
   for (const double radius : around) add(middle, radius, kAround / double(around.size()));
 }
 
@@ -66,7 +73,7 @@ Aim::Start Aim::start(Vec3 travel, double u, double v) const {
   }
   for (std::size_t k = 0; k < discs_.size(); ++k) {
     const double dx = x - dot(discs_[k].centre, across), dy = y - dot(discs_[k].centre, up);
-    // Of its own disc, whatever rounding says of the rim.
+    // A start belongs to the disc it was drawn on, even where rounding puts it beside the rim.
     if (k == chosen || dx * dx + dy * dy < discs_[k].radius * discs_[k].radius) density += discs_[k].gain;
   }
   Start start;
@@ -83,6 +90,35 @@ bool Aim::holds(Vec3 point) const {
     const Vec3d to = from - d.centre;
     return dot(to, to) < d.radius * d.radius;
   });
+}
+
+Aim::Way Aim::towards(Vec3 place, Vec2 u) const {
+  const Vec3d from = Vec3d(place) - Vec3d(scene_centre_);
+  double left = double(u.x) * given_share_;
+  std::size_t chosen = 0;
+  while (chosen + 1 < given_ && left >= discs_[chosen].share) left -= discs_[chosen++].share;
+  const Vec3d to = discs_[chosen].centre - from;
+  // Uniform over the cone: 1 - cos of the angle to its axis is uniform.
+  const double off = std::min(left / discs_[chosen].share, 1.0) * one_minus_cos(discs_[chosen].radius, to), phi = 2 * M_PI * double(u.y);
+  const double across = std::sqrt(off * (2 - off));
+  const Frame axes(Vec3(to * (1 / length(to))));
+  const Vec3 direction = normalize(axes.to_world({float(across * std::cos(phi)), float(across * std::sin(phi)), float(1 - off)}));
+  return {direction, density_towards(from, direction, chosen)};
+}
+
+double Aim::density_towards(Vec3 place, Vec3 direction) const {
+  return density_towards(Vec3d(place) - Vec3d(scene_centre_), direction, discs_.size());
+}
+
+/// A ray meets a sphere, or not; that of the chosen one does, whatever rounding says of the rim. `place`: from the scene's centre.
+double Aim::density_towards(Vec3d place, Vec3 direction, std::size_t chosen) const {
+  double density = 0;
+  for (std::size_t k = 0; k < given_; ++k) {
+    const Vec3d to = discs_[k].centre - place, aside = cross(to, Vec3d(direction));
+    if (k == chosen || (dot(to, Vec3d(direction)) > 0 && dot(aside, aside) < discs_[k].radius * discs_[k].radius))
+      density += discs_[k].share / (given_share_ * 2 * M_PI * one_minus_cos(discs_[k].radius, to));
+  }
+  return density;
 }
 
 }  // namespace tempolux

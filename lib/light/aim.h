@@ -47,14 +47,27 @@ class Aim {
   /// Does some of the given spheres hold the point (scene space)?
   bool holds(Vec3 point) const;
 
+  /// A direction from a place outside of all given spheres into one of them: chosen by weight, uniform over the solid angle that it covers.
+  struct Way {
+    Vec3 direction;       ///< unit
+    double density = 0;   ///< 1/sr, by all spheres that lie in this direction
+  };
+  /// u.x chooses the sphere and, stretched, is the first coordinate in it. Only if not empty() and not holds(place).
+  Way towards(Vec3 place, Vec2 u) const;
+  /// Density of towards() [1/sr] in a direction (unit).
+  double density_towards(Vec3 place, Vec3 direction) const;
+  static constexpr float kTowards = 0.5f;   ///< of the bounces outside of the spheres: docs/methods/aim.md
+
  private:
   struct Disc {
     Vec3d centre;         // from the scene sphere's centre
     double radius, below, share, gain;   // shares of those before; share; share R^2 / r^2, (1 - kUniform) included in all
   };
   void add(Vec3d centre, double radius, double share);
+  double density_towards(Vec3d place, Vec3 direction, std::size_t chosen) const;
   std::vector<Disc> discs_;   ///< those of the given spheres first
   std::size_t given_ = 0;
+  double given_share_ = 0;    ///< of all discs
   Vec3 scene_centre_{};
   double scene_radius_ = 0;
 };

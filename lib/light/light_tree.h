@@ -73,7 +73,7 @@ class LightTree {
   static std::size_t split(std::vector<Item>& items, std::size_t first, std::size_t last, bool by_cost);
   void collapse(const std::vector<Pair>& pairs, std::uint32_t pair, std::uint32_t parent);
   static void set_child(Node& node, int lane, const LightBounds& bounds);
-  /// Of all children; returns their sum.
+  /// The importance of each child; returns their sum.
   double importances(const Node& node, Vec3 point, Vec3 normal, double importance[kWidth]) const;
 
   std::vector<Node> nodes_;

@@ -107,7 +107,7 @@ void Lights::Impl::build_tree() {
   tree = LightTree(tree_bounds());
 }
 
-/// By light of `tree`.
+/// Bounds of each light of `tree`, in the tree's order.
 std::vector<LightBounds> Lights::Impl::tree_bounds() const {
   std::vector<LightBounds> bounds;
   bounds.reserve(tree_slot.size());

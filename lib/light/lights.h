@@ -52,9 +52,9 @@ struct EmissionTable {
 /// The triangles of table.surfaces[index] as lights of a frame, in their order.
 std::vector<TriangleLight> triangle_lights(const EmissionTable& table, std::size_t index, const SceneFrame& frame);
 
-/// Of all frames of the segment if something that emits moves, else of one.
+/// The segment's table: made from all of its frames if something that emits moves, else from one.
 EmissionTable build_emission_table(const Scene& scene, const Segment& segment, const TimeOptions& options);
-/// Of frames already evaluated, all of one segment (the same surfaces and lights in the same order); at
+/// The table of frames that are evaluated already, all of one segment (the same surfaces and lights in the same order); at
 /// least one. To be the segment's table they must be all frames at which an emitter's size differs.
 EmissionTable build_emission_table(std::span<const SceneFrame> frames);
 
@@ -91,7 +91,7 @@ class Lights {
   /// From now on samples are drawn by what the grid has learned of what reaches a place, where it knows the place; nullptr: no
   /// more. The grid must outlive this. Probabilities alone change: no bias.
   void use(const LightGrid* grid);
-  /// From now on directions of the environment are drawn by radiance and by the cosine (SkyByNormal), where sample() is told a
+  /// From now on directions of the environment are drawn by radiance and by the cosine (SkyByNormal), where sample() is given a
   /// normal and no grid knows the place. No bias. Some milliseconds.
   void weigh_sky_by_cosine();
   /// Directional lights that shine, and the environment: is there light from far away?

@@ -33,8 +33,8 @@ std::size_t Lights::Impl::slot_at(double u) const {
   return slot;
 }
 
-/// Of a two-sided triangle the lower half of u[2] leaves the front, and is stretched: the floor of 2 u[2] is 1 for the
-/// back, without a branch that would be taken at random.
+/// On a two-sided triangle numbers u[2] below 1/2 leave the front, the others the back; each half is stretched to [0, 1). The floor
+/// of 2 u[2] is 1 for the back and needs no branch that would be taken at random.
 Vec2 Lights::Impl::direction_numbers(std::size_t slot, const std::array<double, 4>& u) const {
   const bool halves = slot < triangles.size() && triangles[slot].two_sided;
   return {to_float(halves ? 2 * u[2] - std::floor(2 * u[2]) : u[2]), to_float(u[3])};

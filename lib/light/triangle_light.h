@@ -30,7 +30,7 @@ struct TriangleLight {
 
   /// Triangle `index` of a surface, with the material's emission at the frame.
   TriangleLight(const Surface& surface, std::uint32_t index, const Material& material);
-  /// Of a surface of the frame, with the mean over the triangle where a texture or alpha makes it vary.
+  /// A triangle of a surface of the frame. Where a texture or alpha makes its emission vary, radiance is the mean over the triangle.
   TriangleLight(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, const EmissionShares& shares);
   /// Radiance of the point of barycentrics (b1, b2), times the share of rays that meet it there.
   Rgb emitted_at(const SceneFrame& frame, std::uint32_t surface, std::uint32_t index, double b1, double b2) const {

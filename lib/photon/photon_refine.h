@@ -19,13 +19,13 @@ namespace tempolux {
 /// are 0: evenly. Both spans by group; whole numbers that add up exactly.
 std::vector<std::uint64_t> spread_paths(std::span<const double> moments, std::span<const std::uint64_t> paths, std::uint64_t extra);
 
-/// Of each group the mean over the groups beside it: their boxes of starts share a face with its own. Its own value is left out: how many paths a
+/// For each group the mean over the groups beside it, whose boxes of starts share a face with its own. Its own value is left out: how many paths a
 /// group gets must not depend on what its own paths found, or the lucky are corrected and the unlucky are not (docs/methods/volume_photons.md).
 /// `values` by group, of PhotonHalton(seed). Where the number of groups is not 2^a 3^b 5^c 7^d they have no boxes: all get the mean of all.
 std::vector<double> beside_groups(std::span<const double> values, std::uint64_t seed);
 
-/// By group of a map: paths, and the second moment of what one of its paths adds to the light in media, W^2: mean over its paths of the sum of
-/// squares of (flux that collides at a tentative photon, were it the only path of the group), told from the groups beside it.
+/// For each group of a map: paths, and the second moment of what one of its paths adds to the light in media, W^2: mean over its paths of the sum of
+/// squares of (flux that collides at a tentative photon, were it the only path of the group), estimated from the groups beside it.
 struct GroupMoments {
   formats::PhotonHeader header;
   std::vector<formats::GroupFlux> ledger;

@@ -24,7 +24,7 @@ constexpr float kInPlane = 0.25f;
 constexpr int kMostPlanes = 8;               ///< that a light may be in, one upon the other
 constexpr float kStepsPerCrossing = 10;      ///< tentative collisions in a mean crossing of the media's box, at least
 
-/// Kind of a photon by the events so far (architecture.md 3).
+/// Kind of a photon by the events so far (formats/conventions.md).
 PathKind kind_after(bool diffuse_seen, bool specular_seen) {
   return diffuse_seen ? PathKind::indirect : specular_seen ? PathKind::caustic : PathKind::direct;
 }
@@ -48,13 +48,13 @@ struct Arrival {
     shading_correction = flat ? 1 : geometric > 0 ? std::max(0.0f, wi_local.z) / geometric : 0;
   }
 
-  /// Event D where the normals differ: `travel` by the cosine to the geometric normal; returns f_D cos / pdf as the eye
+  /// Event D towards `travel`: f_D cos / pdf, pdf that of the cosine to the geometric normal and of choosing the event, as the eye
   /// has it that looks against `travel` (ShadingPoint in lib/render/shading.h): by the shading normal, or by
-  /// the geometric one where the shading normal looks away from it.
-  Rgb scatter_diffuse(const Bsdf& bsdf, const Bsdf::Sample& chosen, Vec2 u, Vec3& travel) const {
+  /// the geometric one where the shading normal looks away from it. Black behind the surface.
+  Rgb scatter_diffuse(const Bsdf& bsdf, const Bsdf::Sample& chosen, Vec3 travel) const {
     const Frame geometric(normal_geometric);
-    const Vec3 out = sample_hemisphere_cos(u), in = geometric.to_local(wi);
-    travel = geometric.to_world(out);
+    const Vec3 out = geometric.to_local(travel), in = geometric.to_local(wi);
+    if (!(out.z > 0)) return Rgb(0.0f);
     const Vec3 shaded = frame.to_local(travel);
     const bool by_shading = shaded.z > kLooksAway;
     // Light from behind the shading normal is seen from behind it only, and then it scatters by D alone.
@@ -339,6 +339,23 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
   return scatter_at(path, point, distance, bsdfs_[point.material][front], 1, point.normal, draw, batch);
 }
 
+/// Half of the bounces from places outside of the spheres that cameras see lead to the spheres, and carry less: where light of far
+/// ground enters a room one photon in thousands would find the way, and carry thousands of times what others do. `travel` is replaced, or kept; returns the cosine's density over that of both
+/// ways together, at most 1 / (1 - kTowards).
+float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, std::uint32_t bounce, Vec3& travel) const {
+  const Aim& aim = lights_.aim();
+  double towards;
+  if (random.get1(bounce, Purpose::scatter, 1) < Aim::kTowards) {
+    const Aim::Way way = aim.towards(position, random.get2(bounce, Purpose::scatter, 2));
+    travel = way.direction;
+    towards = way.density;
+  } else {
+    towards = aim.density_towards(position, travel);
+  }
+  const double cosine = double(std::max(0.0f, dot(travel, normal))) / M_PI;
+  return float(cosine / (double(1 - Aim::kTowards) * cosine + double(Aim::kTowards) * towards));
+}
+
 bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage, Vec3 smooth,
                               const Draw& draw, PhotonBatch& batch) const {
   const Arrival at(point, path.ray.direction);
@@ -367,6 +384,8 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;   // else it chooses nothing
   Bsdf::Sample next;
   Vec3 travel;
+  const bool aims = !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(point.position);
+  float aimed = 1;
   bool beyond = false;   // there are two events to choose from: of either as much as of both, so that each counts twice
   if (bsdf.has_specular() && at.bent()) {
     next = at.scatter_beyond(bsdf, u_lobe, draw.u, travel);
@@ -375,9 +394,11 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   if (!(beyond && random.get1(draw.bounce, Purpose::lobe, 1) < 0.5f)) {
     next = bsdf.is_matte() ? bsdf.sample_matte(at.wi_local, draw.direction) : bsdf.sample(at.wi_local, u_lobe, draw.u);
     travel = at.frame.to_world(next.wi);
-    if (!at.flat && (next.diffuse || !(at.wi_local.z > 0))) {
-      next.diffuse = true;
-      next.weight = at.scatter_diffuse(bsdf, next, draw.u, travel);
+    if (!at.flat && !(at.wi_local.z > 0)) next.diffuse = true;
+    if (next.diffuse && (!at.flat || aims)) {
+      if (!at.flat) travel = Frame(at.normal_geometric).to_world(sample_hemisphere_cos(draw.u));
+      if (aims) aimed = aim(point.position, at.normal_geometric, random, draw.bounce, travel);
+      next.weight = at.scatter_diffuse(bsdf, next, travel);
     } else if (!at.flat) {
       const float side = next.transmitted ? -1.0f : 1.0f;
       next.weight *= at.shading_correction * std::max(0.0f, side * dot(travel, at.normal_geometric)) /
@@ -390,7 +411,7 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   const float survival =
       std::min(kLargestPhotonSurvival, max_component(reflected) / std::max(max_component(flux), 1e-37f));
   const bool survives = cos_geometric > 0 && random.get1(draw.bounce, Purpose::roulette) < survival;
-  path.flux = reflected * (survives ? 1 / survival : 0);
+  path.flux = reflected * (survives ? aimed / survival : 0);   // roulette looks at the surface alone: where photons are aimed they carry less
   path.balance->absorbed += Rgbd(flux) - Rgbd(path.flux);
   (next.diffuse ? path.diffuse_seen : path.specular_seen) = true;
   batch.specular_ray_count += survives && !next.diffuse;

@@ -10,6 +10,7 @@
 #include "formats/paths/paths.h"
 #include "formats/photons/photons.h"
 #include "lib/core/halton.h"
+#include "lib/core/random.h"
 #include "lib/light/lights.h"
 #include "lib/material/bsdf.h"
 #include "lib/trace/mover_watch.h"
@@ -24,7 +25,7 @@ struct PhotonOptions {
   std::uint32_t group_count = 0;             ///< N_g; 0: automatic
   bool store_direct = true, store_caustic = true, store_indirect = true;
   /// Tentative collisions in media, those of direct light only with store_direct. Of each so many are kept at random, as much
-  /// heavier: of ten to a crossing four, which is what a radiance volume can tell apart (docs/methods/volume_photons.md).
+  /// heavier: of ten to a crossing four, which is what a radiance volume can resolve (docs/methods/volume_photons.md).
   bool store_volume = false;
   float volume_share = 0.4f;
   std::uint32_t pilots = 0;                  ///< so many of each group's first paths are pilots: what they met is taken down
@@ -67,7 +68,7 @@ struct PhotonBatch : FluxBalance {           ///< of all paths; if by_path see b
 /// so that  rho/pi x density  is what the Lambert lobe reflects, shading normals included [Veach 1997, 5.3]
 /// (they scatter to where the eye looks from: by the geometric normal, too, where the shading normal looks away);
 /// for a matte flat surface that is the flux that arrives. n_s of a normal map is that of its finest level, by which rays of gathering see
-/// it (RayCone). But pixels look at caustic light through photons, and by a normal that is the mean of what they do not tell apart: where
+/// it (RayCone). But pixels look at caustic light through photons, and by a normal that is the mean over what they do not resolve: where
 /// directions are stored (stores_directions) photons of kind caustic carry flux x |wi.n_v| / |wi.n_g|, n_v: the normal without a map, and who
 /// looks applies map and coat (received_share). Inside solids of glass it is divided by the index
 /// squared (bsdf.h). What solids absorb on the way counts as absorbed. Of a surface of alpha mode BLEND only the
@@ -137,6 +138,7 @@ class PhotonTracer {
   Flown fly_through_media(Path& path, float end, std::uint32_t bounce, PhotonBatch& batch) const;
   void record_tentative(const Path& path, Rgb flux, Vec3 position, float extinction, float majorant, std::uint32_t bounce, PhotonBatch& batch) const;
   bool scatter(Path& path, SurfacePoint& point, float distance, const Draw& draw, PhotonBatch& batch) const;
+  float aim(Vec3 position, Vec3 normal, const PathRandom& random, std::uint32_t bounce, Vec3& travel) const;
   bool scatter_at(Path& path, const SurfacePoint& point, float distance, const Bsdf& bsdf, float coverage, Vec3 smooth,
                   const Draw& draw, PhotonBatch& batch) const;
 

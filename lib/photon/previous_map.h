@@ -33,11 +33,11 @@ struct PreviousMap {
   formats::PhotonHeader header;
   std::string digest;                        ///< of the whole map; of one that is kept, as it was read: an overlay upon an overlay asks for none
   std::vector<formats::GroupFlux> ledger;    ///< every group
-  /// By group, for strategies that ask for it. Census: sum over its tentative photons of worth x |extinction now - then|, W. fde, dip, path:
+  /// One number for each group, for strategies that ask for it. Census: sum over its tentative photons of worth x |extinction now - then|, W. fde, dip, path:
   /// share of its pilots that differ. hybrid: sum over its pilots of |difference of the sketches|, W.
   std::vector<double> change;
   std::uint64_t pilot_paths = 0;             ///< paths traced for it
-  /// Of a map that is kept: the photons of each group, and the groups that an overlay holds itself.
+  /// What is known of a map that is kept: the photons of each group, and the groups that an overlay holds itself.
   std::vector<std::vector<formats::PhotonBlock>> photons;
   std::set<std::uint32_t> own;
   bool is_kept() const { return !photons.empty(); }

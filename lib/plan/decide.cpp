@@ -9,11 +9,12 @@
 #include "formats/error.h"
 #include "formats/hash.h"
 #include "lib/plan/stages.h"
-#include "lib/render/choose_caustics.h"
+#include "lib/render/choose_light.h"
 #include "lib/render/choose_photons.h"
 #include "lib/render/choose_preview.h"
 #include "lib/render/choose_split.h"
 #include "lib/render/learn_lights.h"
+#include "lib/render/places_seen.h"
 #include "lib/render/seen_spheres.h"
 
 namespace tempolux {
@@ -35,22 +36,19 @@ CameraView view_at(const SceneFrame& frame, const SceneSource& source, const Wis
   return CameraView(frame.camera(source.camera_node), frame.origin, wish.width, wish.height);
 }
 
-std::vector<AimSphere> aim_spheres(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
-  std::vector<AimSphere> spheres;
-  for (const formats::ViewSphere& sphere : view)
-    spheres.push_back({Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
-  return spheres;
+/// At most kMostViews of the frames, evenly spread.
+std::vector<int> spread(const std::vector<int>& frames) {
+  const std::size_t count = std::min(kMostViews, frames.size());
+  std::vector<int> some;
+  for (std::size_t i = 0; i < count; ++i) some.push_back(frames[i * frames.size() / count]);
+  return some;
 }
 
 /// What one looked frame asks for.
 struct Look {
-  IndirectMethod method = IndirectMethod::records;
-  bool caustic_map = false;      ///< with paths
-  bool dark = false;             ///< surfaces scatter no light
-  int rays = 0;
-  std::uint64_t paths = 0;
+  std::vector<Way> ways;
+  std::uint64_t paths = 0;       ///< of light
   bool learn = false;
-  std::string because;
 };
 
 class FramePilot {
@@ -59,57 +57,35 @@ class FramePilot {
       : kinds_(kinds), wish_(wish), frame_(source.at(number, true)), table_(source.emission(frame_.frame)),
         view_(view_at(frame_, source, wish)), tracer_(frame_), lights_(frame_, table_) {}
 
-  Look look(bool media) {
+  Look look() {
+    const Lights& aimed_lights = aimed();
+    const RoughFrame rough = rough_frame({tracer_, lights_}, aimed_lights, view_, {kinds_, wish_.pixel_error, wish_.photons, spheres_, 0});
     Look look;
-    const IndirectPilot pilot = pilot_indirect({tracer_, lights_}, view_, wish_.pixel_error, 0);
-    look.dark = !(pilot.scattered > 0);
-    look.rays = record_rays(pilot, wish_.rays);
-    look.learn = lights_.has_distant() && pilot.open_share <= kMostOpen;
-    if (wish_.indirect == "auto") choose_method(pilot, media, look);
-    look.paths = wish_.photons;
-    if (look.method != IndirectMethod::paths && lights_.has_distant())
-      look.paths = photon_paths(pilot_arrivals({tracer_, aimed()}, kinds_, 0), wish_.photons);
+    look.learn = lights_.has_distant() && rough.open_share <= kMostOpen;
+    look.paths = lights_.has_distant() && rough.places > 0 ? photon_paths(rough.photons_per_path, wish_.photons) : wish_.photons;
+    look.ways = ways_to_light(rough, {double(wish_.width) * wish_.height, look.paths, wish_.rays}, kinds_.find("caustic") != std::string::npos);
     return look;
   }
 
   PreviewPilot preview() { return pilot_preview({tracer_, aimed()}, kinds_, 0); }
   SplitChoice split() { return choose_split(pilot_split(frame_, table_, view_, 0)); }
   MovingPilot moving() { return pilot_moving(frame_, table_, view_, 0); }
+  /// Of what a picture of the segment shows, the share that pictures before it do not, from one to the next.
+  double new_share(const PlannedSegment& segment) const {
+    const std::vector<int> pictures = spread(segment.pictures());
+    std::vector<PlacedCamera> cameras;
+    for (const int frame : pictures)
+      if (const auto& view = segment.at(frame).view) cameras.push_back(*view);
+    const double steps = double(segment.pictures().size() - 1) / double(std::max<std::size_t>(2, pictures.size()) - 1);
+    return tempolux::new_share(tracer_, cameras, wish_.width, wish_.height) / std::max(1.0, steps);
+  }
 
  private:
-  void choose_method(const IndirectPilot& pilot, bool media, Look& look) {
-    const IndirectChoice choice = choose_indirect(pilot);
-    look.method = choice.method;
-    look.because = choice.because;
-    if (choice.method != IndirectMethod::paths) return;
-    if (media) {
-      look.method = IndirectMethod::gather;
-      look.because = "photons light the media, points read them, too";
-    } else if (kinds_.find("caustic") != std::string::npos) {
-      choose_beside_paths(pilot, look);
-    }
-  }
-
-  /// Paths, beside a map of caustic photons if that pays, or what photons ask for if paths do not find what indirect light there is.
-  void choose_beside_paths(const IndirectPilot& paths, Look& look) {
-    const SeenPhotons caustic = see_photons({tracer_, aimed()}, view_, "caustic", 0);
-    const CausticChoice map = choose_caustics(paths, caustic);
-    look.caustic_map = map.map;
-    look.because += "; " + map.because;
-    if (!map.map) return;
-    const IndirectChoice beside = choose_beside_caustics(paths, caustic, see_photons({tracer_, aimed()}, view_, "indirect", 0));
-    if (beside.method == IndirectMethod::paths) return;
-    look.method = beside.method;
-    look.because = beside.because;
-  }
-
   /// Lights that aim photons where the camera looks, as those of photon-trace.
   const Lights& aimed() {
     if (!aimed_) {
       EmissionTable table = table_;
-      std::vector<WeighedPlace> places;
-      add_seen_places(tracer_, view_, 0, places);
-      table.aim = aim_spheres(spheres_around(places, table.sphere_radius), frame_.origin);
+      table.aim = spheres_ = spheres_seen(tracer_, table.sphere_radius, view_);
       aimed_.emplace(frame_, table);
     }
     return *aimed_;
@@ -123,6 +99,7 @@ class FramePilot {
   Tracer tracer_;
   Lights lights_;
   std::optional<Lights> aimed_;
+  std::vector<AimSphere> spheres_;
 };
 
 std::string words(std::size_t count, const std::string& what) { return std::to_string(count) + " " + what + (count == 1 ? "" : "s"); }
@@ -133,35 +110,29 @@ std::string kinds_of(const MaterialFacts& materials, bool media) {
   return kinds;
 }
 
-/// Joins what the looked frames ask for.
-void join(const std::vector<std::pair<int, Look>>& looks, const Wish& wish, Decisions& d) {
-  d.record_rays = 0;
-  d.photon_paths = 0;
-  d.indirect = IndirectMethod::paths;
-  bool map = false, any = false;
-  std::string because;
-  for (const auto& [frame, look] : looks) {
-    d.record_rays = std::max(d.record_rays, look.rays);
+IndirectMethod method_named(const std::string& name) { return IndirectMethod(std::ranges::find(kIndirectMethods, name) - std::begin(kIndirectMethods)); }
+
+/// Joins what the looked frames ask for; media are lit by photons, which points read, too.
+void join(const std::vector<Look>& looks, const Wish& wish, bool media, Decisions& d) {
+  std::vector<std::vector<Way>> of_frames;
+  for (const Look& look : looks) {
     d.photon_paths = std::max(d.photon_paths, look.paths);
     d.learn_lights |= look.learn;
-    map |= look.caustic_map;
-    if (look.dark && looks.size() > 1) continue;
-    if (!any || look.method < d.indirect) {
-      d.indirect = look.method;
-      because = "frame " + std::to_string(frame) + ": " + look.because;
-    }
-    any = true;
+    of_frames.push_back(look.ways);
   }
-  if (!any) {
-    d.indirect = looks.front().second.method;
-    because = looks.front().second.because;
-  }
-  if (wish.indirect != "auto") {
-    d.indirect = IndirectMethod(std::ranges::find(kIndirectMethods, wish.indirect) - std::begin(kIndirectMethods));
-    because = "--indirect " + wish.indirect;
-  }
-  if (d.indirect == IndirectMethod::paths) d.kinds = map ? "caustic" : "";
-  d.reasons.push_back({"irradcache-build records", because});
+  std::vector<Way> ways = joined(of_frames);
+  std::string words = because(ways);
+  std::erase_if(ways, [&](const Way& way) {
+    return (media && way.method == IndirectMethod::paths) || (wish.indirect != "auto" && kIndirectMethods[std::size_t(way.method)] != wish.indirect);
+  });
+  if (wish.indirect != "auto") words = "--indirect " + wish.indirect + "; " + words;
+  // Where no surface with a Lambert lobe is seen paths are the one way there is.
+  const Way way = !ways.empty() ? ways.front() : Way{wish.indirect != "auto" ? method_named(wish.indirect) : IndirectMethod::gather, false, wish.rays, 0, 0};
+  d.indirect = way.method;
+  d.caustic_map = way.map;
+  d.record_rays = way.rays;
+  if (d.indirect == IndirectMethod::paths) d.kinds = way.map ? "caustic" : "";
+  d.reasons.push_back({"irradcache-build records", words});
 }
 
 void decide_split(FramePilot& pilot, const Wish& wish, Decisions& d) {
@@ -177,6 +148,14 @@ MovingMethod moving_named(const std::string& name) {
   return MovingMethod(std::ranges::find(kMovingMethods, name) - std::begin(kMovingMethods));
 }
 
+/// Records are shared by as many pictures as cost one that is asked for alone at most twice its own: as many as are asked for, or none of them, a frame costs
+/// at most twice what it could. A power of two.
+int pictures_together(std::size_t pictures, const Decisions& d) {
+  int together = 1;
+  while (std::size_t(together) < pictures && d.records_of(2 * together) <= 2) together *= 2;
+  return together;
+}
+
 /// What of a frame's light follows from that of what stands.
 void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, const SceneSource& source, Decisions& d) {
   const std::string name = "photon-trace --map dynamic";
@@ -187,13 +166,11 @@ void decide_moving(const PlannedSegment& segment, const Wish& wish, bool media, 
     throw InputError("--moving " + wish.moving + ": the scene has media, which all light meets: what movers change of it cannot be told apart; use --moving anew");
   if (media) return anew("there are media, which all light meets");
   if (wish.moving == "anew") return anew("--moving anew");
-  FramePilot pilot(wish, source, states[states.size() / 2], d.kinds);
-  MovingChoice choice = choose_moving(pilot.moving(), 1, states.size());
-  if (wish.moving != "auto") choice = {moving_named(wish.moving), choice.cost, "--moving " + wish.moving};
+  const double together = std::min(double(d.together), double(segment.pictures().size())), standing = d.records_of(together) / together;
+  const MovingChoice choice = wish.moving == "auto" ? choose_moving(FramePilot(wish, source, states[states.size() / 2], d.kinds).moving(), states.size(), standing)
+                                                    : MovingChoice{moving_named(wish.moving), "--moving " + wish.moving};
   d.moving = choice.method;
   if (d.moving > MovingMethod::light && !d.records()) d.moving = MovingMethod::light;
-  d.moving_cost = choice.cost;
-  if (d.moving == MovingMethod::time) d.moving_cost.records = records_over_time(1, states.size());
   d.reasons.push_back({name, choice.because});
 }
 
@@ -203,7 +180,7 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
   std::string because;
   if (pictures < kFewestForKeys) because = words(pictures, "different picture") + ": too few to lie between keys";
   else if (pictures == states) because = "light transport differs in all " + words(pictures, "picture") + ": keys lend little light to others";
-  else because = "the camera moves through " + words(pictures, "picture") + " of " + words(states, "state") + " of light; " + segment.materials.other_words;
+  else because = "the camera moves through " + words(pictures, "picture") + " of " + words(states, "state") + " of light";
   d.walk = pictures >= kFewestForKeys && pictures > states;
   d.reasons.push_back({"ibr-warp", because});
 }
@@ -211,13 +188,11 @@ void decide_walk(const PlannedSegment& segment, Decisions& d) {
 /// Light textures need to know how many paths bring the photons that are asked for, how wide the filter is then, and whether light
 /// from far away is learned.
 void decide_preview(const PlannedSegment& segment, const Wish& wish, const SceneSource& source, Decisions& d) {
-  Wish known = wish;
-  known.indirect = "records";                // no pilot of how indirect light is found
   d.indirect = IndirectMethod::paths;
   std::vector<PreviewPilot> pilots;
   for (const int frame : d.looked) {
-    FramePilot pilot(known, source, frame, d.kinds);
-    d.learn_lights |= pilot.look(false).learn;
+    FramePilot pilot(wish, source, frame, d.kinds);
+    d.learn_lights |= pilot.look().learn;
     pilots.push_back(pilot.preview());
   }
   const PreviewChoice choice = choose_preview(pilots, wish.photons, kPreviewWindow);
@@ -247,22 +222,20 @@ std::vector<int> looked_frames(const PlannedSegment& segment) {
 }
 
 std::string view_of(const PlannedSegment& segment, int width, int height, const SceneSource& source) {
-  const std::vector<int> pictures = segment.pictures();
-  const std::size_t count = std::min(kMostViews, pictures.size());
   StandingTree standing;
-  std::vector<WeighedPlace> places;
+  SeenAround seen;
   double radius = 0;
   bool from_afar = false;
-  for (std::size_t i = 0; i < count; ++i) {
-    const SceneFrame frame = source.at(pictures[i * pictures.size() / count], false);
+  for (const int picture : spread(segment.pictures())) {
+    const SceneFrame frame = source.at(picture, false);
     from_afar = from_afar || shines_from_afar(frame);
     radius = std::max(radius, source.emission(frame.frame).sphere_radius);
     const Tracer tracer(frame, standing);
-    add_seen_places(tracer, CameraView(frame.camera(source.camera_node), frame.origin, width, height), i, places);
+    look_around(tracer, frame.camera(source.camera_node), width, height, seen);
     // Under lamps alone photons are not aimed, and in a room points are spread everywhere: one look is enough.
-    if (i == 0 && !from_afar && spheres_around(places, radius).empty()) return "";
+    if (picture == segment.first && !from_afar && spheres_around(seen.places, radius).empty()) return "";
   }
-  const std::vector<formats::ViewSphere> spheres = spheres_around(places, radius);
+  const std::vector<formats::ViewSphere> spheres = spheres_around(seen.places, radius);
   return spheres.empty() ? "" : formats::view_text(spheres);
 }
 
@@ -270,20 +243,23 @@ Decisions decide(const PlannedSegment& segment, const Wish& wish, bool media, co
   Decisions d;
   d.looked = looked_frames(segment);
   d.kinds = kinds_of(segment.materials, media);
-  d.reasons.push_back({"photon-trace", segment.materials.lambert ? segment.materials.lambert_words : "nothing reflects by a Lambert lobe"});
+  d.reasons.push_back({"photon-trace", segment.materials.lambert ? "some material reflects by a Lambert lobe" : "nothing reflects by a Lambert lobe"});
   if (d.photons() && wish.method == FrameMethod::preview) {
     decide_preview(segment, wish, source, d);
   } else if (d.photons()) {
     if (wish.indirect == "paths" && media)
       throw InputError("--indirect paths: the scene has media, which photons light; choose records or gather");
-    std::vector<std::pair<int, Look>> looks;
+    std::vector<Look> looks;
+    d.photon_paths = 0;
     std::unique_ptr<FramePilot> middle;
     for (const int frame : d.looked) {
       auto pilot = std::make_unique<FramePilot>(wish, source, frame, d.kinds);
-      looks.emplace_back(frame, pilot->look(media));
+      looks.push_back(pilot->look());
       if (looks.size() == (d.looked.size() + 1) / 2) middle = std::move(pilot);
     }
-    join(looks, wish, d);
+    join(looks, wish, media, d);
+    if (d.records()) d.new_share = middle->new_share(segment);
+    d.together = pictures_together(segment.pictures().size(), d);
     decide_moving(segment, wish, media, source, d);
     decide_split(*middle, wish, d);
     if (d.photons()) d.view = view_of(segment, wish.width, wish.height, source);

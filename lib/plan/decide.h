@@ -1,4 +1,4 @@
-// lib/plan/decide.h -- decides what a segment needs, from pilots of frames that the segment fixes (architecture.md 4.2).
+// lib/plan/decide.h -- decides what a segment needs, from pilots of frames that the segment fixes (formats/plan/plan.md).
 #pragma once
 
 #include <functional>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/render/choose_indirect.h"
+#include "lib/render/choose_light.h"
 #include "lib/render/choose_moving.h"
 
 namespace tempolux {
@@ -40,8 +40,7 @@ struct Wish {
   std::string refine;                   ///< further paths for what smoke shows of a map, as a share of its paths, "5%"; "": none
   std::string strategy = "census";      ///< which groups, as photon-trace --strategy
   int key_distance = 16;                ///< frames between the first keys of a walkthrough
-  double threshold = 0;                 ///< relMSE above which an interval is halved; 0: the preset's
-  bool threshold_of_seen = false;       ///< the threshold is a share of pixels that a viewer sees to differ (AQM), not relMSE
+  double threshold = 0.05;              ///< an interval of a walkthrough is halved if a viewer sees in a larger share of its pixels that they are wrong (AQM)
   int reference_samples = 64;           ///< of a pixel of the reference that a report compares with
   std::vector<int> report;              ///< frames to compare with path tracing
   std::string common;                   ///< words of all stages that shape content: --fps, --volume ... (they are hashed, not used)
@@ -51,7 +50,6 @@ struct Wish {
 /// How the materials of a segment reflect.
 struct MaterialFacts {
   bool lambert = false, other = false;  ///< some reflect by a Lambert lobe; some by a mirror or glossy lobe
-  std::string lambert_words, other_words;   ///< "2 of 3 materials reflect by a Lambert lobe"
 };
 
 /// A fact that decides whether a stage has work.
@@ -64,13 +62,18 @@ struct Reason {
 struct Decisions {
   std::string kinds;                    ///< of photons that later stages read: "caustic,indirect"; "": no photons
   IndirectMethod indirect = IndirectMethod::records;
+  bool caustic_map = false;             ///< caustic light where the eye looks is read from photons; else paths find it
   std::uint64_t photon_paths = 700'000; ///< of a photon map
   int record_rays = 500;
   double texture_width = 0;             ///< of a preview's light textures, m: deviation of their filter; 0: no preview
   bool learn_lights = false;            ///< light from far away comes through openings: it is learned which way
   bool split = false;                   ///< bright points are divided from the others and sampled explicitly
   MovingMethod moving = MovingMethod::anew;
-  MovingCost moving_cost;               ///< of a state of light, for estimates
+  double new_share = 0;                 ///< of what a picture shows, that the pictures of the segment before it do not
+  int together = 1;                     ///< pictures, one after the other, whose cameras share records
+
+  /// Records for the cameras of so many pictures, one after the other; in records of one.
+  double records_of(double pictures) const { return 1 + new_share * (pictures - 1); }
   bool walk = false;                    ///< key frames and warping pay: METHOD=auto follows it
   std::string view;                     ///< content of the view file by which photons are aimed and points spread; "": none
   std::vector<int> looked;              ///< frames of the pilots
@@ -79,7 +82,6 @@ struct Decisions {
   bool photons() const { return !kinds.empty(); }
   bool points() const { return photons() && indirect != IndirectMethod::paths; }
   bool records() const { return photons() && indirect == IndirectMethod::records; }
-  bool caustics() const { return kinds.find("caustic") != std::string::npos; }
 };
 
 }  // namespace tempolux

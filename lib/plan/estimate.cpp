@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 namespace tempolux {
 namespace {
@@ -23,19 +22,13 @@ std::string size_text(double bytes) {
   return line("%.0f kB", std::ceil(bytes / 1e3));
 }
 
-double wall_of(const StageEstimate& stage, int processors, int jobs, int threads) {
-  const double at_once = std::max(1.0, std::min(double(jobs), stage.runs)), lanes = std::max(1, threads);
-  const double alone = stage.fixed_cpu_s + stage.work_cpu_s / std::min(lanes, double(std::max(1, processors)));
-  const double shared = stage.cpu_s() / std::max(1, processors);
-  return std::max(shared, stage.runs * alone / at_once);
+std::string time_text(double seconds) {
+  if (seconds >= 2 * 3600) return line("%.1f hours", seconds / 3600);
+  if (seconds >= 120) return line("%.0f minutes", seconds / 60);
+  return line("%.0f s", std::ceil(seconds));
 }
 
 }  // namespace
-
-StageEstimate scaled(const std::string& stage, double runs, const PilotRun& pilot, double work) {
-  const double factor = work / pilot.work;
-  return {stage, runs, pilot.fixed_cpu_s, pilot.work_cpu_s * factor, pilot.bytes * factor};
-}
 
 double power_law(double x1, double y1, double x2, double y2, double x) {
   if (y2 <= 0) return 0;
@@ -43,62 +36,17 @@ double power_law(double x1, double y1, double x2, double y2, double x) {
   return y2 * std::pow(x / x2, exponent);
 }
 
-TwoCosts two_costs(double m1, double n1, double t1, double m2, double n2, double t2) {
-  const double determinant = m1 * n2 - m2 * n1;
-  if (std::abs(determinant) > 1e-6 * std::abs(m2 * n2)) {
-    const TwoCosts costs{(t1 * n2 - t2 * n1) / determinant, (m1 * t2 - m2 * t1) / determinant};
-    if (costs.a >= 0 && costs.b >= 0) return costs;
-    if (costs.a < 0 && n2 > 0) return {0, t2 / n2};
+std::string estimate_text(const std::vector<StageEstimate>& stages, int processors) {
+  std::string text = "stage                                 runs  CPU s each   CPU s all   file each       files\n";
+  double cpu_s = 0, bytes = 0;
+  for (const StageEstimate& stage : stages) {
+    cpu_s += stage.runs * stage.cpu_s;
+    bytes += stage.runs * stage.bytes;
+    text += line("%-36s %5.0f %11.3f %11.1f %11s %11s\n", stage.stage.c_str(), stage.runs, stage.cpu_s, stage.runs * stage.cpu_s,
+                 size_text(stage.bytes).c_str(), size_text(stage.runs * stage.bytes).c_str());
   }
-  return m2 > 0 ? TwoCosts{t2 / m2, 0} : TwoCosts{0, n2 > 0 ? t2 / n2 : 0};
-}
-
-double Estimate::cpu_s() const {
-  double sum = 0;
-  for (const StageEstimate& stage : stages) sum += stage.cpu_s();
-  return sum;
-}
-
-double Estimate::bytes() const {
-  double sum = 0;
-  for (const StageEstimate& stage : stages) sum += stage.total_bytes();
-  return sum;
-}
-
-double Estimate::wall_s(int processors, int jobs, int threads) const {
-  double sum = 0;
-  for (const StageEstimate& stage : stages) sum += wall_of(stage, processors, std::max(1, jobs), threads);
-  return sum;
-}
-
-std::string estimate_text(const Estimate& estimate, int processors, int jobs, int threads) {
-  std::string text = "stage                     runs  CPU s each   CPU s all   file each       files\n";
-  for (const StageEstimate& stage : estimate.stages)
-    text += line("%-24s %5.0f %11.3f %11.1f %11s %11s\n", stage.stage.c_str(), stage.runs,
-                 stage.fixed_cpu_s + stage.work_cpu_s, stage.cpu_s(), size_text(stage.bytes).c_str(),
-                 size_text(stage.total_bytes()).c_str());
-  return text + line("%-24s %29.1f %23s\n", "all", estimate.cpu_s(), size_text(estimate.bytes()).c_str()) +
-         line("about %.0f s with %d processor%s, %d job%s at a time of %d thread%s\n",
-              std::ceil(estimate.wall_s(processors, jobs, threads)), processors, processors == 1 ? "" : "s", jobs,
-              jobs == 1 ? "" : "s", threads, threads == 1 ? "" : "s");
-}
-
-std::string estimate_json(const Estimate& estimate, int processors, int jobs, int threads) {
-  nlohmann::ordered_json json = {{"cpu_s", estimate.cpu_s()},
-                                 {"wall_s", estimate.wall_s(processors, jobs, threads)},
-                                 {"bytes", std::round(estimate.bytes())},
-                                 {"processors", processors},
-                                 {"jobs", jobs},
-                                 {"threads", threads}};
-  json["stages"] = nlohmann::ordered_json::array();
-  for (const StageEstimate& stage : estimate.stages)
-    json["stages"].push_back({{"stage", stage.stage},
-                              {"runs", stage.runs},
-                              {"cpu_s_each", stage.fixed_cpu_s + stage.work_cpu_s},
-                              {"cpu_s", stage.cpu_s()},
-                              {"bytes_each", std::round(stage.bytes)},
-                              {"bytes", std::round(stage.total_bytes())}});
-  return json.dump(1) + "\n";
+  return text + line("%-36s %29.1f %23s\n", "all", cpu_s, size_text(bytes).c_str()) + "about " + time_text(cpu_s / processors) + " on " +
+         std::to_string(processors) + (processors == 1 ? " processor\n" : " processors\n");
 }
 
 }  // namespace tempolux

@@ -15,7 +15,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-constexpr std::size_t kKeyDigits = 10;   // 40 bits: two of 10 000 files agree by chance once in 20 000 plans
+constexpr const char* kAudit = "--audit 0.02";   ///< of the frame's rays: with what the audit looks up less than 3 % of a run
 
 std::string joined(const std::vector<int>& frames) {
   std::string text;
@@ -33,6 +33,21 @@ std::string without(const std::string& words, const std::string& word) {
 }
 
 bool has_word(const std::string& words, const std::string& word) { return without(words, word).size() != without(words, "").size(); }
+
+bool has_channel(const std::string& channels, const std::string& name) { return ("," + channels + ",").find("," + name + ",") != std::string::npos; }
+
+/// Adds those of `more` that are not among the channels.
+std::string with_channels(std::string channels, const std::string& more) {
+  std::istringstream names(more);
+  for (std::string name; std::getline(names, name, ',');)
+    if (!has_channel(channels, name)) channels += "," + name;
+  return channels;
+}
+
+/// Channels of a raw frame that is filtered to these. A window of several frames is laid along their motion.
+std::string raw_channels(const Wish& wish, const std::string& filtered) {
+  return with_channels(std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish.filter > 1 ? ",motion" : ""), filtered);
+}
 
 /// Options of a command, and the files among them.
 struct Command {
@@ -82,18 +97,18 @@ class Builder {
     Hasher hasher;
     for (const std::string& part : {std::string(stage.name), tool_hash_(std::string(stage.tool)), command.words, command.content, wish_.common})
       hasher.add(std::string_view(part));
-    const std::string stem = std::string(stage.folder) + "/" + frames + "-" + hasher.hex().substr(0, kKeyDigits);
+    const std::string stem = std::string(stage.folder) + "/" + frames + "-" + key_of(hasher.hex());
     GraphFile file{stem + std::string(stage.extension), {}, std::string(stage.name), command.words, false, command.inputs};
     for (const std::string& extension : beside_extensions) file.beside.push_back(stem + extension);
-    if (known_.insert(file.name).second) graph_.files.push_back(file);
+    if (!graph_.find(file.name)) graph_.add(file);
     return file.name;
   }
   std::string add(const StageInfo& stage, int frame, const Command& command, const Names& beside_extensions = {}) {
     return add(stage, frame_digits(frame), command, beside_extensions);
   }
   std::string add_state(const char* concern, int first, const std::string& content) {
-    const std::string name = "state/" + frame_digits(first) + "-" + hash_hex(content).substr(0, kKeyDigits) + "." + concern;
-    if (known_.insert(name).second) graph_.states.push_back({name, content});
+    const std::string name = "state/" + frame_digits(first) + "-" + key_of(hash_hex(content)) + "." + concern;
+    if (std::ranges::find(graph_.states, name, &PlanFile::name) == graph_.states.end()) graph_.states.push_back({name, content});
     return name;
   }
 
@@ -130,13 +145,12 @@ class Builder {
     c.option(photon_words(frame));
     return add(stage::stands_photons, first, c, {".paths"});
   }
-  std::string paths_of(const std::string& photons) const { return photons.substr(0, photons.rfind('.')) + ".paths"; }
 
   /// The photon map of a state of light: whole, or what movers change of the map of what stands.
   std::string photons(int lit) {
     if (moved(lit)) {
       Command c{"--frame " + std::to_string(lit) + " --map dynamic", {}, state(lit).light};
-      c.file("--static", paths_of(stands_photons(lit)));
+      c.file("--static", beside(stands_photons(lit), ".paths"));
       add_view(lit, c);
       return add(stage::moved_photons, lit, c);
     }
@@ -195,13 +209,12 @@ class Builder {
     c.file("", points(lit));
     return add(stage::split, lit, c, {".high.irradpoints"});
   }
-  std::string high_of(const std::string& low) const { return low.substr(0, low.size() - std::string_view(".low.irradpoints").size()) + ".high.irradpoints"; }
   /// Points as options: all, or the low and the high part.
   void add_points(int lit, Command& c) {
     if (!decided(lit).split) return c.file("--points", points(lit));
     const std::string low = low_points(lit);
     c.file("--points", low);
-    c.file("--high", high_of(low));
+    c.file("--high", beside(low, ".high.irradpoints"));
   }
 
   // ---- records --------------------------------------------------------------------------------------------------
@@ -216,12 +229,19 @@ class Builder {
     for (const int frame : frames) hasher.add(std::string_view(state(frame).camera));
     return hasher.hex();
   }
-  std::string stands_records(int frame) {
+  /// Pictures of the segment whose cameras share records of what stands with a frame's: a block of Decisions::together.
+  std::vector<int> together(int frame) const {
     const std::vector<int> pictures = segment(frame).pictures();
+    const auto size = std::ptrdiff_t(decided(frame).together);
+    const auto block = (std::ranges::lower_bound(pictures, state(frame).picture) - pictures.begin()) / size;
+    return {pictures.begin() + block * size, pictures.begin() + std::min(std::ptrdiff_t(pictures.size()), (block + 1) * size)};
+  }
+  std::string stands_records(int frame) {
+    const std::vector<int> pictures = together(frame);
     Command c{"--frames " + joined(pictures) + " --map static", {}, standing_content(frame) + cameras(pictures)};
     c.file("--points", stands_points(frame));
     c.option(record_words(frame));
-    return add(stage::stands_records, segment(frame).first, c);
+    return add(stage::stands_records, pictures.front(), c);
   }
   /// The state of light of the frame before, if its records lead to those of this state.
   int state_before(int lit) const {
@@ -230,27 +250,28 @@ class Builder {
   /// With records that are kept over time: states that one picture shows. Where a camera moves while light stands, one cache
   /// serves all its pictures.
   bool over_time(int lit) const { return decided(lit).moving == MovingMethod::time && segment(lit).pictures(lit).size() == 1; }
-  std::string radsamples_of(const std::string& cache) const { return cache.substr(0, cache.rfind('.')) + ".radsamples"; }
 
-  std::string records(int lit) {
-    if (const auto found = records_.find(lit); found != records_.end()) return found->second;
+  std::string records(int frame) {
+    const int picture = state(frame).picture;
+    if (const auto found = records_.find(picture); found != records_.end()) return found->second;
+    const int lit = state(frame).lit_frame;
+    std::vector<int> pictures = together(frame);
+    std::erase_if(pictures, [&](int other) { return state(other).lit_frame != lit; });
     std::string name;
     if (over_time(lit)) name = kept_records(lit);
-    else if (decided(lit).moving == MovingMethod::records) name = updated_records(lit);
-    else name = placed_records(lit);
-    return records_[lit] = name;
+    else if (decided(lit).moving == MovingMethod::records) name = updated_records(lit, pictures);
+    else name = placed_records(lit, pictures);
+    return records_[picture] = name;
   }
-  std::string placed_records(int lit) {
-    const std::vector<int> pictures = segment(lit).pictures(lit);
+  std::string placed_records(int lit, const std::vector<int>& pictures) {
     Command c{"--frames " + joined(pictures), {}, state(lit).light + cameras(pictures)};
     add_points(lit, c);
     c.option(record_words(lit));
-    return add(stage::records, lit, c);
+    return add(stage::records, pictures.front(), c);
   }
-  std::string updated_records(int lit) {
-    const std::vector<int> pictures = segment(lit).pictures(lit);
+  std::string updated_records(int lit, const std::vector<int>& pictures) {
     Command c{"--frames " + joined(pictures), {}, state(lit).light + cameras(pictures)};
-    c.file("--update", stands_records(lit));
+    c.file("--update", stands_records(pictures.front()));
     c.file("--points", points(lit));
     // Dynamic photons of up to two states before: where they mattered, records are gathered still.
     std::vector<int> states{lit};
@@ -261,13 +282,14 @@ class Builder {
     }
     for (const int frame : states) c.file("--dynamic", photons(frame));
     c.option(record_words(lit));
-    return add(stage::records, lit, c);
+    return add(stage::records, pictures.front(), c);
   }
   std::string kept_records(int lit) {
-    Command c{"--frame " + std::to_string(lit), {}, state(lit).light + cameras(segment(lit).pictures(lit))};
+    const PlannedSegment& s = segment(lit);   // whose borders samples remember
+    Command c{"--frame " + std::to_string(lit), {}, state(lit).light + cameras(s.pictures(lit)) + joined({s.first, s.last})};
     add_points(lit, c);
     const int before = state_before(lit);
-    if (before < lit && over_time(before)) c.file("--previous", radsamples_of(records(before)));
+    if (before < lit && over_time(before)) c.file("--previous", beside(records(before), ".radsamples"));
     c.option(record_words(lit));
     return add(stage::kept, lit, c, {".radsamples"});
   }
@@ -342,28 +364,45 @@ class Builder {
       c.file("--meshirrad", textures(lit));
     } else if (d.points()) {
       if (d.records()) {
-        c.file("--irradcache", records(lit));
+        c.file("--irradcache", records(frame));
         c.file("--points", points(lit));
       } else {
         add_points(lit, c);
       }
     }
-    if (d.caustics() && !preview_) {
+    if (d.caustic_map && !preview_) {
       if (moved(lit)) c.file("--photons", stands_photons(lit));
       c.file(moved(lit) ? "--dynamic" : "--photons", photons(lit));
     }
     c.file("--lights", lights(frame));
   }
   Command frame_command(int frame, const std::string& pixels, const std::string& channels) {
-    Command c{"--frame " + std::to_string(frame), {}, cameras({frame})};
+    Command c{"--frame " + std::to_string(frame), {}, cameras({frame}) + in_motion(frame, channels)};
     add_light(frame, c);
     for (const std::string& words : {size_, pixels, "--channels " + channels}) c.option(words);
+    if (decided(frame).photons() && !preview_) c.option(kAudit);
     return c;
+  }
+  /// With the channel motion a hash of a frame and those beside it: what is where, and the cameras.
+  std::string in_motion(int frame, const std::string& channels) const {
+    if (!has_channel(channels, "motion")) return "";
+    Hasher hasher;
+    for (const int f : {clamped(frame - 1), frame, clamped(frame + 1)})
+      for (const std::string& hash : {state(f).light, state(f).camera}) hasher.add(std::string_view(hash));
+    return hasher.hex();
+  }
+  /// The first frame of the segment that looks as this one; with the channel motion as those beside it do, too. Of the segment's ends only they
+  /// themselves have neighbours in the plan, whatever is asked for.
+  int shown(int frame, const std::string& channels) const {
+    if (!has_channel(channels, "motion")) return state(frame).picture;
+    for (int f = segment(frame).first + 1; f < frame; ++f)
+      if (state(f).picture == state(frame).picture && in_motion(f, channels) == in_motion(frame, channels)) return f;
+    return frame;
   }
 
   /// The picture that a frame shows, smoke included.
   std::string picture(int frame) {
-    frame = state(frame).picture;
+    frame = shown(frame, wish_.channels);
     const std::string clear = clear_picture(frame);
     if (!plan_.media) return clear;
     const int lit = state(frame).lit_frame;
@@ -375,32 +414,28 @@ class Builder {
     return add(stage::smoke, frame, c);
   }
   std::string clear_picture(int frame) {
-    const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk));
+    const bool walk = !plan_.media && (wish_.method == FrameMethod::walkthrough || (wish_.method == FrameMethod::automatic && decided(frame).walk && wish_.filter <= 1));
     if (walk) return walked_picture(frame);
-    if (wish_.filter > 0) return filtered_picture(frame);
+    if (wish_.filter > 0) return filtered_picture(frame, wish_.channels);
     return add(stage::pictures, frame, frame_command(frame, pixels_, wish_.channels));
   }
 
   /// A frame with the halves of its samples, filtered alone or with those around it. The window ends at the animation's ends.
-  std::string filtered_picture(int frame) {
+  std::string filtered_picture(int frame, const std::string& channels) {
     // Frames around it must have noise of their own.
     const std::string pixels = pixels_ + (wish_.filter > 1 ? " --seed-mode frame" : "") + " --compression none";
-    std::string channels = std::string("RGBA,layers,Z,N,id,albedo,coverage,halves,seen") + (wish_.filter > 1 ? ",motion" : "");
-    std::istringstream asked(wish_.channels);
-    for (std::string name; std::getline(asked, name, ',');)
-      if (("," + channels + ",").find("," + name + ",") == std::string::npos) channels += "," + name;
+    const std::string raw_names = raw_channels(wish_, channels);
     Command c;
     std::size_t position = 0;
     for (int f = frame - wish_.filter / 2; f <= frame + wish_.filter / 2; ++f) {
       if (f != clamped(f)) continue;
-      const int shown = state(f).picture;
-      const std::string raw = add(stage::raw, shown, frame_command(shown, pixels, channels));
+      const int like = shown(f, raw_names);
+      const std::string raw = add(stage::raw, like, frame_command(like, pixels, raw_names));
       if (c.inputs.empty() || c.inputs.back() != raw) c.file("", raw);
       if (f == frame) position = c.inputs.size();
     }
-    if (wish_.filter == 1)
-      for (GraphFile& file : graph_.files) file.passing |= file.name == c.inputs.front();
-    c.option("--position " + std::to_string(position) + " --channels " + wish_.channels);
+    if (wish_.filter == 1) graph_.files[graph_.by_name.at(c.inputs.front())].passing = true;
+    c.option("--position " + std::to_string(position) + " --channels " + channels);
     return add(stage::filtered, frame, c);
   }
 
@@ -412,13 +447,10 @@ class Builder {
     return true;
   }
   std::string key_picture(int frame) {
-    frame = state(frame).picture;
-    std::string channels = wish_.channels;
-    const auto add_channel = [&](const std::string& name) {
-      if (("," + channels + ",").find("," + name + ",") == std::string::npos) channels += "," + name;
-    };
-    for (const char* name : {"Z", "N", "id"}) add_channel(name);
-    if (("," + channels + ",").find(",layers,") == std::string::npos) add_channel("specular");
+    const bool layers = wish_.filter > 0 || has_channel(wish_.channels, "layers");
+    const std::string channels = with_channels(wish_.channels, layers ? "Z,N,id,layers" : "Z,N,id,specular");
+    frame = shown(frame, channels);
+    if (wish_.filter > 0) return filtered_picture(frame, channels);
     return add(stage::keys, frame, frame_command(frame, pixels_, channels));
   }
   /// The interval of equal light between first keys that holds a frame strictly inside, or none: then the frame is a key.
@@ -442,11 +474,10 @@ class Builder {
     Command c;
     c.file("", key_picture(i.first));
     c.file("", key_picture(i.last));
-    std::ostringstream words;
-    words << c.words << " " << frame_digits(i.middle()) << " " << key_picture(i.middle()) << " "
-          << (wish_.threshold_of_seen ? 100 * wish_.threshold : wish_.threshold) << (wish_.threshold_of_seen ? "% " : " ")
-          << (left.empty() ? "-" : left) << " " << (right.empty() ? "-" : right);
-    c.words = words.str();
+    std::ostringstream threshold;
+    threshold << wish_.threshold;
+    for (const std::string& word : {frame_digits(i.middle()), key_picture(i.middle()), threshold.str(), left.empty() ? "-" : left, right.empty() ? "-" : right})
+      c.option(word);
     c.content = tool_hash_("aqm-compare") + cameras({i.middle()});
     const std::string name = add(stage::walk, interval_name(i), c);
     intervals_[i.first * 1'000'000LL + i.last] = name;
@@ -459,10 +490,12 @@ class Builder {
     if (std::ranges::find(graph_.intervals, decided_by) == graph_.intervals.end()) graph_.intervals.push_back(decided_by);
     Command light{"", {}, ""};
     add_light(frame, light);
-    Command c{"", {}, tool_hash_("ibr-warp") + light.content + cameras({frame})};
+    Command c{"", {}, tool_hash_("ibr-warp") + (wish_.filter > 0 ? tool_hash_("st-filter") : "") + light.content + cameras({frame}) + in_motion(frame, wish_.channels)};
     c.file("", decided_by);
     c.option(frame_digits(frame));
-    for (const std::string& words : {light.words, size_, pixels_, "--channels " + wish_.channels}) c.option(words);
+    c.option(wish_.filter > 0 ? wish_.channels : "-");
+    for (const std::string& words : {light.words, size_, pixels_, "--channels " + (wish_.filter > 0 ? raw_channels(wish_, wish_.channels) : wish_.channels)})
+      c.option(words);
     c.inputs.insert(c.inputs.end(), light.inputs.begin(), light.inputs.end());
     return add(stage::walked, frame, c);
   }
@@ -470,28 +503,23 @@ class Builder {
   // ---- report ---------------------------------------------------------------------------------------------------
   void add_report(int frame) {
     const int shown = state(plan_.shows.at(frame)).picture;
-    const std::string picture_name = picture(shown);
+    const std::string picture_name = picture(plan_.shows.at(frame));
     Command path{"--frame " + std::to_string(shown) + " --integrator path --halves " + size_ + " --spp " +
                      std::to_string(wish_.reference_samples) + " --channels RGBA", {}, state(shown).light + cameras({shown})};
     const std::string reference = add(stage::reference, shown, path, {"_a.exr", "_b.exr"});
-    const std::string stem = reference.substr(0, reference.rfind('.'));
     Command compare;
     compare.file("", picture_name);
     compare.inputs.push_back(reference);
-    compare.option("--reference-halves " + stem + "_a.exr " + stem + "_b.exr");
+    compare.option("--reference-halves " + beside(reference, "_a.exr") + " " + beside(reference, "_b.exr"));
     graph_.errors[frame] = add(stage::error, shown, compare);
     std::set<std::string> seen;
     collect_stats(picture_name, seen, graph_.spent[graph_.errors[frame]]);
   }
   void collect_stats(const std::string& name, std::set<std::string>& seen, Names& stats) const {
-    if (!seen.insert(name).second) return;
-    const auto found = std::ranges::find_if(graph_.files, [&](const GraphFile& f) {
-      return f.name == name || std::ranges::find(f.beside, name) != f.beside.end();
-    });
-    if (found == graph_.files.end()) return;
-    if (!seen.insert("made " + found->name).second) return;
+    const GraphFile* found = graph_.find(name);
+    if (!found || !seen.insert("made " + found->name).second) return;
     for (const std::string& input : found->inputs) collect_stats(input, seen, stats);
-    stats.push_back(found->name.substr(0, found->name.find('.')) + ".json");
+    stats.push_back(beside(found->name, ".json"));
   }
 
   const Plan& plan_;
@@ -501,12 +529,26 @@ class Builder {
   std::string size_, pixels_;
   bool preview_ = false;
   Graph graph_;
-  std::set<std::string> known_;
   std::map<int, std::string> majorants_known_, records_;
   std::map<long long, std::string> intervals_;
 };
 
 }  // namespace
+
+const GraphFile* Graph::find(const std::string& name) const {
+  const auto found = by_name.find(name);
+  return found == by_name.end() ? nullptr : &files[found->second];
+}
+
+void Graph::add(const GraphFile& file) {
+  by_name[file.name] = files.size();
+  for (const std::string& name : file.beside) by_name[name] = files.size();
+  files.push_back(file);
+}
+
+std::string stem_of(const std::string& name) { return name.substr(0, name.find('.')); }
+std::string beside(const std::string& name, const std::string& extension) { return stem_of(name) + extension; }
+std::string key_of(const std::string& hash) { return hash.substr(0, 10); }
 
 std::string frame_digits(int frame) {
   std::array<char, 16> text{};
@@ -516,11 +558,14 @@ std::string frame_digits(int frame) {
 
 std::vector<int> helper_frames(const std::vector<int>& frames, const Wish& wish) {
   std::set<int> helpers;
+  const int beside = has_channel(raw_channels(wish, wish.channels), "motion");
+  const auto add = [&](int first, int last) {
+    for (int f = first - beside; f <= last + beside; ++f) helpers.insert(f);
+  };
   for (const int frame : frames) {
-    for (int f = frame - wish.filter / 2; f <= frame + wish.filter / 2; ++f) helpers.insert(f);
-    if (wish.method == FrameMethod::frames || wish.method == FrameMethod::preview) continue;
+    add(frame - wish.filter / 2, frame + wish.filter / 2);
     const int first = frame - frame % wish.key_distance;
-    for (int f = first; f <= first + wish.key_distance; ++f) helpers.insert(f);
+    if (wish.method != FrameMethod::frames && wish.method != FrameMethod::preview) add(first, first + wish.key_distance);
   }
   return {helpers.begin(), helpers.end()};
 }
@@ -532,8 +577,9 @@ Graph make_graph(const Plan& plan, const Wish& wish, const ToolHash& tool_hash, 
     throw InputError("METHOD=preview: the scene has media, which light textures leave out; use METHOD=frames SURFACES=textures");
   if (!plan.media && !(wish.update.empty() && wish.refine.empty()))
     throw InputError("UPDATE and REFINE are for maps of scenes with media; this scene has none");
-  if (wish.filter > 0 && wish.method == FrameMethod::walkthrough)
-    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=walkthrough: keys are not filtered; use one or the other");
+  if (wish.filter > 1 && wish.method == FrameMethod::walkthrough)
+    throw InputError("FILTER=" + std::to_string(wish.filter) + " with METHOD=walkthrough: what is warped has its keys' noise in all frames, so that "
+                     "frames around it know nothing more; use FILTER=1");
   return Builder(plan, wish, tool_hash, majorants).build();
 }
 

@@ -8,8 +8,11 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <span>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "formats/error.h"
 #include "formats/hash.h"
@@ -44,7 +47,8 @@ PlannedFrame planned_frame(const SceneFrame& state, int number, int camera_node,
   frame.lights = state.hashes.lights;
   frame.materials = state.hashes.materials;
   try {
-    frame.camera = camera_hash(state.camera(camera_node));
+    frame.view = state.camera(camera_node);
+    frame.camera = camera_hash(*frame.view);
   } catch (const InputError&) {   // a camera without direction: the tools say so if this frame is asked for
   }
   if (media) frame.media = media(number);
@@ -97,15 +101,23 @@ std::set<std::uint32_t> used_materials(const Scene& scene) {
   return used;
 }
 
-/// "1 frame", "3 frames".
-std::string counted(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+/// Numbers in the order given, those that follow each other as a range: "-2, 48 to 60".
+std::string in_words(std::span<const int> frames) {
+  std::string words;
+  for (std::size_t i = 0; i < frames.size();) {
+    std::size_t end = i + 1;
+    while (end < frames.size() && frames[end] == frames[end - 1] + 1) ++end;
+    words += (words.empty() ? "" : ", ") + std::to_string(frames[i]);
+    if (end > i + 1) words += " to " + std::to_string(frames[end - 1]);
+    i = end;
+  }
+  return words;
 }
 
-/// "12 of 14 materials reflect ...".
-std::string share(std::size_t count, std::size_t of, const std::string& how) {
-  const std::string verb = count == 1 ? " reflects " : " reflect ";
-  return std::to_string(count) + " of " + counted(of, "material") + verb + how;
+/// First and last frame of the animation: "0 to 47"; of a scene that stands still "0 and later".
+std::string extent_in_words(const Scene& scene, const TimeOptions& options) {
+  const int last = frame_in_animation(scene, std::numeric_limits<int>::max(), options);
+  return last == std::numeric_limits<int>::max() ? "0 and later" : "0 to " + std::to_string(last);
 }
 
 /// The materials at all frames of the segment; once if no animation changes them.
@@ -118,16 +130,15 @@ std::vector<std::vector<Material>> material_states(const Scene& scene, const Pla
 }
 
 MaterialFacts material_facts(const Scene& scene, const PlannedSegment& segment, const TimeOptions& options) {
-  const std::set<std::uint32_t> used = used_materials(scene);
+  MaterialFacts facts;
   const std::vector<std::vector<Material>> at_frames = material_states(scene, segment, options);
-  std::size_t diffuse = 0, specular = 0;
-  for (const std::uint32_t material : used) {
-    Lobes lobes;
-    for (const std::vector<Material>& materials : at_frames) lobes |= lobes_of(materials[material]);
-    diffuse += lobes.lambert;
-    specular += lobes.specular;
-  }
-  return {diffuse > 0, specular > 0, share(diffuse, used.size(), "by a Lambert lobe"), share(specular, used.size(), "by a mirror or glossy lobe")};
+  for (const std::uint32_t material : used_materials(scene))
+    for (const std::vector<Material>& materials : at_frames) {
+      const Lobes lobes = lobes_of(materials[material]);
+      facts.lambert |= lobes.lambert;
+      facts.other |= lobes.specular;
+    }
+  return facts;
 }
 
 PlannedSegment plan_segment(const Scene& scene, const Segment& segment, int camera_node, const TimeOptions& options, const MediaHash& media) {
@@ -208,20 +219,22 @@ Plan make_plan(const Scene& scene, std::span<const int> frames, int camera_node,
   plan.media = bool(media);
   plan.last_frame = media ? frame_in_animation(scene, std::numeric_limits<int>::max(), options) : last_change(scene, options);
 
-  std::size_t beyond = 0;
+  std::vector<int> outside;
   std::set<int> needed;
   for (const int frame : frames) {
     const int shown = std::clamp(frame, 0, plan.last_frame);
     if (!plan.shows.try_emplace(frame, shown).second) continue;
     plan.frames.push_back(frame);
-    beyond += frame_in_animation(scene, frame, options) != frame;
+    if (frame_in_animation(scene, frame, options) != frame) outside.push_back(frame);
     needed.insert(shown);
   }
   for (const int frame : others) needed.insert(std::clamp(frame, 0, plan.last_frame));
   for (const int frame : needed)
     if (plan.segments.empty() || frame > plan.segments.back().last)
       plan.segments.push_back(plan_segment(scene, segment_of(scene, frame, options), camera_node, options, media));
-  if (beyond > 0) plan.warnings.push_back(counted(beyond, "frame") + " outside the animation: the nearest end is shown");
+  if (!outside.empty())
+    plan.warnings.push_back("of the frames asked for " + in_words(outside) + (outside.size() == 1 ? " is" : " are") + " outside the animation (" +
+                            extent_in_words(scene, options) + "): its nearest end is shown");
   return plan;
 }
 

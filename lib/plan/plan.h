@@ -1,10 +1,11 @@
-// lib/plan/plan.h -- the states of a scene in the segments that a range of frames needs (architecture.md 4).
+// lib/plan/plan.h -- the states of a scene in the segments that a range of frames needs (docs/methods/formulas.md).
 //
 // Everything here follows from the scene and the segment. No value depends on which other frames were asked for.
 #pragma once
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -27,6 +28,7 @@ struct PlannedFrame {
   int frame = 0;
   int lit_frame = 0;                ///< first frame of the segment with the same light transport
   int picture = 0;                  ///< first frame of the segment with the same light transport and camera
+  std::optional<PlacedCamera> view; ///< scene space; none: it has no direction
   std::string camera, moving_geometry, lights, materials;
   std::string media;                ///< empty: the scene has no media
   std::string light;                ///< hash of all that light transport depends on at this frame

@@ -15,10 +15,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json decisions_json(const Decisions& d) {
-  Json json = {{"photon_kinds", d.kinds}, {"indirect", kIndirectMethods[std::size_t(d.indirect)]}, {"paths", d.photon_paths},
+  Json json = {{"photon_kinds", d.kinds}, {"indirect", kIndirectMethods[std::size_t(d.indirect)]}, {"caustic_map", d.caustic_map}, {"paths", d.photon_paths},
                {"rays", d.record_rays}, {"learn_lights", d.learn_lights}, {"split", d.split},
                {"moving", kMovingMethods[std::size_t(d.moving)]},
-               {"moving_cost", {d.moving_cost.light, d.moving_cost.records, d.moving_cost.photon_bytes}},
+               {"new_share", d.new_share}, {"pictures_together", d.together},
                {"walkthrough", d.walk}, {"view", d.view}, {"looked_at", d.looked}};
   if (d.texture_width > 0) json["texture_width"] = d.texture_width;
   json["because"] = Json::object();
@@ -65,7 +65,7 @@ std::string words_of(const std::vector<std::string>& names) {
   return text;
 }
 
-std::string key_of(const std::string& text) { return hash_hex(text).substr(0, 10); }
+std::string key_of_text(const std::string& text) { return key_of(hash_hex(text)); }
 
 /// Rules for a file with a plain name. `marker` in shown/ says what it shows now; if the marker is missing the file is made anew, if
 /// the file is missing it comes back. `recipe`: a variable of stages.mk.
@@ -78,23 +78,23 @@ std::string shown_rule(const std::string& name, const std::string& marker, const
 /// Frames, their previews, the sheet, the log of a walkthrough.
 std::string shown_rules(const Plan& plan, const Graph& graph, const ToolHash& tool_hash) {
   const std::string viewer = tool_hash("tempolux-info"), first = graph.pictures.at(plan.frames.front());
-  const std::string exposure = "shown/exposure-" + key_of(first + viewer);
+  const std::string exposure = "shown/exposure-" + key_of_text(first + viewer);
   std::string text = exposure + ": | " + first + "\n", frames, previews, markers, all = exposure + viewer;
   for (const int frame : plan.frames) {
     const std::string digits = frame_digits(frame), picture = graph.pictures.at(frame);
     frames += " frames/" + digits + ".exr";
     previews += " frames/" + digits + ".png";
     all += picture;
-    markers += " shown/" + digits + "-" + key_of(picture);
-    text += shown_rule("frames/" + digits + ".exr", digits + "-" + key_of(picture), picture, "call show," + digits);
-    text += shown_rule("frames/" + digits + ".png", digits + "-" + key_of(picture + exposure) + ".png", picture + " " + exposure, "call preview," + digits);
+    markers += " shown/" + digits + "-" + key_of_text(picture);
+    text += shown_rule("frames/" + digits + ".exr", digits + "-" + key_of_text(picture), picture, "call show," + digits);
+    text += shown_rule("frames/" + digits + ".png", digits + "-" + key_of_text(picture + exposure) + ".png", picture + " " + exposure, "call preview," + digits);
   }
   if (!graph.intervals.empty()) {
     text += "log := walk.log\nintervals :=" + words_of(graph.intervals) + "\n";
-    text += shown_rule("walk.log", "walk-" + key_of(words_of(graph.intervals)), words_of(graph.intervals), "call walk_log");
+    text += shown_rule("walk.log", "walk-" + key_of_text(words_of(graph.intervals)), words_of(graph.intervals), "call walk_log");
   }
   return "frames :=" + frames + "\npreviews :=" + previews + "\n" + text +
-         shown_rule("sheet.png", "sheet-" + key_of(all), exposure + " $(log) $(frames)" + markers, "call sheet");
+         shown_rule("sheet.png", "sheet-" + key_of_text(all), exposure + " $(log) $(frames)" + markers, "call sheet");
 }
 
 std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
@@ -107,7 +107,7 @@ std::string report_rules(const Graph& graph, const ToolHash& tool_hash) {
     errors += " " + error;
   }
   return "report_runs :=" + runs + "\n" +
-         shown_rule("report/index.html", "report-" + key_of(errors + tool_hash("error-report")), errors, "call write_report");
+         shown_rule("report/index.html", "report-" + key_of_text(errors + tool_hash("error-report")), errors, "call write_report");
 }
 
 template <class Enum, std::size_t n>
@@ -127,13 +127,15 @@ Decisions read_decisions(const std::string& text) {
     Decisions d;
     d.kinds = json.at("photon_kinds").get<std::string>();
     d.indirect = named<IndirectMethod>(kIndirectMethods, json.at("indirect"));
+    d.caustic_map = json.at("caustic_map");
     d.photon_paths = json.at("paths");
     d.record_rays = json.at("rays");
     d.texture_width = json.value("texture_width", 0.0);
     d.learn_lights = json.at("learn_lights");
     d.split = json.at("split");
     d.moving = named<MovingMethod>(kMovingMethods, json.at("moving"));
-    d.moving_cost = {json.at("moving_cost").at(0), json.at("moving_cost").at(1), json.at("moving_cost").at(2)};
+    d.new_share = json.at("new_share");
+    d.together = json.at("pictures_together");
     d.walk = json.at("walkthrough");
     d.view = json.at("view").get<std::string>();
     d.looked = json.at("looked_at").get<std::vector<int>>();
@@ -144,8 +146,7 @@ Decisions read_decisions(const std::string& text) {
   }
 }
 
-std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history,
-                      const std::string& estimate) {
+std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history) {
   Json json = {{"format", "tempolux plan"}, {"version", "2.0"}, {"history", history}, {"scene", scene_name}, {"camera", plan.camera},
                {"fps", plan.time.fps}, {"segment_length", plan.time.segment_length}, {"light_units", plan.time.light_units},
                {"frames", plan.frames}};
@@ -156,7 +157,6 @@ std::string plan_json(const Plan& plan, const Graph& graph, const std::string& s
   json["pictures"] = Json::object();
   for (const auto& [frame, name] : graph.pictures) json["pictures"][frame_digits(frame)] = name;
   json["warnings"] = plan.warnings;
-  if (!estimate.empty()) json["estimate"] = Json::parse(estimate);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -165,7 +165,7 @@ std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& 
   std::string passing;
   std::string kept;   // stats of records over time, for the report
   for (const GraphFile& file : graph.files) {
-    if (file.stage == stage::kept.name) kept += " " + file.name.substr(0, file.name.find('.')) + ".json";
+    if (file.stage == stage::kept.name) kept += " " + beside(file.name, ".json");
     const std::string made = file.name + words_of(file.beside);
     if (file.passing) passing += " " + file.name;
     if (file.passing) text += ".INTERMEDIATE: " + file.name + "\n";   // not made again where what is made from it is there

@@ -7,9 +7,7 @@
 
 namespace tempolux {
 
-/// `estimate`: estimate_json(), or empty.
-std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history,
-                      const std::string& estimate = {});
+std::string plan_json(const Plan& plan, const Graph& graph, const std::string& scene_name, const std::string& history);
 
 /// Names of our own files only: nothing in it comes from the scene, or from file names of the user.
 std::string plan_makefile(const Plan& plan, const Graph& graph, const ToolHash& tool_hash);

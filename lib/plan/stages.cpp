@@ -13,11 +13,10 @@ struct Preset {
   const char* records;      ///< further words
   double pixel_error;
   int first_samples;        ///< of a pixel
-  double threshold;         ///< of a walkthrough, relMSE
 };
-constexpr Preset kDraft{100'000, "--point-count 10k --light-samples 2", 150, "--error-bound 0.3", 0.05, 2, 0.035};
+constexpr Preset kDraft{100'000, "--point-count 10k --light-samples 2", 150, "--error-bound 0.3", 0.05, 2};
 constexpr std::uint64_t kPreviewPhotons = 25'000;   ///< of a frame, as in the paper
-constexpr Preset kFinal{700'000, "", 500, "", 0.016, 4, 0.01};
+constexpr Preset kFinal{700'000, "", 500, "", 0.016, 4};
 
 }  // namespace
 
@@ -28,11 +27,10 @@ Wish with_preset(Wish wish) {
   if (wish.pixel_error == 0) wish.pixel_error = preset.pixel_error;
   if (wish.points.empty()) wish.points = preset.points;
   if (wish.records.empty()) wish.records = preset.records;
-  if (wish.threshold == 0) wish.threshold = preset.threshold;
-  // Options of pixels that the user gives replace the preset's, its filter among them. Keys of a walkthrough are not filtered. Halves of all
+  // Options of pixels that the user gives replace the preset's, its filter among them. Halves of all
   // layers take 1.5 kB a pixel: 3 GB at 1920x1080, which is the largest picture that is filtered unasked.
   if (wish.filter == Wish::kAutoFilter)
-    wish.filter = wish.pixels.empty() && wish.method != FrameMethod::walkthrough && wish.width * wish.height <= 1920 * 1080 ? 1 : 0;
+    wish.filter = wish.pixels.empty() && wish.width * wish.height <= 1920 * 1080 ? 1 : 0;
   if (wish.pixels.empty()) {
     std::ostringstream words;
     words << "--spp " << preset.first_samples << " --pixel-error " << wish.pixel_error << " --learn-lights";

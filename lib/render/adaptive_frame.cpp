@@ -19,11 +19,10 @@ void join_parts(const PixelSum& sum, const PartCounts& first, const PartCounts& 
 
 /// What a pixel that has `have` lacks to `wanted`. Samples of lit and onward need camera rays that they start
 /// from.
-PartCounts missing(const PartCounts& have, const PartCounts& wanted, bool even) {
+PartCounts missing(const PartCounts& have, const PartCounts& wanted) {
   const auto further = [](int has, int wants) { return std::max(0, wants - has); };
   PartCounts more{further(have.own, wanted.own), further(have.lit, wanted.lit), further(have.onward, wanted.onward)};
   more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
-  if (even) more.own += more.own % 2;
   return more;
 }
 
@@ -75,7 +74,8 @@ class AdaptiveFrame {
 void AdaptiveFrame::take_again(std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count) {
   const std::uint32_t slot = check_.slot(x, y);
   if (slot == kNone || !shown(pixel)) return;
-  join_parts(sample_pixel(scene_, view_, of_check_, pixel, x, y, first, count, nullptr, again_rays_[slot]), first, count, check_.again(slot));
+  join_parts(sample_pixel(scene_, view_, of_check_, pixel, x, y, first, count, &check_.again_halves(slot), again_rays_[slot]), first, count,
+             check_.again(slot));
 }
 
 void AdaptiveFrame::take_first() {
@@ -103,7 +103,7 @@ std::uint64_t AdaptiveFrame::take_further(double times, const std::function<void
   const std::uint64_t before = frame_.rays.camera;
   for_each_pixel(view_, options_, frame_.rays, progress, [&](std::size_t pixel, int x, int y, RayCounts& counts) {
     PartCounts& have = counts_[pixel];
-    const PartCounts more = missing(have, noise_.wanted_at(x, y, times), options_.independent_halves);
+    const PartCounts more = missing(have, noise_.wanted_at(x, y, times));
     if (more.own == 0) return;
     PixelSum sum;
     for_each_sample(scene_, view_, options_, pixel, x, y, have, more, frame_.mean.halves_of(pixel), counts,
@@ -139,7 +139,7 @@ void AdaptiveFrame::spread() {
   parallel_chunks(judged.size(), kJudgedTogether, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const std::size_t pixel = judged[i], width = std::size_t(frame_.mean.width);
-      const PartCounts &have = counts_[pixel], more = missing(have, {kJudges, kJudges, kJudges}, options_.independent_halves);
+      const PartCounts &have = counts_[pixel], more = missing(have, {kJudges, kJudges, kJudges});
       further_of[pixel] = std::uint32_t(i);
       further[i].count = more;
       join_parts(sample_pixel(scene_, view_, options_, pixel, int(pixel % width), int(pixel / width), have, more, nullptr, rays[first / kJudgedTogether]), {}, more, further[i].mean);
@@ -187,6 +187,8 @@ void AdaptiveFrame::reach_seen_error() {
 }
 
 void AdaptiveFrame::finish() {
+  if (!frame_.mean.sample_halves.empty())
+    frame_.mean.difference_share = check_.shares(frame_.mean.sample_halves, [&](std::size_t pixel) { return parts_[pixel].sum(); });
   for (const RayCounts& rays : again_rays_) frame_.noise_rays += rays;
   frame_.mean.samples = noise_.first().own;
   double samples = 0;

@@ -7,6 +7,7 @@
 #include "formats/octahedral.h"
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
+#include "lib/photon/photon_trace.h"
 
 namespace tempolux {
 namespace {
@@ -15,7 +16,9 @@ constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
 constexpr std::size_t kFewestPaths = 64;     ///< that found light: of fewer no standard error is said
 constexpr std::uint32_t kFewestSplats = 32;  ///< likewise
-constexpr double kMostOfOne = 0.5;           ///< of the sum of squares: beyond that one path decides, and the error is not known
+constexpr double kMostOfOne = 0.5;           ///< of the sum of squares: beyond that one map or path decides, and the error is not known
+constexpr double kRaysOfPhoton = 3, kRaysOfPath = 7;   ///< rays of a frame that take as long as a path of light with what it leaves in view; as two paths from the eye
+constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull;
 
 double light_of(const Layers& pixel) {
   double sum = 0;
@@ -34,8 +37,13 @@ Estimate joined(const Estimate& a, const Estimate& b) {
 
 }  // namespace
 
+AuditEffort audit_effort(double share, const RayCounts& rays, std::uint64_t seed) {
+  const double half = 0.5 * share * double(rays.camera + rays.bounce + rays.shadow);
+  return {std::uint64_t(std::ceil(half / kRaysOfPhoton)), std::size_t(std::ceil(half / kRaysOfPath)), seed};
+}
+
 FrameAudit::FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects, std::span<const std::uint8_t> mask)
-    : view_(view), frame_(frame), mask_(mask), object_part_(objects.size()), splats_(objects.size()) {
+    : view_(view), frame_(frame), mask_(mask), object_part_(objects.size()) {
   parts_.push_back({"picture"});
   for (int j = 0; j < kTilesAcross; ++j)
     for (int i = 0; i < kTilesAcross; ++i) parts_.push_back({"tile " + std::to_string(i + 1) + " " + std::to_string(j + 1)});
@@ -68,115 +76,40 @@ void FrameAudit::for_parts_of(std::size_t pixel, const Body& body) const {
   body(std::size_t(object_part_[pixel]));
 }
 
-/// What splats scatter by. The groups of a map are no samples of it: each is a box of the space of starting
-/// paths, so their means differ by far more than the map errs.
-/// But within a group paths follow each other, and a run of photons whose bounce does not fall holds all
-/// photons of one or more whole paths
-/// (photon-trace: of 64). Runs of a group that follow each other have equal means, so the square of the
-/// difference of two has the variance of their sum.
-/// All groups go through the space of starts in the same order, so their k-th differences may agree: the
-/// square of the sum over the groups is looked at as well, and the larger variance counts.
-/// A group's last run may have fewer paths and is left out; so is one without a partner. The sum of squares
-/// is scaled by photons.
-class FrameAudit::PairedRuns {
- public:
-  explicit PairedRuns(FrameAudit& audit) : audit_(audit) {}
-  void next(std::uint32_t group, std::uint8_t bounce) {
-    if (started_ && group != group_) drop();
-    else if (started_ && bounce < bounce_) keep();
-    started_ = true;
-    group_ = group;
-    bounce_ = bounce;
-    ++run_photons_;
-  }
-  void add(std::size_t part, std::size_t layer, double radiance) { run_.push_back({part, layer, radiance}); }
-
- private:
-  struct Seen {
-    std::size_t part, layer;
-    double radiance;
-  };
-  /// Another run of the group follows, so this one is whole.
-  void keep() {
-    for (const Seen& seen : run_) {
-      audit_.sums_[seen.part].difference[seen.layer] += second_ ? -seen.radiance : seen.radiance;
-      pair_.push_back(seen);
-    }
-    pair_photons_ += run_photons_;
-    run_.clear();
-    run_photons_ = 0;
-    if (second_) {
-      for (const Seen& seen : pair_) {
-        double& difference = audit_.sums_[seen.part].difference[seen.layer];
-        audit_.sums_[seen.part].pairs_square[seen.layer] += difference * difference;
-        audit_.sums_[seen.part].by_pair[seen.layer][pair_number_ % Sums::kPairs] += difference;
-        difference = 0;   // so that it counts once
-      }
-      audit_.paired_photons_ += double(pair_photons_);
-      pair_.clear();
-      pair_photons_ = 0;
-      ++pair_number_;
-    }
-    second_ = !second_;
-  }
-  void drop() {
-    for (const Seen& seen : pair_) audit_.sums_[seen.part].difference[seen.layer] = 0;
-    pair_.clear();
-    run_.clear();
-    run_photons_ = pair_photons_ = 0;
-    pair_number_ = 0;
-    second_ = false;
-  }
-
-  FrameAudit& audit_;
-  std::vector<Seen> run_, pair_;
-  std::uint64_t run_photons_ = 0, pair_photons_ = 0;
-  std::size_t pair_number_ = 0;   ///< in the group
-  std::uint32_t group_ = 0;
-  std::uint8_t bounce_ = 0;
-  bool started_ = false, second_ = false;
-};
-
-void FrameAudit::add_splats(const Tracer& tracer, const AuditPhotons& photons) {
+/// Map k is traced with a seed of its own, all of its paths in one group. Maps are traced side by side and added in order.
+void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort) {
   const PhotonSplats camera(tracer, view_);
-  holds_ = photons.holds;
-  PairedRuns runs(*this);
-  std::vector<std::optional<Splat>> seen;
-  photons.for_each_block([&](const formats::PhotonBlock& block, Vec3d shift) {
-    seen.assign(block.photons.size(), std::nullopt);
-    const bool directed = !block.directions.empty();
-    parallel_chunks(seen.size(), 1024, [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        std::optional<Vec3> wi;
-        if (directed) {
-          const std::array<float, 3> decoded = formats::decode_normal(block.directions[i]);
-          wi = Vec3{decoded[0], decoded[1], decoded[2]};
+  std::array<std::vector<Splat>, kMaps> seen;
+  parallel_chunks(kMaps, 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t k = first; k < last; ++k) {
+      PhotonOptions options{.seed = mix64(effort.seed ^ (kPhotonKey + k)), .photon_count = (effort.photon_paths + kMaps - 1) / kMaps, .group_count = 1};
+      const PhotonTracer photons(tracer, lights, options);
+      for (std::size_t b = 0; b < photons.batch_count(); ++b) {
+        const formats::PhotonBlock block = photons.trace(b).block;
+        for (std::size_t i = 0; i < block.photons.size(); ++i) {
+          std::optional<Vec3> wi;
+          if (!block.directions.empty()) {
+            const std::array<float, 3> decoded = formats::decode_normal(block.directions[i]);
+            wi = Vec3{decoded[0], decoded[1], decoded[2]};
+          }
+          if (const std::optional<Splat> splat = camera.splat(block.photons[i], {}, wi)) seen[k].push_back(*splat);
         }
-        seen[i] = camera.splat(block.photons[i], shift, wi);
       }
-    });
-    photons_ += double(seen.size());
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      runs.next(block.group, block.photons[i].bounce);
-      const std::optional<Splat>& splat = seen[i];
-      if (!splat || (!mask_.empty() && !mask_[splat->pixel])) continue;
-      splats_[splat->pixel][splat->layer] += splat->radiance;
-      splats_[splat->pixel].coverage = 1;
-      const double radiance = channel_mean(Rgbd(splat->radiance));
-      const auto layer = std::size_t(splat->layer);
-      for_parts_of(splat->pixel, [&](std::size_t part) {
-        sums_[part].splats[layer] += radiance;
-        ++sums_[part].splat_count[layer];
-        // A path has one photon of kind direct at most, so these are independent of each other.
-        if (splat->layer == Layer::direct) sums_[part].pairs_square[layer] += radiance * radiance;
-        else runs.add(part, layer, radiance);
-      });
     }
   });
+  for (std::size_t k = 0; k < kMaps; ++k)
+    for (const Splat& splat : seen[k]) {
+      if (!mask_.empty() && !mask_[splat.pixel]) continue;
+      const auto layer = std::size_t(splat.layer);
+      for_parts_of(splat.pixel, [&](std::size_t part) {
+        sums_[part].splats[layer][k] += float(channel_mean(Rgbd(splat.radiance)));
+        ++sums_[part].splat_count[layer];
+      });
+    }
 }
 
-void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options, std::size_t count) {
-  const std::size_t pixels = splats_.size();
+void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options, const AuditEffort& effort) {
+  const std::size_t pixels = object_part_.size(), count = effort.eye_paths;
   struct Difference {
     std::size_t pixel = 0;
     bool counts = false;
@@ -184,7 +117,7 @@ void FrameAudit::add_paths(const RenderScene& scene, const FrameOptions& options
     std::array<bool, kLayerCount> met{};
   };
   std::vector<Difference> differences(count);
-  const std::uint64_t seed = mix64(options.seed ^ 0x6175646974ull);
+  const std::uint64_t seed = mix64(effort.seed ^ kEyeKey);
   parallel_chunks(count, 64, [&](std::size_t first, std::size_t last) {
     RayCounts rays;
     for (std::size_t i = first; i < last; ++i) {
@@ -227,17 +160,23 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
   AuditEntry entry{.layer = Layer(layer), .part = parts_[part].name, .object = parts_[part].object, .pixels = parts_[part].pixels, .shown = sums.shown[layer] / n,
                    .splats = {}, .paths = {}, .bias = {}, .picture = picture_ / n};
   Estimate by_splats;
-  const bool of_direct = Layer(layer) == Layer::direct;
-  if (holds_[layer] && sums.splat_count[layer] >= kFewestSplats && (of_direct || paired_photons_ > 0)) {
-    double together = 0;
-    for (const double difference : sums.by_pair[layer]) together += difference * difference;
-    const double square = of_direct ? sums.pairs_square[layer] : std::max(sums.pairs_square[layer], together) * photons_ / paired_photons_;
-    entry.splats = {sums.splats[layer] / n, std::sqrt(square) / n};
-    const double noise = frame_.noise.known() ? std::max(0.0, frame_.noise.layer[layer].linear) : 0;
-    by_splats = {entry.shown - entry.splats.value, std::sqrt(entry.splats.error * entry.splats.error + noise * noise / n)};
+  if (sums.splat_count[layer] >= kFewestSplats) {
+    double sum = 0, square = 0, largest = 0;
+    for (const float map : sums.splats[layer]) sum += double(map);
+    for (const float map : sums.splats[layer]) {
+      const double off = double(map) - sum / kMaps, off2 = off * off;
+      square += off2;
+      largest = std::max(largest, off2);
+    }
+    if (largest <= kMostOfOne * square) {
+      entry.splats = {sum / n / kMaps, std::sqrt(square / kMaps / (kMaps - 1)) / n};
+      const double noise = frame_.noise.known() ? std::max(0.0, frame_.noise.layer[layer].linear) : 0;
+      by_splats = {entry.shown - entry.splats.value, std::sqrt(entry.splats.error * entry.splats.error + noise * noise / n)};
+    }
   }
   const double m = double(sums.path_count);
-  if (sums.met[layer] >= kFewestPaths && sums.paths_largest[layer] <= kMostOfOne * sums.paths_square[layer])
+  // Direct light is sampled by the same random numbers both ways: no difference says nothing.
+  if (sums.paths_square[layer] > 0 && sums.met[layer] >= kFewestPaths && sums.paths_largest[layer] <= kMostOfOne * sums.paths_square[layer])
     entry.paths = {sums.paths[layer] / m, std::sqrt(std::max(0.0, sums.paths_square[layer] / m - sums.paths[layer] * sums.paths[layer] / (m * m)) / (m - 1))};
   entry.bias = joined(by_splats, entry.paths);
   return entry;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <functional>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,27 +36,32 @@ struct AuditEntry {
   double of_layer_error() const { return shown - bias.value > 0 ? bias.error / (shown - bias.value) : 0; }
 };
 
-/// Photons for the audit, all of one map or of parts that add up to it.
-struct AuditPhotons {
-  /// `shift` [m] takes the photons into the scene's space.
-  using Body = std::function<void(const formats::PhotonBlock& block, Vec3d shift)>;
-  std::function<void(const Body&)> for_each_block;   ///< in file order
-  std::array<bool, kLayerCount> holds{};         ///< layers whose kind the map holds
+/// Paths of light that an audit traces, from the lamps and from the eye.
+struct AuditEffort {
+  std::uint64_t photon_paths = 0;   ///< rounded up to a multiple of FrameAudit::kMaps
+  std::size_t eye_paths = 0;
+  std::uint64_t seed = 0;
 };
 
-/// Audits the layers direct, caustic and indirect of a frame, by splats where the map holds their kind.
+/// Effort of about `share` of the rays of a frame, half of it photons.
+AuditEffort audit_effort(double share, const RayCounts& rays, std::uint64_t seed);
+
+/// Audits the layers direct, caustic and indirect of a frame: by photons of the audit's own that the camera sees, and by paths.
+///
+/// The standard error of what photons say is that of the mean of kMaps photon maps. Each map has a seed of its own, so the maps
+/// are independent and of one distribution, however the starts of one map are stratified. An estimate one map (or path) of
+/// which holds more than half of the sum of squares has no known error and is not given.
 class FrameAudit {
  public:
-  /// objects: id.object by pixel. Pixels of `mask` 0 are left out.
+  static constexpr std::size_t kMaps = 32;
+
+  /// objects: id.object by pixel. Pixels of `mask` 0 are left out. All must outlive the audit.
   FrameAudit(const CameraView& view, const RenderedFrame& frame, std::span<const std::uint32_t> objects, std::span<const std::uint8_t> mask);
-  /// Reads all photons.
-  void add_splats(const Tracer& tracer, const AuditPhotons& photons);
-  /// Picture of the splats alone, by layer; for `frame-render --integrator light`.
-  const std::vector<Layers>& splats() const { return splats_; }
-  /// Of `count` camera rays, spread over the picture, what the frame's way of finding light says less what
-  /// paths find from the same first hit: bias without photons, where none are
-  /// in view. `scene` as the frame was rendered.
-  void add_paths(const RenderScene& scene, const FrameOptions& options, std::size_t count);
+  /// Traces kMaps photon maps of effort.photon_paths in all and adds what the camera sees of them. Lights may aim photons.
+  void add_photons(const Tracer& tracer, const Lights& lights, const AuditEffort& effort);
+  /// Of effort.eye_paths camera rays, spread over the picture, what the frame's way of finding light says less what paths find from
+  /// the same first hit: bias without photons, where none are in view. `scene` and `options` as the frame was rendered.
+  void add_paths(const RenderScene& scene, const FrameOptions& options, const AuditEffort& effort);
   /// Layers that any estimate was made of, over the picture, the tiles and the objects, in this order.
   std::vector<AuditEntry> entries() const;
 
@@ -68,12 +73,9 @@ class FrameAudit {
   };
   /// Sums over a part by layer.
   struct Sums {
-    std::array<double, kLayerCount> shown{}, splats{};
+    std::array<double, kLayerCount> shown{};
+    std::array<std::array<float, kMaps>, kLayerCount> splats{};   ///< by map
     std::array<std::uint32_t, kLayerCount> splat_count{};
-    std::array<double, kLayerCount> difference{};      ///< of the pair of runs at hand
-    std::array<double, kLayerCount> pairs_square{};    ///< sum over pairs of their difference squared; of layer direct over photons
-    static constexpr std::size_t kPairs = 32;
-    std::array<std::array<double, kPairs>, kLayerCount> by_pair{};   ///< sum over groups of the differences of their pair k
     std::array<double, kLayerCount> paths{}, paths_square{}, paths_largest{};
     std::size_t path_count = 0;
     std::array<std::size_t, kLayerCount> met{};        ///< paths that found light
@@ -81,7 +83,6 @@ class FrameAudit {
   template <class Body>
   void for_parts_of(std::size_t pixel, const Body& body) const;
   AuditEntry entry(std::size_t part, std::size_t layer) const;
-  class PairedRuns;
 
   const CameraView& view_;
   const RenderedFrame& frame_;
@@ -89,9 +90,6 @@ class FrameAudit {
   std::vector<Part> parts_;                  ///< picture, 16 tiles, objects
   std::vector<std::uint32_t> object_part_;   ///< by pixel
   std::vector<Sums> sums_;                   ///< by part
-  std::vector<Layers> splats_;
-  double photons_ = 0, paired_photons_ = 0;  ///< of the map, and of them those in pairs of runs
-  std::array<bool, kLayerCount> holds_{};
   double picture_ = 0;                       ///< sum over pixels of the mean channel of all layers
 };
 

@@ -18,6 +18,7 @@ class CameraView {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  const PlacedCamera& camera() const { return camera_; }
 
   /// The ray through raster position (x, y), scene space; perspective rays start at the eye, orthographic ones
   /// on the plane through it. Direction is unit.

@@ -22,7 +22,6 @@ constexpr int kNeighbours = 200;
 
 constexpr double kLeastLight = 0.2, kLightByTouched = 3;   ///< of a state's photons and points
 constexpr double kLeastRecords = 0.1;                      ///< of a state's records
-constexpr double kRecordsOverTime = 0.35, kFirstOverTime = 1.2;   ///< of a state's records; of those that are kept from it on
 
 std::string per_cent(double share) {
   char text[16];
@@ -111,22 +110,12 @@ MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission,
   return {double(maps.touched) / double(kPaths), places > 0 ? double(near) / double(places) : 0};
 }
 
-MovingChoice choose_moving(const MovingPilot& pilot, std::size_t segments, std::size_t states) {
-  const double once = double(segments) / double(std::max<std::size_t>(states, 1));
-  const MovingCost cost{once + kLeastLight + kLightByTouched * pilot.touched_share, once + kLeastRecords + pilot.gathered_share,
-                        once + 2 * pilot.touched_share};
-  const std::string touched = "what moves touches " + per_cent(pilot.touched_share) + " of the paths of light";
-  const std::string gathered = "matters at " + per_cent(pilot.gathered_share) + " of what is seen";
-  const std::string frames = std::to_string(states) + " states of light in " + std::to_string(segments) +
-                             (segments == 1 ? " segment" : " segments");
-  if (!(cost.light < 1)) return {MovingMethod::anew, {}, touched + "; " + frames};
-  const MovingMethod method = cost.records >= 1 ? MovingMethod::light : MovingMethod::records;
-  return {method, {cost.light, std::min(1.0, cost.records), cost.photon_bytes}, touched + " and " + gathered + "; " + frames};
-}
-
-double records_over_time(std::size_t segments, std::size_t states) {
-  const double once = double(segments) / double(std::max<std::size_t>(states, 1));
-  return kFirstOverTime * once + kRecordsOverTime * (1 - once);
+MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double standing_records) {
+  const double light = 1 / double(std::max<std::size_t>(states, 1)) + kLeastLight + kLightByTouched * pilot.touched_share;
+  const double records = standing_records + kLeastRecords + pilot.gathered_share;
+  const std::string because = "what moves touches " + per_cent(pilot.touched_share) + " of the paths of light and matters at " +
+                              per_cent(pilot.gathered_share) + " of what is seen; " + std::to_string(states) + " states of light";
+  return {!(light < 1) ? MovingMethod::anew : records < 1 ? MovingMethod::records : MovingMethod::light, because};
 }
 
 }  // namespace tempolux

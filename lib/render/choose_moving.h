@@ -24,26 +24,16 @@ struct MovingPilot {
 /// some tenths of a second. Same result for any number of threads.
 MovingPilot pilot_moving(const SceneFrame& frame, const EmissionTable& emission, const CameraView& view, std::uint64_t seed);
 
-/// Of a state of light, in shares of what it costs anew; what stands is spread over the states.
-struct MovingCost {
-  double light = 1, records = 1;   ///< processor time of photons and points; of records
-  double photon_bytes = 1;         ///< of files of photons
-};
-
 struct MovingChoice {
   MovingMethod method;
-  MovingCost cost;
   std::string because;
 };
 
-/// With what stands computed once for each of `segments`, `states` of light then cost a share of themselves each:
-/// .2 + 3 touched_share for photons and points, .1 + gathered_share for records (docs/methods/dynamic.md has the measurements). Whatever
-/// comes out cheaper. Records over time are never chosen: a frame's records follow from those of all states before it in its segment, so a
+/// What comes out cheapest for `states` of light. With what stands computed once, a state's photons and points cost
+/// 1 / states + .2 + 3 touched_share of what they cost anew, and its records standing_records + .1 + gathered_share (docs/methods/dynamic.md has the
+/// measurements). standing_records: what records of what stands cost for each frame that they serve, in records of a frame. Records over time are
+/// never chosen: a frame's records follow from those of all states before it in its segment, so a
 /// single frame of the middle of a segment costs as much as ten (S5, 320x180: 13.2 CPU s instead of 1.9). They are for whole ranges, by wish.
-MovingChoice choose_moving(const MovingPilot& pilot, std::size_t segments, std::size_t states);
-
-/// Processor time of a state's records over time, in shares of what they cost anew: .35, and 1.2 in a segment's first state
-/// (docs/methods/temporal.md).
-double records_over_time(std::size_t segments, std::size_t states);
+MovingChoice choose_moving(const MovingPilot& pilot, std::size_t states, double standing_records);
 
 }  // namespace tempolux

@@ -4,18 +4,19 @@
 #include <cmath>
 
 #include "lib/gather/mesh_elements.h"
-#include "lib/render/choose_photons.h"
+#include "lib/render/pilot_photons.h"
 
 namespace tempolux {
 namespace {
 
+constexpr std::uint64_t kPaths = 1 << 15;    ///< of the pilot
 constexpr double kMostPaths = 16;            ///< of the photons asked for
 
 }  // namespace
 
 PreviewPilot pilot_preview(const RenderScene& scene, const std::string& kinds, std::uint64_t seed) {
-  const ArrivalPilot pilot = pilot_arrivals(scene, kinds, seed);
-  return {double(pilot.photons) / double(pilot.paths), surface_area(scene.tracer.frame())};
+  const std::size_t photons = pilot_photons(scene.tracer, scene.lights, kinds, kPaths, seed ^ 0x61727269766564ull).photons.size();
+  return {double(photons) / double(kPaths), surface_area(scene.tracer.frame())};
 }
 
 PreviewChoice choose_preview(std::span<const PreviewPilot> pilots, std::uint64_t photons, int frames) {

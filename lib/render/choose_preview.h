@@ -14,7 +14,7 @@ struct PreviewPilot {
   double photons = 0;                        ///< of a path
   double area = 0;                           ///< m^2, of all surfaces, one side
 };
-/// Photons of these kinds, as pilot_arrivals() counts them.
+/// Photons of these kinds (photon-trace --kinds) that 32768 paths leave. The same result for any number of threads.
 PreviewPilot pilot_preview(const RenderScene& scene, const std::string& kinds, std::uint64_t seed);
 
 struct PreviewChoice {

@@ -103,6 +103,7 @@ NoiseCheck::NoiseCheck(const CameraView& view, std::uint64_t seed, std::span<con
     : seed_(mix64(seed ^ 0x6e6f697365ull)), mask_(mask), width_(view.width()), height_(view.height()),
       edge_(std::clamp(int(std::sqrt(double(width_) * height_ / kEnough)), kLeastEdge, kMostEdge)), columns_(width_ / edge_) {
   again_.resize(std::size_t(columns_) * std::size_t(height_ / edge_));
+  again_halves_.resize(again_.size());
 }
 
 std::uint32_t NoiseCheck::slot(int x, int y) const {
@@ -127,6 +128,50 @@ FrameNoise NoiseCheck::measure(const std::vector<Triple>& triples, double exposu
       return error;
     });
   return sums.noise(exposure, triples.size());
+}
+
+namespace {
+
+/// Sums over pixels and channels of a layer.
+struct ShareSums {
+  double variance = 0, square = 0, fourth = 0;
+  /// Pixels that the squares are as good as, if all counted alike.
+  double count() const { return fourth > 0 ? square * square / fourth : 0; }
+};
+
+}  // namespace
+
+std::array<double, kLayerCount> NoiseCheck::shares(std::vector<Twice>& pixels) {
+  constexpr double kAlike = 6, kSeen = 7.0 / 6;  // the sRGB curve's slope squared is L^(2 (1 / 2.4 - 1))
+  std::array<ShareSums, kLayerCount> sums;
+  ShareSums all;
+  for (std::size_t l = 0; l < kLayerCount; ++l) {
+    double mean = 0, typical = 0;
+    for (const Twice& pixel : pixels) mean += channel_mean(Rgbd(pixel.once.value[l]) + Rgbd(pixel.again.value[l])) / double(pixels.size());
+    const auto seen = [&](const Twice& pixel) {
+      const double level = channel_mean(Rgbd(pixel.once.value[l]) + Rgbd(pixel.again.value[l])) + mean;
+      return level > 0 ? std::pow(level, -kSeen) : 0;
+    };
+    const auto around = [&](const Twice& pixel) { return seen(pixel) * channel_mean(Rgbd(pixel.around.value[l])) / 8; };
+    for (const Twice& pixel : pixels) typical += around(pixel) / double(pixels.size());
+    for (const Twice& pixel : pixels) {
+      const double local = around(pixel) + typical;
+      if (!(local > 0)) continue;
+      const Rgbd off = Rgbd(pixel.once.value[l]) - Rgbd(pixel.again.value[l]), d(pixel.first.value[l]), e(pixel.second.value[l]);
+      const double weight = seen(pixel) / std::sqrt(local), square = weight * channel_mean(d * d + e * e);
+      sums[l].variance += weight * channel_mean(off * off);
+      sums[l].square += square;
+      sums[l].fourth += square * square;
+    }
+    all.variance += sums[l].variance, all.square += sums[l].square;
+  }
+  std::array<double, kLayerCount> shares;
+  const double pooled = all.square > 0 ? std::min(1.0, all.variance / all.square) : 1;
+  for (std::size_t l = 0; l < kLayerCount; ++l) {
+    const double count = sums[l].count(), own = sums[l].square > 0 ? std::min(1.0, sums[l].variance / sums[l].square) : pooled;
+    shares[l] = (count * own + kAlike * pooled) / (count + kAlike);
+  }
+  return shares;
 }
 
 FrameNoise noise_of_halves(const std::vector<Layers>& a, const std::vector<Layers>& b) {

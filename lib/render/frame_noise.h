@@ -1,6 +1,7 @@
 // lib/render/frame_noise.h -- how noisy a frame is, measured: some pixels are rendered twice.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "lib/core/vec.h"
 #include "lib/render/camera_view.h"
 #include "lib/render/path_tracer.h"
+#include "lib/render/pixel_variance.h"
 
 namespace tempolux {
 
@@ -59,7 +61,43 @@ class NoiseCheck {
     return measure(triples, exposure_of(picture, mask_));
   }
 
+  /// Halves of the second rendering's samples. Thread-safe for different slots.
+  SampleHalves& again_halves(std::uint32_t slot) { return again_halves_[slot]; }
+  /// By layer the variance of a pixel's mean over the mean square of SampleHalves::difference, at most 1. With x = as_sampled(pixel), y the
+  /// second rendering's mean, d and e their differences, that is the sum of (x - y)^2 over the sum of d^2 + e^2, in squares of sRGB codes
+  /// at x + y plus the layer's mean. A pixel counts by the inverse root of the mean of d^2 around it and over the picture, so that the few
+  /// noisiest do not decide alone. The ratio of n pixels that count errs by about sqrt(3 / n) of itself, and layers differ by a factor of
+  /// about 2, whose logarithm has the variance .5: so the ratio of all layers together counts as 6 pixels in each.
+  template <class AsSampled>
+  std::array<double, kLayerCount> shares(const std::vector<SampleHalves>& halves, const AsSampled& as_sampled) const {
+    std::vector<Twice> pixels;
+    for_each_pixel_of_grid([&](std::size_t pixel, std::uint32_t slot) {
+      Twice& twice = pixels.emplace_back(Twice{as_sampled(pixel), again_[slot].sum(), {}, {}, {}});
+      for (std::size_t l = 0; l < kLayerCount; ++l) {
+        twice.first.value[l] = halves[pixel].difference(l);
+        twice.second.value[l] = again_halves_[slot].difference(l);
+        for_each_around(pixel, [&](std::size_t near) {
+          const Rgb d = halves[near].difference(l);
+          twice.around.value[l] += d * d;
+        });
+      }
+    });
+    return shares(pixels);
+  }
+
  private:
+  struct Twice {
+    Layers once, again, first, second, around;  ///< x, y, d, e, sum of d^2 around
+  };
+  static std::array<double, kLayerCount> shares(std::vector<Twice>& pixels);
+  /// body(pixel) for the eight around in the picture.
+  template <class Body>
+  void for_each_around(std::size_t pixel, const Body& body) const {
+    const int x = int(pixel % std::size_t(width_)), y = int(pixel / std::size_t(width_));
+    for (int j = std::max(0, y - 1); j <= std::min(height_ - 1, y + 1); ++j)
+      for (int i = std::max(0, x - 1); i <= std::min(width_ - 1, x + 1); ++i)
+        if (i != x || j != y) body(std::size_t(j) * std::size_t(width_) + std::size_t(i));
+  }
   struct Triple {
     Layers shown, sampled, again;
   };
@@ -71,6 +109,7 @@ class NoiseCheck {
   std::span<const std::uint8_t> mask_;
   int width_, height_, edge_, columns_;
   std::vector<PathParts> again_;
+  std::vector<SampleHalves> again_halves_;
 };
 
 /// Of two independent halves of a frame: E (a - b)^2 / 4 is the variance of (a + b) / 2.

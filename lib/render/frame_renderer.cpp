@@ -42,14 +42,18 @@ void render_fixed(const RenderScene& scene, const CameraView& view, const FrameO
     const std::uint32_t slot = check.slot(x, y);
     if (slot == kNone) return;
     Layers mean;
-    join(sample_pixel(scene, view, again, pixel, x, y, {}, all, nullptr, counts), 0, options.samples, mean);
+    join(sample_pixel(scene, view, again, pixel, x, y, {}, all, &check.again_halves(slot), counts), 0, options.samples, mean);
     check.again(slot).own = mean;
   });
-  frame.noise = check.measure(frame.mean.pixels, [&](std::size_t pixel) { return frame.mean.pixels[pixel]; });
+  const auto as_sampled = [&](std::size_t pixel) { return frame.mean.pixels[pixel]; };
+  frame.noise = check.measure(frame.mean.pixels, as_sampled);
+  if (options.sample_halves) frame.mean.difference_share = check.shares(frame.mean.sample_halves, as_sampled);
 }
 
 LayerImage empty_layers(const CameraView& view, const FrameOptions& options) {
-  LayerImage image{view.width(), view.height(), 0, false, {}, {}};
+  LayerImage image;
+  image.width = view.width();
+  image.height = view.height();
   const std::size_t count = std::size_t(view.width()) * std::size_t(view.height());
   image.pixels.reserve(count);
   formats::prefer_large_pages(image.pixels.data(), count * sizeof(Layers));
@@ -131,12 +135,26 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
   return frame;
 }
 
-void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, Image& image) {
+namespace {
+
+/// "direct.a.R" -> "direct.R"; other names as they are.
+std::string layer_of_half(std::string name) {
+  for (const char* half : {".a.", ".b."})
+    if (const std::size_t at = name.find(half); at != std::string::npos) name.erase(at, 2);
+  return name;
+}
+
+}  // namespace
+
+void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, std::size_t data_channels, Image& image) {
   if (base.width != image.width || base.height != image.height)
     throw InputError("--base: " + std::to_string(base.width) + "x" + std::to_string(base.height) + " pixels, but --size is " +
                      std::to_string(image.width) + "x" + std::to_string(image.height) + "; render both at one size");
-  for (Channel& channel : image.channels) {
+  for (std::size_t i = 0; i < image.channels.size(); ++i) {
+    Channel& channel = image.channels[i];
     const Channel* from = base.find(channel.name);
+    if (!from && i < data_channels) continue;
+    if (!from) from = base.find(layer_of_half(channel.name));
     if (!from || from->values.size() != channel.values.size())
       throw InputError("--base: has no channel " + channel.name + "; ask for fewer with --channels, or render the base with it");
     for (std::size_t p = 0; p < mask.size(); ++p) {
@@ -148,7 +166,7 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
 }
 
 void add_colour_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {
-  if (!layers.sample_halves.empty()) add_variance_channels(layers.sample_halves, layers.media, channels, image);
+  if (!layers.sample_halves.empty()) add_variance_channels(layers, channels, image);
   constexpr std::size_t kSum = kLayerCount;
   std::vector<std::pair<std::size_t, std::size_t>> colours;  // the first of three channels, its layer
   std::optional<std::size_t> alpha;

@@ -30,9 +30,6 @@ struct FrameOptions {
   /// With pixel_error: light that one sample alone claims is shared out among the pixels around, of a masked frame those of the mask (lib/render/spread_outliers.h).
   bool spread_outliers = false;
   bool sample_halves = false;           ///< keep LayerImage::sample_halves
-  /// Each pixel's samples of odd number are stratified by themselves and independent of those of even number. The two halves have equal numbers of
-  /// samples, so `samples` is even. All samples together are then less well stratified. Not with `halves`.
-  bool independent_halves = false;
   const KnownLight* known = nullptr;    ///< where paths may end
   std::vector<std::uint8_t> mask;       ///< by pixel, 0: leave it out; empty: all pixels
   std::function<void(double)> progress; ///< called with [0, 1]; may be empty
@@ -44,6 +41,8 @@ struct LayerImage {
   bool media = false;                   ///< of a scene with media: "layers" holds the layer volume too
   std::vector<Layers> pixels;           ///< width * height, top row first
   std::vector<SampleHalves> sample_halves;   ///< of the same pixels; empty unless asked for
+  /// By layer the variance of a pixel's mean over the mean square of SampleHalves::difference (NoiseCheck::shares).
+  std::array<double, kLayerCount> difference_share{1, 1, 1, 1, 1, 1};
   SampleHalves* halves_of(std::size_t pixel) { return sample_halves.empty() ? nullptr : &sample_halves[pixel]; }
 };
 
@@ -65,9 +64,10 @@ struct RenderedFrame {
 /// number of threads.
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options);
 
-/// Puts pixels that the mask leaves out (0) back to those of `base`, bit for bit, in every channel of `image`.
+/// Puts pixels that the mask leaves out (0) back to those of `base`, bit for bit, in every channel of `image`. The first `data_channels` of them hold
+/// for every pixel and stay where `base` lacks them. Where it lacks halves of a layer both are the layer: nothing is known of its noise.
 /// Throws InputError naming what differs if sizes or channels do not fit.
-void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, Image& image);
+void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, std::size_t data_channels, Image& image);
 
 /// Adds to `image` the colour channels asked for: "RGBA", "layers" or a layer's name. The sum of the layers
 /// in the order of kLayerNames, in float32, is R G B exactly. Also what add_variance_channels() adds.

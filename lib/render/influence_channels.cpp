@@ -1,10 +1,8 @@
 #include "lib/render/influence_channels.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
-#include <span>
 
 #include "formats/error.h"
 #include "lib/core/parallel.h"
@@ -20,19 +18,13 @@ void add_influence_channels(const RenderScene& scene, const CameraView& view, co
   std::vector<float>& share = image.add("blend").values;
   std::vector<float>& influence = image.find("influence")->values;
   const auto width = std::size_t(view.width());
-  parallel_chunks(share.size(), 64 * kLooksTogether, [&](std::size_t first, std::size_t last) {
-    std::array<Look, kLooksTogether> looks;
-    std::array<std::optional<SeenPoint>, kLooksTogether> seen;
-    for (std::size_t p = first; p < last; p += kLooksTogether) {
-      const std::size_t count = std::min(kLooksTogether, last - p);
-      for (std::size_t i = 0; i < count; ++i) looks[i] = {float((p + i) % width) + 0.5f, float((p + i) / width) + 0.5f, std::nullopt};
-      seen_through(scene.tracer, view, std::span(looks).first(count), std::span(seen).first(count));
-      for (std::size_t i = 0; i < count; ++i) {
-        if (!seen[i]) continue;
-        const float here = light->influence(seen[i]->surface, seen[i]->normal);
-        influence[p + i] = std::isfinite(here) ? here : light->thresholds().high;
-        share[p + i] = light->gathered_share(seen[i]->surface, seen[i]->normal);
-      }
+  parallel_chunks(share.size(), 512, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      const std::optional<SeenPoint> seen = seen_through(scene.tracer, view, {float(p % width) + 0.5f, float(p / width) + 0.5f, std::nullopt});
+      if (!seen) continue;
+      const float here = light->influence(seen->surface, seen->normal);
+      influence[p] = std::isfinite(here) ? here : light->thresholds().high;
+      share[p] = light->gathered_share(seen->surface, seen->normal);
     }
   });
 }

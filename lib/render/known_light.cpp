@@ -1,7 +1,5 @@
 #include "lib/render/known_light.h"
 
-#include <array>
-
 #include "lib/gather/mesh_light.h"
 #include "lib/render/localised_light.h"
 #include "lib/render/shading.h"
@@ -13,10 +11,10 @@ constexpr std::uint32_t kMirrorsInARow = 16;
 
 }  // namespace
 
-std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const {
+std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const {
   if (mesh) return mesh->irradiance(surface, geometric);
-  if (localised) return localised->at(surface, shading, direct_view);
-  if (records) return records->irradiance(surface.position, shading, direct_view);
+  if (localised) return localised->at(surface, shading);
+  if (records) return records->irradiance(surface.position, shading);
   return photons && photons->has_indirect() ? std::optional(photons->indirect(surface.position, geometric)) : std::nullopt;
 }
 
@@ -34,9 +32,10 @@ float KnownLight::left(const SurfacePoint& hit, Vec3 geometric, float distance, 
   return light && !(distance < kNear * light->radius * (0.5f + u)) ? bright->left(*light, distance) : 1.0f;
 }
 
-namespace {
-
-std::optional<SeenPoint> follow(const Tracer& tracer, const CameraView& view, const Look& look, Ray ray, Hit hit) {
+std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, const Look& look) {
+  Ray ray = view.ray(look.x, look.y);
+  Hit hit;
+  tracer.intersect(ray, hit);
   float distance = 0;
   for (std::uint32_t mirrors = 0; hit.surface != kNone; ++mirrors) {
     SurfacePoint point = tracer.surface_point(hit);
@@ -59,17 +58,6 @@ std::optional<SeenPoint> follow(const Tracer& tracer, const CameraView& view, co
     tracer.intersect(ray, hit);
   }
   return std::nullopt;
-}
-
-}  // namespace
-
-void seen_through(const Tracer& tracer, const CameraView& view, std::span<const Look> looks,
-                  std::span<std::optional<SeenPoint>> seen) {
-  std::array<Ray, kLooksTogether> rays;
-  std::array<Hit, kLooksTogether> hits;
-  for (std::size_t i = 0; i < looks.size(); ++i) rays[i] = view.ray(looks[i].x, looks[i].y);
-  tracer.intersect(std::span(rays).first(looks.size()), std::span(hits).first(looks.size()));
-  for (std::size_t i = 0; i < looks.size(); ++i) seen[i] = follow(tracer, view, looks[i], rays[i], hits[i]);
 }
 
 }  // namespace tempolux

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
 #include "lib/gather/bright_points.h"
 #include "lib/gather/final_gather.h"
@@ -36,9 +35,8 @@ class KnownLight {
   bool forks() const { return records || mesh || localised || points || (photons && photons->has_indirect()); }
 
   /// Irradiance of kind indirect at the first Lambert lobe of an eye path; both normals are unit and on the side seen. None where no
-  /// record is near: a ray of the hemisphere is to find it. `direct_view`: the camera ray itself met the place; then records with
-  /// larger radii are tried before, as one of the pixel's own is a fraction of a pixel away.
-  std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading, bool direct_view) const;
+  /// record counts: a ray of the hemisphere is to find it.
+  std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const;
   bool has_caustic() const { return photons || (mesh && mesh_has_caustic); }
   /// Irradiance of kind caustic; only if has_caustic(). 0 where indirect() has it.
   Rgb caustic(Vec3 position, const LitSurface& surface) const { return photons ? photons->caustic(position, surface) : Rgb(0.0f); }
@@ -57,9 +55,8 @@ class KnownLight {
   float left(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const;
 };
 
-/// What up to kLooksTogether raster positions see: the first surface with a Lambert lobe, through mirrors and glass by the
+/// What a raster position sees: the first surface with a Lambert lobe, through mirrors and glass by the
 /// likelier of reflection and transmission, or by one drawn from Look::random.
-void seen_through(const Tracer& tracer, const CameraView& view, std::span<const Look> looks,
-                  std::span<std::optional<SeenPoint>> seen);
+std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, const Look& look);
 
 }  // namespace tempolux

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostCells = 4096;   ///< 9 MB
 constexpr std::size_t kMostPlaces = 16;    ///< of a cell
-constexpr float kAcrossSeen = 20;          ///< cells along what is seen: 15 are as good, 60 too many to learn (prototype.md 9)
+constexpr float kAcrossSeen = 20;          ///< cells along what is seen: 15 are as good, 60 too many to learn (S8)
 constexpr int kPixelsPerRay = 450;         ///< of the picture, for a ray of each cell: learning is to stay a small part of a small picture
 constexpr double kLearned = 0.8;           ///< of the samples; the rest as if nothing were known
 constexpr double kFromFirst = 0.6;         ///< of the second pass' rays: by what the first one learned

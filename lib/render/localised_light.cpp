@@ -29,16 +29,16 @@ LocalisedLight::LocalisedLight(std::span<const IrradianceRecord> standing, std::
   gathered_.add(gathered);
 }
 
-std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading, bool direct_view) const {
+std::optional<Rgb> LocalisedLight::at(const SurfacePoint& surface, Vec3 shading) const {
   const float share = gathered_share(surface, shading);
   Rgb sum{0.0f};
   if (share < 1) {
-    const std::optional<Rgb> updated = updated_.irradiance(surface.position, shading, direct_view);
+    const std::optional<Rgb> updated = updated_.irradiance(surface.position, shading);
     if (!updated) return std::nullopt;
     sum = *updated * (1 - share);
   }
   if (share > 0) {
-    const std::optional<Rgb> gathered = gathered_.irradiance(surface.position, shading, direct_view);
+    const std::optional<Rgb> gathered = gathered_.irradiance(surface.position, shading);
     if (!gathered) return std::nullopt;
     sum += *gathered * share;
   }

@@ -22,8 +22,8 @@ class LocalisedLight {
                  std::span<const IrradianceRecord> gathered, float least_cosine, const InfluenceThresholds& thresholds,
                  std::vector<bool> moves);
 
-  /// None where a record that is asked for is missing. `direct_view` as in KnownLight::indirect.
-  std::optional<Rgb> at(const SurfacePoint& surface, Vec3 shading, bool direct_view) const;
+  /// None where a record that is asked for is missing.
+  std::optional<Rgb> at(const SurfacePoint& surface, Vec3 shading) const;
   /// f, in [0, 1].
   float gathered_share(const SurfacePoint& surface, Vec3 shading) const;
   /// Influence in the thresholds' terms (InfluenceField::at); infinity on what moves and where nothing is known.

@@ -179,7 +179,7 @@ KnownHere add_known_light(const KnownLight& known, const ShadingPoint& x, Vec3 s
     sample_bright(1);
     return here;
   }
-  if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal, path.layer() == Layer::emission)) {
+  if (const std::optional<Rgb> indirect = known.indirect(x.surface, x.normal_geometric, x.normal)) {
     ++counts.lookups;
     here.indirect = true;
     result[layer] += reflected * *indirect;

@@ -12,7 +12,7 @@
 
 namespace tempolux {
 
-/// Layers of a frame (architecture.md 3); their sum, in this order, is the image.
+/// Layers of a frame (formats/conventions.md); their sum, in this order, is the image.
 enum class Layer : std::uint8_t { emission, specular, direct, caustic, indirect, volume };
 inline constexpr std::size_t kLayerCount = 6;
 inline constexpr std::array<const char*, kLayerCount> kLayerNames{"emission", "specular", "direct", "caustic", "indirect", "volume"};
@@ -70,8 +70,6 @@ class PixelRandom {
   std::uint32_t sample() const { return sample_; }
   /// Those of another sample of the pixel.
   PixelRandom of_sample(std::uint32_t sample) const { return {key_, sample}; }
-  /// Those of a pixel that is independent of this one: the second half of its samples (FrameOptions::independent_halves).
-  PixelRandom second_half() const { return {mix64(key_ ^ 0x68616c665f74776full), sample_}; }
   Vec2 get2(std::uint32_t bounce, Purpose purpose) const {
     return bounce < kSobolBounces ? sobol_owen_2d(sample_, key(bounce, purpose)) : plain().get2(bounce, purpose);
   }

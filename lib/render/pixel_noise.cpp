@@ -10,6 +10,12 @@ constexpr double kStratified = 0.875, kTypical = 12;
 /// Costs in shadow rays: of a whole typical sample; of a camera ray with its surface; of a light sample; the least that is said of a ray onward.
 constexpr double kWhole = 4, kOwn = 1.2, kLit = 1, kLeastOnward = 1;
 
+/// Each half of a pixel's samples needs one.
+int first_onward(const FrameOptions& options) {
+  const int n = options.samples;
+  return options.for_filter ? n : std::max((n + 1) / 2, options.sample_halves ? std::min(n, 2) : 1);
+}
+
 }  // namespace
 
 double sample_variance(double n, double sum, double square) { return n > 1 ? std::max(0.0, square - sum * sum / n) / (n - 1) : 0; }
@@ -23,7 +29,10 @@ double wanted_samples(double sigma, double cost, double error) {
 }
 
 PixelNoise::PixelNoise(const CameraView& view, const FrameOptions& options)
-    : view_(view), options_(options), first_{options.samples, options.samples, options.for_filter || options.independent_halves ? options.samples : (options.samples + 1) / 2}, first_half_((options.samples + 1) / 2),
+    : view_(view),
+      options_(options),
+      first_{options.samples, options.samples, first_onward(options)},
+      first_half_((options.samples + 1) / 2),
       lattice_(std::max(1, int(std::sqrt(double(view.width()) * view.height() / kOnLattice)))),
       pixels_(std::size_t(view.width()) * std::size_t(view.height())) {
   lattice_ = std::min({lattice_, view.width(), view.height()});
@@ -112,13 +121,11 @@ PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   const double error = error_at(level / n);
   const auto further = [&](double variance, double cost, int first) {
     const double wanted = times * wanted_samples(std::sqrt(variance), cost, error);
-    const int missing = std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
-    return options_.independent_halves ? missing + missing % 2 : missing;
+    return std::max(0, int(std::min(double(options_.adaptive_limit), wanted)) - first);
   };
   PartCounts more{further(own_variance(x, y), kOwn, first_.own), further(lit_variance, kLit, first_.lit),
                   further(onward_variance, std::max(kLeastOnward, rays / n), first_.onward)};
   more.own = std::max({more.own, (more.lit + kMostLit - 1) / kMostLit, (more.onward + kMostOnward - 1) / kMostOnward});
-  if (options_.independent_halves) more.own += more.own % 2;
   return {first_.own + more.own, first_.lit + more.lit, first_.onward + more.onward};
 }
 

@@ -32,7 +32,7 @@ class PixelNoise {
   /// their noise, but where a filter is to do with the first samples alone.
   const PartCounts& first() const { return first_; }
   /// Which half first sample s belongs to.
-  int half(int s) const { return options_.independent_halves ? s & 1 : s >= first_half_; }
+  int half(int s) const { return s >= first_half_; }
   /// The two halves of a pixel's first samples, and the rays that their part `onward` took. Thread-safe for different pixels.
   void note(std::size_t pixel, const PixelSum& first, const PixelSum& second, std::uint64_t onward_rays);
   /// The first samples of all pixels are noted: what follows may be asked.

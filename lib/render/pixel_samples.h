@@ -135,34 +135,23 @@ class Dealt {
   Vec2 offset_;
 };
 
-/// Random numbers and efforts of the samples of one pass of a pixel, numbered from 0.
-/// Joint: the pass goes on in the pixel's one sequence; its first half is one half of the samples, its second half is the other.
-/// Independent halves: samples of even number go on in one sequence, those of odd number in another one. All counts are even then.
+/// Random numbers and efforts of the samples of one pass of a pixel, numbered from 0. The pass goes on in the pixel's sequence; its first
+/// half belongs to one half of the samples, its second half to the other: either is stratified nearly as well as a pass of its size can be.
 class SampleSequence {
  public:
   SampleSequence(const FrameOptions& options, std::size_t pixel, const PartCounts& first, const PartCounts& count)
-      : random_{PixelRandom(options.seed, pixel, 0), PixelRandom(options.seed, pixel, 0).second_half()}, first_(first), count_(count),
-        independent_(options.independent_halves), dealt_{{options.seed, pixel, of_half(first), of_half(count)},
-                                                         {~options.seed, pixel, of_half(first), of_half(count)}} {}
-  PixelRandom random(int i) const { return random_[sequence(i)].of_sample(std::uint32_t(of_half(first_.own) + at(i))); }
-  PathEffort effort(int i) const { return dealt_[sequence(i)](at(i)); }
+      : random_(options.seed, pixel, 0), first_(first.own), count_(count.own), dealt_(options.seed, pixel, first, count) {}
+  PixelRandom random(int i) const { return random_.of_sample(std::uint32_t(first_ + i)); }
+  PathEffort effort(int i) const { return dealt_(i); }
   /// Which half of the pass sample i belongs to.
-  int half(int i) const { return independent_ ? i & 1 : 2 * i >= count_.own; }
+  int half(int i) const { return 2 * i >= count_; }
   /// Which half of the pixel's samples it belongs to: a single sample goes to the half that has fewer.
-  int half(int i, const SampleHalves& halves) const {
-    return count_.own == 1 && !independent_ ? halves.half[1].own.count < halves.half[0].own.count : half(i);
-  }
+  int half(int i, const SampleHalves& halves) const { return count_ == 1 ? halves.half[1].own.count < halves.half[0].own.count : half(i); }
 
  private:
-  int sequence(int i) const { return independent_ ? i & 1 : 0; }
-  int at(int i) const { return independent_ ? i >> 1 : i; }
-  int of_half(int n) const { return independent_ ? n / 2 : n; }
-  PartCounts of_half(const PartCounts& n) const { return {of_half(n.own), of_half(n.lit), of_half(n.onward)}; }
-
-  PixelRandom random_[2];
-  PartCounts first_, count_;
-  bool independent_;
-  Dealt dealt_[2];
+  PixelRandom random_;
+  int first_, count_;
+  Dealt dealt_;
 };
 
 /// A pixel's samples, numbered on from `first`, one after the other: add(i, sample). halves: SampleHalves of the pixel, or nullptr.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lib/core/parallel.h"
+#include "lib/render/frame_renderer.h"
 
 namespace tempolux {
 namespace {
@@ -15,14 +16,14 @@ bool asked(const std::vector<std::string>& channels, const char* name) {
   return std::find(channels.begin(), channels.end(), name) != channels.end();
 }
 
-/// Adds NAME.R .G .B, of each pixel colour(halves).
+/// Adds NAME.R .G .B, of each pixel colour(its index).
 template <class Colour>
-void add_colour(const std::vector<SampleHalves>& halves, const std::string& name, Image& image, const Colour& colour) {
+void add_colour(const std::string& name, Image& image, const Colour& colour) {
   const std::size_t first_channel = image.channels.size();
   for (const char* channel : {".R", ".G", ".B"}) image.add(name + channel);
-  parallel_chunks(halves.size(), kChunk, [&](std::size_t first, std::size_t last) {
+  parallel_chunks(image.pixel_count(), kChunk, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
-      const Rgb value = colour(halves[p]);
+      const Rgb value = colour(p);
       for (int c = 0; c < 3; ++c) image.channels[first_channel + std::size_t(c)].values[p] = value[c];
     }
   });
@@ -69,45 +70,61 @@ SampleHalves& SampleHalves::operator+=(const SampleHalves& more) {
   return *this;
 }
 
-Rgb SampleHalves::mean(int h, std::size_t l) const {
+Rgb SampleHalves::difference(std::size_t l) const {
+  Rgb sum(0.0f);
+  const auto first = parts_of(half[0]), second = parts_of(half[1]);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const float a = first[i]->count, b = second[i]->count;
+    if (a > 0 && b > 0)
+      sum += (first[i]->radiance.value[l] * (1 / a) - second[i]->radiance.value[l] * (1 / b)) * (std::sqrt(a * b) / (a + b));
+  }
+  return sum;
+}
+
+Rgb SampleHalves::mean(std::size_t l) const {
   Rgb mean(0.0f);
-  for (const Sum* sum : parts_of(half[h]))
-    if (sum->count > 0) mean += sum->radiance.value[l] * (1 / sum->count);
+  const auto first = parts_of(half[0]), second = parts_of(half[1]);
+  for (std::size_t i = 0; i < first.size(); ++i)
+    if (const float count = first[i]->count + second[i]->count; count > 0)
+      mean += (first[i]->radiance.value[l] + second[i]->radiance.value[l]) * (1 / count);
   return mean;
 }
 
 Rgb SampleHalves::variance(std::span<const Layer> layers) const {
-  double error[3] = {0, 0, 0};
-  const auto first = parts_of(half[0]), second = parts_of(half[1]);
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const double a = double(first[i]->count), b = double(second[i]->count);
-    if (!(a > 0 && b > 0)) continue;
-    for (const Layer layer : layers)
-      for (int c = 0; c < 3; ++c)
-        error[c] += (double(first[i]->radiance[layer][c]) / a - double(second[i]->radiance[layer][c]) / b) * std::sqrt(a * b) / (a + b);
-  }
-  Rgb result;
+  Rgb sum(0.0f), result;
+  for (const Layer layer : layers) sum += difference(std::size_t(layer));
   // A square beyond float32 is cut to its largest: a file holds no infinity.
-  for (int c = 0; c < 3; ++c) result[c] = float(std::min(error[c] * error[c], 3.4e38));
+  for (int c = 0; c < 3; ++c) result[c] = float(std::min(double(sum[c]) * double(sum[c]), 3.4e38));
   return result;
 }
 
 bool wants_sample_halves(const std::vector<std::string>& channels) {
-  return asked(channels, "variance") || asked(channels, "diffuse.variance") || asked(channels, "samples") || wants_independent_halves(channels);
+  return asked(channels, "variance") || asked(channels, "diffuse.variance") || asked(channels, "samples") || asked(channels, "halves");
 }
 
-bool wants_independent_halves(const std::vector<std::string>& channels) { return asked(channels, "halves"); }
+namespace {
 
-void add_variance_channels(const std::vector<SampleHalves>& halves, bool media, const std::vector<std::string>& channels, Image& image) {
-  if (asked(channels, "variance"))
-    add_colour(halves, "variance", image, [](const SampleHalves& pixel) { return pixel.variance(kImageLayers); });
+/// LAYER.noise of a pixel that shows `shown`.
+Rgb noise_of(const SampleHalves& halves, std::size_t l, float share, const Rgb& shown) {
+  Rgb noise = halves.difference(l) * std::sqrt(share);
+  const Rgb taken = halves.mean(l) - shown;
+  for (int c = 0; c < 3 && channel_sum(taken) > 0; ++c)
+    noise[c] = std::copysign(std::max(0.0f, std::abs(noise[c]) - std::max(0.0f, taken[c])), noise[c]);
+  return noise;
+}
+
+}  // namespace
+
+void add_variance_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image) {
+  const std::vector<SampleHalves>& halves = layers.sample_halves;
+  if (asked(channels, "variance")) add_colour("variance", image, [&](std::size_t p) { return halves[p].variance(kImageLayers); });
   if (asked(channels, "diffuse.variance"))
-    add_colour(halves, "diffuse.variance", image, [](const SampleHalves& pixel) { return pixel.variance(kDiffuseLayers); });
+    add_colour("diffuse.variance", image, [&](std::size_t p) { return halves[p].variance(kDiffuseLayers); });
   if (asked(channels, "halves"))
     for (std::size_t l = 0; l < kLayerCount; ++l)
-      for (int h = 0; h < 2; ++h)
-        if (media || l != std::size_t(Layer::volume))
-          add_colour(halves, std::string(kLayerNames[l]) + (h == 0 ? ".a" : ".b"), image, [=](const SampleHalves& pixel) { return pixel.mean(h, l); });
+      if (layers.media || l != std::size_t(Layer::volume))
+        add_colour(std::string(kLayerNames[l]) + ".noise", image,
+                   [&](std::size_t p) { return noise_of(halves[p], l, float(layers.difference_share[l]), layers.pixels[p].value[l]); });
   if (!asked(channels, "samples")) return;
   std::vector<float>& samples = image.add("samples").values;
   for (std::size_t p = 0; p < halves.size(); ++p) samples[p] = halves[p].samples();

@@ -10,10 +10,9 @@
 
 namespace tempolux {
 
-/// Sums over the samples of one pixel by part (PathParts), of the first half and of the second half apart. Samples of one pixel are stratified
-/// together, so that their mean errs by less than that of independent ones. Each half of a pass, in their order, is nearly as well
-/// stratified: the difference of the two halves' means knows it, where the spread of single samples does not. With
-/// FrameOptions::independent_halves the halves are samples of even and of odd number instead.
+/// Sums over the samples of one pixel by part (PathParts), of the first half and of the second half apart. Samples of one pixel are
+/// stratified together, so that their mean errs by less than that of independent ones. Each half of a pass, in their order, is nearly as
+/// well stratified: the difference of the two halves' means knows it, where the spread of single samples does not.
 struct SampleHalves {
   struct Sum {
     Layers radiance;     ///< [W/m^2/sr]
@@ -31,11 +30,13 @@ struct SampleHalves {
   /// Gives both halves their common mean in a layer.
   void join(Layer layer);
   float samples() const { return half[0].own.count + half[1].own.count; }
-  /// Mean radiance of layer l over half h [W/m^2/sr]; of a part without samples in this half 0.
-  Rgb mean(int h, std::size_t l) const;
-  /// Variance of the mean over both halves [(W/m^2/sr)^2], unbiased for independent samples: with a, b the halves' means and
-  /// n_a, n_b their counts (a - b)^2 n_a n_b / (n_a + n_b)^2, where (a - b) (n_a n_b)^(1/2) / (n_a + n_b) is the sum over the parts.
-  /// Of a part of which a half is empty nothing is known: 0. Of the sum of `layers`.
+  /// Half the difference of the halves in layer l [W/m^2/sr]: the sum over the parts of (a - b) (n_a n_b)^(1/2) / (n_a + n_b), with a, b
+  /// the halves' means and n_a, n_b their counts. Of independent samples the mean of its square is the variance of the mean over both
+  /// halves. Of a part of which a half is empty nothing is known: 0.
+  Rgb difference(std::size_t l) const;
+  /// Mean over both halves in layer l [W/m^2/sr].
+  Rgb mean(std::size_t l) const;
+  /// Square of difference(), of the sum of `layers` [(W/m^2/sr)^2].
   Rgb variance(std::span<const Layer> layers) const;
 };
 
@@ -46,12 +47,15 @@ inline constexpr std::array<Layer, 3> kDiffuseLayers{Layer::direct, Layer::caust
 /// Is one of the channels asked for that halves are kept for?
 bool wants_sample_halves(const std::vector<std::string>& channels);
 
-/// Is "halves" asked for?
-bool wants_independent_halves(const std::vector<std::string>& channels);
+struct LayerImage;
 
 /// Adds what is asked for of "variance" (variance.R .G .B: of R G B), "diffuse.variance" (diffuse.variance.R .G .B: of the sum of
-/// direct, caustic and indirect), "halves" (LAYER.a.R .G .B and LAYER.b.R .G .B of each layer, of volume only with `media`) and "samples".
-/// `halves` holds one element for each pixel of `image`.
-void add_variance_channels(const std::vector<SampleHalves>& halves, bool media, const std::vector<std::string>& channels, Image& image);
+/// direct, caustic and indirect), "halves" (LAYER.noise.R .G .B of each layer, of volume only with media) and "samples".
+///
+/// LAYER.noise = n: LAYER + n and LAYER - n are uncorrelated halves, the mean of n^2 is the variance of LAYER. It is the half difference d
+/// of the samples' halves times the root of LayerImage::difference_share. Stratified together the halves a, b of the mean m err in opposite
+/// ways; as a and b may be exchanged, d is uncorrelated with m, so that m + s d and m - s d have the covariance Var(m) - s^2 Var(d): 0 for
+/// s^2 = Var(m) / Var(d). What spread_outliers took from a layer is taken from |n| as well.
+void add_variance_channels(const LayerImage& layers, const std::vector<std::string>& channels, Image& image);
 
 }  // namespace tempolux

@@ -1,5 +1,6 @@
 #include "lib/render/places_seen.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "lib/core/frame.h"
@@ -10,6 +11,38 @@
 #include "lib/render/known_light.h"
 
 namespace tempolux {
+namespace {
+
+constexpr std::uint32_t kLooks = 256;
+constexpr float kNearEnough = 1 - 1e-3f;   ///< of the way to a place: what is met nearer hides it
+
+bool sees(const Tracer& tracer, const CameraView& view, Vec3 place) {
+  const auto at = view.project(place);
+  if (!at || !((*at)[0] >= 0 && (*at)[0] < view.width() && (*at)[1] >= 0 && (*at)[1] < view.height())) return false;
+  Ray ray = view.ray(float((*at)[0]), float((*at)[1]));
+  ray.t_max = kNearEnough * dot(place - ray.origin, ray.direction);
+  return !tracer.occluded(ray);
+}
+
+}  // namespace
+
+double new_share(const Tracer& tracer, std::span<const PlacedCamera> cameras, int width, int height) {
+  std::vector<CameraView> views;
+  double all = 0, fresh = 0;
+  for (const PlacedCamera& camera : cameras) {
+    const CameraView view(camera, tracer.frame().origin, width, height);
+    for (std::uint32_t i = 0; i < kLooks && !views.empty(); ++i) {
+      const Vec2 u = sobol_owen_2d(i, 0);
+      const Look look{u.x * float(width), u.y * float(height), {}};
+      const std::optional<SeenPoint> point = seen_through(tracer, view, look);
+      if (!point || !sees(tracer, view, point->surface.position)) continue;
+      all += 1;
+      fresh += std::ranges::none_of(views, [&](const CameraView& before) { return sees(tracer, before, point->surface.position); });
+    }
+    views.push_back(view);
+  }
+  return all > 0 ? fresh / all : 0;
+}
 
 SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int looks, std::uint64_t seed) {
   const auto count = std::size_t(looks);
@@ -19,8 +52,7 @@ SeenPlaces places_seen(const RenderScene& scene, const CameraView& view, int loo
       const PathRandom random(seed ^ 0x6c6561726e000001ull, i);
       const Vec2 u = sobol_owen_2d(std::uint32_t(i), seed ^ 0x6c6f6f6bull);
       const Look look{u.x * float(view.width()), u.y * float(view.height()), random};
-      std::optional<SeenPoint> point;
-      seen_through(scene.tracer, view, {&look, 1}, {&point, 1});
+      const std::optional<SeenPoint> point = seen_through(scene.tracer, view, look);
       if (!point) continue;
       SeenPlace& place = seen.places[i];
       const Vec3 front = point->surface.normal_geometric;

@@ -14,7 +14,7 @@
 namespace tempolux {
 namespace {
 
-constexpr int kColumns = 48, kRows = 27;         ///< positions of a picture: 1296, a standard error of 3 % for a cell of half
+constexpr int kColumns = 24, kRows = 14;         ///< positions of a picture, 2688 of eight eyes: a standard error of 1 % for a cell of half
 constexpr int kBounces = 2;
 constexpr double kReflected = 0.5;
 constexpr double kSplitShare = 1.0 / 32, kLeastShare = 1.0 / 512;
@@ -88,8 +88,7 @@ std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
   return done;
 }
 
-}  // namespace
-
+/// What a camera sees, and what that sees. `number` keys the random numbers.
 void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t number, std::vector<WeighedPlace>& places) {
   const Vec3d origin = tracer.frame().origin;
   const auto add = [&](Vec3 position, double weight, double distance) {
@@ -100,8 +99,7 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
     const Vec2 within = random.get2(0, Purpose::place);
     const Look look{(float(i % kColumns) + within.x) * float(view.width()) / kColumns,
                     (float(i / kColumns) + within.y) * float(view.height()) / kRows, random};
-    std::optional<SeenPoint> seen;
-    seen_through(tracer, view, {&look, 1}, {&seen, 1});
+    const std::optional<SeenPoint> seen = seen_through(tracer, view, look);
     if (!seen) continue;
     add(seen->surface.position, 1, length(Vec3d(seen->surface.position) - Vec3d(view.eye())));
     SurfacePoint at = seen->surface;
@@ -116,6 +114,102 @@ void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t
       add(at.position, weight, 0);
     }
   }
+}
+
+// ---- a lattice of cameras -----------------------------------------------------------------------------------
+
+constexpr double kWider = 1.5;                   ///< a quarter of the picture on each side: more than a step of directions, half of which a camera is off
+/// Planes of the lattice lie at thirds of its steps: coordinates that people type (0, 0.5, 1.6) are not near them.
+constexpr double kShift = 1.0 / 3;
+
+/// yaw about +y, pitch, roll, radians, of a camera that looks along -z where all are 0.
+std::array<double, 3> angles_of(const Affine& a) {
+  const Vec3d right = a.direction({1, 0, 0}), forward = a.direction({0, 0, -1});
+  const double yaw = std::atan2(-forward.x, -forward.z), pitch = std::asin(std::clamp(forward.y, -1.0, 1.0));
+  const Vec3d level{std::cos(yaw), 0, -std::sin(yaw)};
+  return {yaw, pitch, std::atan2(dot(right, cross(level, forward)), dot(right, level))};
+}
+
+Affine turned(const std::array<double, 3>& angles) {
+  const auto [yaw, pitch, roll] = angles;
+  const Vec3d forward{-std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch)}, level{std::cos(yaw), 0, -std::sin(yaw)};
+  const Vec3d right = std::cos(roll) * level + std::sin(roll) * cross(level, forward), up = cross(right, forward);
+  Affine a;
+  a.row = {Vec3d{right.x, up.x, -forward.x}, Vec3d{right.y, up.y, -forward.y}, Vec3d{right.z, up.z, -forward.z}};
+  return a;
+}
+
+/// Median distance from which the camera sees surfaces; 0: it sees none.
+double median_distance(const Tracer& tracer, const CameraView& view) {
+  std::vector<WeighedPlace> places;
+  add_seen_places(tracer, view, 0, places);
+  std::erase_if(places, [](const WeighedPlace& place) { return !(place.distance > 0); });
+  if (places.empty()) return 0;
+  const auto middle = places.begin() + std::ptrdiff_t(places.size() / 2);
+  std::ranges::nth_element(places, middle, {}, &WeighedPlace::distance);
+  return middle->distance;
+}
+
+bool sees(const Tracer& tracer, Vec3d from, Vec3d to) {
+  const Vec3d way = to - from;
+  const double distance = length(way);
+  return distance == 0 || !tracer.occluded({Vec3(from), Vec3(way / distance), 0, float(distance)});
+}
+
+/// A camera's cell, and the cameras that stand for it.
+struct CameraCell {
+  std::array<double, 9> key{};                      ///< level, indices of place and of direction, width of the picture, eyes
+  std::vector<PlacedCamera> cameras;
+};
+
+CameraCell cell_of(const Tracer& tracer, const PlacedCamera& camera, double distance) {
+  const bool perspective = camera.camera.kind == Camera::Kind::perspective;
+  const double half_height = perspective ? distance * std::tan(camera.camera.yfov_rad / 2) : camera.camera.ymag_m;
+  CameraCell cell;
+  // Of the picture's half height the quarter powers of two.
+  const int narrow = int(std::round(4 * std::log2(perspective ? half_height / distance : half_height)));
+  const int level = int(std::floor(std::log2(std::min(distance, half_height))));
+  const double size = std::ldexp(1.0, level), height = kWider * std::exp2(narrow / 4.0), step = 2.0 / 3 * std::atan(half_height / distance);
+  PlacedCamera around = camera;
+  (perspective ? around.camera.yfov_rad : around.camera.ymag_m) = perspective ? 2 * std::atan(height) : height;
+  std::array<double, 3> angles = angles_of(camera.scene_from_camera);
+  cell.key[0] = level;
+  cell.key[7] = narrow;
+  for (std::size_t i = 0; i < 3; ++i) {
+    cell.key[4 + i] = std::round(angles[i] / step);
+    angles[i] = cell.key[4 + i] * step;
+  }
+  around.scene_from_camera = turned(angles);
+  const Vec3d eye = camera.scene_from_camera.translation, world = eye + tracer.frame().origin;
+  const std::array places{world.x, world.y, world.z};
+  std::array<double, 3> corner{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double index = std::floor(places[i] / size + kShift);
+    cell.key[1 + i] = index;
+    corner[i] = (index - kShift) * size;
+  }
+  int eyes = 0;
+  for (int part = 0; part < 8; ++part) {
+    const auto at = [&](std::size_t axis) { return corner[axis] + size * (part >> axis & 1 ? 0.75 : 0.25); };
+    around.scene_from_camera.translation = Vec3d{at(0), at(1), at(2)} - tracer.frame().origin;
+    if (!sees(tracer, eye, around.scene_from_camera.translation)) continue;
+    eyes |= 1 << part;
+    cell.cameras.push_back(around);
+  }
+  cell.key[8] = eyes;
+  if (eyes == 0) cell.cameras.push_back(camera);
+  return cell;
+}
+
+}  // namespace
+
+void look_around(const Tracer& tracer, const PlacedCamera& camera, int width, int height, SeenAround& seen) {
+  const Vec3d origin = tracer.frame().origin;
+  const double distance = median_distance(tracer, CameraView(camera, origin, width, height));
+  if (!(distance > 0)) return;
+  const CameraCell cell = cell_of(tracer, camera, distance);
+  if (!seen.looked.insert(cell.key).second) return;
+  for (std::size_t i = 0; i < cell.cameras.size(); ++i) add_seen_places(tracer, CameraView(cell.cameras[i], origin, width, height), i, seen.places);
 }
 
 std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>& places, double scene_radius) {
@@ -151,6 +245,25 @@ std::vector<formats::ViewSphere> spheres_around(const std::vector<WeighedPlace>&
   if (!(gain >= kLeastGain)) return {};
   std::ranges::sort(spheres, {}, [](const formats::ViewSphere& s) { return std::pair(s.centre, s.radius); });
   return spheres;
+}
+
+std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
+  std::vector<AimSphere> spheres;
+  for (const formats::ViewSphere& sphere : view)
+    spheres.push_back({Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
+  return spheres;
+}
+
+
+std::vector<AimSphere> spheres_seen(const Tracer& tracer, double scene_radius, const CameraView& view) {
+  SeenAround seen;
+  look_around(tracer, view.camera(), view.width(), view.height(), seen);
+  return spheres_in_scene(spheres_around(seen.places, scene_radius), tracer.frame().origin);
+}
+
+Lights aimed_lights(const Tracer& tracer, EmissionTable table, const CameraView& view) {
+  table.aim = spheres_seen(tracer, table.sphere_radius, view);
+  return Lights(tracer.frame(), table);
 }
 
 }  // namespace tempolux

@@ -55,7 +55,7 @@ void set_rotation(std::span<double> out, const Value& q) { std::copy(q.begin(), 
 
 bool same_time(double a, double b) { return float(a) == float(b); }
 
-/// By joint of the node's skin: a vertex of its mesh follows it.
+/// For each joint of the node's skin: does a vertex of its mesh follow it?
 std::vector<std::uint8_t> joints_used(const Scene& scene, const Node& node) {
   std::vector<std::uint8_t> used(scene.skins[std::size_t(node.skin)].joints.size(), 0);
   for (const Primitive& primitive : scene.meshes[std::size_t(node.mesh)].primitives)

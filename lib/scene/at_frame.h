@@ -23,7 +23,7 @@ struct PropertyChange {
   std::string carries;                      ///< "material", "light" or "camera"
 };
 
-/// An interval of frames over which "static" means static (architecture.md 4). Both ends belong to it.
+/// An interval of frames over which "static" means static (docs/methods/formulas.md). Both ends belong to it.
 struct Segment {
   int first = 0, last = 0;
   std::vector<std::uint8_t> node_moves;     ///< per node: its evaluated state differs between two frames: its
@@ -121,7 +121,7 @@ struct PlacedCamera {
   Affine scene_from_camera;                 ///< rigid: right, up, -forward in its columns; scale removed
 };
 
-/// What a stage depends on, hashed by concern; 32 hexadecimal digits each (architecture.md 3 and 4).
+/// What a stage depends on, hashed by concern; 32 hexadecimal digits each (formats/plan/plan.md).
 struct SceneHashes {
   std::string camera;                       ///< never part of an identity
   std::string static_geometry;              ///< of the segment

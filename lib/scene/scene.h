@@ -22,7 +22,7 @@ class TextureImages;   // lib/image/texture_images.h
 
 inline constexpr std::uint32_t kNone = 0xffffffffu;
 
-/// What a material is at one point: metallic-roughness of glTF 2.0 with the extensions of architecture.md 7.
+/// What a material is at one point: metallic-roughness of glTF 2.0 with the extensions that docs/scene-files.md lists.
 struct MaterialValues {
   Rgb base_color{1.0f};              ///< reflectance, each channel in [0, 1]
   float metallic = 1;                ///< [0, 1]

@@ -1,4 +1,4 @@
-// lib/scene/scene_hash.h -- content hashes of a scene at a frame, by concern (architecture.md 3 and 4).
+// lib/scene/scene_hash.h -- content hashes of a scene at a frame, by concern (formats/plan/plan.md).
 //
 // Content only: names, JSON order and unused parts of the file do not count. Materials are numbered by first
 // use in node order, so the order of a file's material list does not count either.

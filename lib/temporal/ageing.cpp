@@ -11,7 +11,7 @@ namespace {
 
 __extension__ typedef unsigned __int128 Wide;
 
-/// Of [0, below): the high word of the product. Off from uniform by below / 2^64.
+/// A number in [0, below): the high word of the product. It differs from uniform by below / 2^64.
 std::uint64_t number_below(std::uint64_t bits, std::uint64_t below) {
   return std::uint64_t((Wide(bits) * below) >> 64);
 }

@@ -66,7 +66,7 @@ IrradianceRecord reconstruct(const KeptHemisphere& kept, const SurfacePoint& pla
     if (sample.distance != 0) sky.inverse_distance[c] = 1 / std::max(units.decode(sample.distance), closest);
   }
   const Frame frame(kept.normal());
-  IrradianceRecord made = record_of_first_rays(sky, frame, place, kept.normal(), kept.record.expected_share);
+  IrradianceRecord made = record_of_first_rays(sky, frame, place, kept.normal());
   sky.irradiance_and_rotational_gradient(frame, made);
   if (further_share) {
     thread_local std::vector<std::uint8_t> further;
@@ -87,8 +87,6 @@ void keep_result(const IrradianceRecord& made, formats::RadsamplesRecord& record
   }
   record.radius = made.radius;
   record.radius_unclamped = made.radius_unclamped;
-  record.expected_share = made.expected_share;
-  record.lit_share = made.lit_share;
   record.further_share = made.further_share;
   record.clearance_reach = made.clearance.reach;
   record.clearance = std::bit_cast<std::array<std::uint8_t, 16>>(made.clearance.shares);
@@ -106,8 +104,6 @@ IrradianceRecord result_of(const formats::RadsamplesRecord& record) {
   }
   made.radius = record.radius;
   made.radius_unclamped = record.radius_unclamped;
-  made.expected_share = record.expected_share;
-  made.lit_share = record.lit_share;
   made.further_share = record.further_share;
   made.clearance = {record.clearance_reach, std::bit_cast<Clearance::Shares>(record.clearance)};
   return made;

@@ -13,7 +13,7 @@ constexpr std::uint64_t kTurns = 8;   ///< updates in which each near hit is tra
 constexpr float kLargestRatio = 2;   ///< of an anchor's light: beyond, and below its inverse, cells are traced again
 
 Box3 grown(const Box3& box, float by) { return {box.lower - Vec3{by, by, by}, box.upper + Vec3{by, by, by}}; }
-/// Of the updates of a record, in which is it a cell's turn? Follows from no light, so it brings no bias.
+/// Is it the cell's turn in this update of its record? The answer depends on no light, so it brings no bias.
 bool is_its_turn(const formats::RadsamplesRecord& record, std::uint32_t cell) { return (mix64(record.key + cell) + record.updates) % kTurns == 0; }
 bool holds(const Box3& box, Vec3 p) {
   return min(p, box.lower) == box.lower && max(p, box.upper) == box.upper;

@@ -16,7 +16,7 @@ inline bool is_traced(std::uint8_t mark) { return mark > scaled; }
 /// What has changed between the frame that was kept and the scene's.
 struct LightChanges {
   std::vector<Box3> boxes;            ///< m: what has moved
-  /// By anchor: unmarked, scaled or lost; and by how much its light has changed. Apart, as the one is asked for each cell.
+  /// For each anchor: unmarked, scaled or lost. `ratios`, the change of its light, is an array of its own, as few cells ask for it.
   std::vector<std::uint8_t> points;
   std::vector<Rgb> ratios;
   bool anything = false, materials = false;

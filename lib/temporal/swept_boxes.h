@@ -10,11 +10,11 @@
 
 namespace tempolux {
 
-/// Of each surface whose vertices differ between two frames of a segment the box around both, m, scene space, a little larger than
-/// that.
+/// One box for each surface whose vertices differ between two frames of a segment: around both places, m, scene space, a little
+/// larger than they are.
 std::vector<Box3> swept_boxes(const SceneFrame& before, const SceneFrame& now);
 
-/// Does the ray, up to `t` of its lengths (infinity: all of it), meet the box? True if rounding cannot tell.
+/// Does the ray, up to `t` of its lengths (infinity: all of it), meet the box? True where rounding leaves it open.
 bool meets(const Ray& ray, float t, const Box3& box);
 
 /// Which cells of a hemisphere can a box be seen through? Those whose cone about the box's sphere may hold it: none is left out.

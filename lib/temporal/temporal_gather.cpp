@@ -15,7 +15,6 @@ namespace {
 
 constexpr int kSteps = 27;             ///< of strata: 8 x 9 times the rays, in steps of 2^(1/4), and one
 constexpr int kStepForEvenness = 1;    ///< 2^(1/4): at equal rays noise is 9 % more, worth 19 % of them (docs/methods/temporal.md)
-constexpr std::uint32_t kFixed = 0xffffffff;
 constexpr int kFadingFrames = 4;
 constexpr float kLeastOfHidden = 1.0f / 64;   ///< of the smallest radius: radii stay above 0
 constexpr std::uint32_t kAhead = 12;   ///< cells: of the light that is fetched from memory
@@ -143,7 +142,7 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
 bool TemporalGather::outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before, const IrradianceRecord& made) const {
   const float smallest = placement_.min_radius_px * before.footprint;
   const bool had_its_own = std::abs(before.radius - smallest) > 1e-4f * smallest;
-  if (!scene_.eye || !had_its_own || made.radius > smallest || made.radius_unclamped >= smallest) return false;
+  if (!scene_.eye || !had_its_own || radius_of(made, before.footprint, placement_) > smallest) return false;
   const std::optional<Vec3> eye = scene_.eye(place.position);
   return !eye || scene_.tracer.occluded(spawn_shadow_ray(place, *eye, 0));
 }
@@ -153,20 +152,13 @@ void TemporalGather::finish(const SurfacePoint& place, KeptHemisphere& kept, boo
   float further = kept.record.further_share;
   IrradianceRecord made = reconstruct(kept, place, units_, born ? &further : nullptr);
   made.further_share = further;
-  const float expected = made.expected_share;
   gather_.add_explicit(place, kept.record.key, made, counts);
-  const IrradianceRecord unlimited = made;
-  limit_radius(made, kept.record.footprint, placement_);
-  if (!born && outlived(place, kept.record, made)) {
-    made = unlimited;
-    PlacementOptions least = placement_;
-    least.min_radius_px *= kLeastOfHidden;
-    limit_radius(made, kept.record.footprint, least);
-  }
+  PlacementOptions placement = placement_;
+  if (!born && outlived(place, kept.record, made)) placement.min_radius_px *= kLeastOfHidden;
+  limit_radius(made, kept.record.footprint, placement);
   made.clearance = result_of(kept.record).clearance;
   if (look_again || made.radius * Clearance::kPerRadius > made.clearance.reach) gather_.look_around(place, made);
   keep_result(made, kept.record);
-  kept.record.expected_share = expected;   // that of the rays alone: the explicit part comes on top in each frame
 }
 
 /// The explicit part of a record whose cells have no reason to change.
@@ -174,7 +166,7 @@ void TemporalGather::sample_explicit(KeptHemisphere& kept, const LightChanges& c
   finish(place_of(kept), kept, near_a_mover(kept, changes), false, counts);
 }
 
-KeptHemisphere TemporalGather::birth(const SeenPoint& seen, const RecordStore::Expected& expected, GatherCounts& counts) const {
+KeptHemisphere TemporalGather::birth(const SeenPoint& seen, float further_share, GatherCounts& counts) const {
   KeptHemisphere kept;
   formats::RadsamplesRecord& r = kept.record;
   const SurfacePoint& place = seen.surface;
@@ -186,11 +178,9 @@ KeptHemisphere TemporalGather::birth(const SeenPoint& seen, const RecordStore::E
   r.barycentric = {place.u, place.v};
   r.set = place.surface < scene_.tracer.frame().static_count ? formats::SurfaceSet::static_set : formats::SurfaceSet::dynamic_set;
   r.footprint = seen.footprint;
-  r.expected_share = expected.lit_share;
   // As many cells as FinalGather::gather has rays, one each, so that each can be drawn again; and a step more for what even rays lose
   // against those that go where light is uneven.
-  const float times = std::clamp(FinalGather::kEnoughLit / std::max(expected.lit_share, 1e-6f), 1.0f, 8.0f);
-  const double steps = kStepForEvenness + 4 * (std::ceil(std::log2(double(times))) + std::log2(1 + double(expected.further_share)));
+  const double steps = kStepForEvenness + 4 * std::log2(1 + double(further_share));
   const GatherStrata& strata = strata_[std::size_t(std::clamp(std::lround(steps), 0l, long(kSteps) - 1))];
   r.rings = std::uint16_t(strata.rings);
   r.sectors = std::uint16_t(strata.sectors);
@@ -322,8 +312,6 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
   // Numbers of records before those that went.
   std::vector<std::uint32_t> moved_to(before + 1, 0);
   for (std::size_t i = 0; i < before; ++i) moved_to[i + 1] = moved_to[i] + !gone[i];
-  for (KeptHemisphere& k : kept.records)
-    if (k.record.narrows_from <= before) k.record.narrows_from = moved_to[k.record.narrows_from];
   for (std::size_t i = 0; i < before; ++i)
     if (gone[i]) give_up(kept, kept.records[i]);
     else if (moved_to[i] != i) kept.records[moved_to[i]] = std::move(kept.records[i]);
@@ -332,13 +320,11 @@ void TemporalGather::advance(KeptHemispheres& kept, TemporalCounts& counts) cons
   kept.point_light.clear();
 }
 
-/// The records of a store, narrowed as they were when they were placed. Some begin to fade: those before them weigh by a whole record more
+/// The records of a store. Some begin to fade: those before them weigh by a whole record more
 /// than then.
 void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const {
   for (const KeptHemisphere& k : kept.records) {
     IrradianceRecord record = result_of(k.record);
-    const std::size_t first = k.record.narrows_from == kFixed ? ~std::size_t(0) : k.record.narrows_from;
-    if (placement_.clamp_neighbours) store.clamp_with_neighbours(record, placement_.error_bound, first);
     record.radius = std::max(record.radius * float(kFadingFrames - k.record.fading) / kFadingFrames, std::numeric_limits<float>::min());
     TEMPOLUX_CHECK(store.add(record));
   }
@@ -354,24 +340,23 @@ void TemporalGather::fill(KeptHemispheres& kept, RecordStore& store, TemporalCou
   }
 }
 
-void TemporalGather::place(const PixelViews& views, int width, int height, KeptHemispheres& kept, RecordStore& store,
+void TemporalGather::place(const PixelView& view, int width, int height, KeptHemispheres& kept, RecordStore& store,
                            TemporalCounts& counts, const std::function<void(double)>& progress) const {
   fill(kept, store, counts);
   std::vector<KeptHemisphere> batch(kPlacedTogether);
   RecordSource source;
-  source.gather = [&](const SeenPoint& seen, const RecordStore::Expected& expected, std::size_t slot, GatherCounts& gathered) {
+  source.gather = [&](const SeenPoint& seen, std::size_t slot, GatherCounts& gathered) {
     give_up(kept, batch[slot]);   // of one that was not added
-    batch[slot] = birth(seen, expected, gathered);
+    batch[slot] = birth(seen, store.expected_further_share(seen.surface.position, seen.normal), gathered);
     put_back(kept, batch[slot]);
     return result_of(batch[slot].record);
   };
-  source.added = [&](std::size_t slot, std::size_t narrows_from) {
-    batch[slot].record.narrows_from = std::uint32_t(std::min<std::size_t>(narrows_from, kFixed));
+  source.added = [&](std::size_t slot) {
     batch[slot].record.birth_weight = store.weight_of_earlier(std::uint32_t(store.records().size() - 1), {});
     kept.records.push_back(std::move(batch[slot]));
     batch[slot] = {};
   };
-  counts.born += place_records(gather_, views, width, height, placement_, store, counts.birth, progress, &source);
+  counts.born += place_records(gather_, view, width, height, placement_, store, counts.birth, progress, &source);
   for (KeptHemisphere& k : batch) give_up(kept, k);
   counts.records = kept.records.size();
   for (std::size_t i = 0; i < scene_.anchored_points; ++i) kept.point_light.push_back(scene_.points[i].total());

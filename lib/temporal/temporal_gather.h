@@ -68,14 +68,14 @@ class TemporalGather {
   /// - the point that stands for what it met has other light now: the cell's radiance is scaled by the ratio, per channel, or
   ///   traced again along its old direction beyond 1/2 to 2;
   /// - no point stands for what it met (mirrors, corners): traced again alike.
-  /// Of a record that changes, cells whose radiance is more than one point's light (hits near by) are traced again alike in turn, each in every eighth update.
-  /// Of a record that changes, further cells get a new ray in their place of the hemisphere, drawn by age: see TemporalOptions::refresh.
+  /// If a record changes, its cells whose radiance is more than one point's light (hits near by) are traced again in turn, each in every eighth update.
+  /// If a record changes, further cells get a new ray in their place of the hemisphere. They are drawn by age: see TemporalOptions::refresh.
   /// Where bright points are sampled explicitly, cells that met one have no anchor, as what is left of its light follows from the distance, too; and if anything has
   /// changed the explicit part of every record is sampled anew, with the record's random numbers.
   void advance(KeptHemispheres& kept, TemporalCounts& counts) const;
   /// The records of a store, and then new ones where they do not cover what the camera sees; those are kept, too. After a change records
   /// fade away, in four frames, where those before them weigh by a whole record more than when they were placed.
-  void place(const PixelViews& views, int width, int height, KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts,
+  void place(const PixelView& view, int width, int height, KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts,
              const std::function<void(double)>& progress = {}) const;
 
  private:
@@ -89,7 +89,7 @@ class TemporalGather {
              std::span<const std::uint8_t> marks, GatherCounts& counts) const;
   void finish(const SurfacePoint& place, KeptHemisphere& kept, bool look_again, bool born, GatherCounts& counts) const;
   void sample_explicit(KeptHemisphere& kept, const LightChanges& changes, GatherCounts& counts) const;
-  KeptHemisphere birth(const SeenPoint& seen, const RecordStore::Expected& expected, GatherCounts& counts) const;
+  KeptHemisphere birth(const SeenPoint& seen, float further_share, GatherCounts& counts) const;
   SurfacePoint place_of(const KeptHemisphere& kept) const;
   void ride(KeptHemisphere& kept) const;
   void fill(KeptHemispheres& kept, RecordStore& store, TemporalCounts& counts) const;

@@ -177,7 +177,7 @@ std::string Media::hash() const {
 }
 
 MajorantGrid majorant_cells(const Box3d& box, double finest_voxel) {
-  constexpr double kVoxels = 8;   // voxels along a cell: platform.md 2e, 16^3 cells on 128^3 voxels
+  constexpr double kVoxels = 8;   // voxels along a cell: 16^3 cells on 128^3 voxels were fastest
   const Box3 outer = outwards(box);
   const Vec3d size = Vec3d(outer.upper) - Vec3d(outer.lower);
   const double most = double(MajorantGrid::kMostCells);

@@ -1,6 +1,6 @@
 // lib/volume/phase.h -- which way light goes on after a collision: Henyey and Greenstein's phase function.
 //
-// Forms of algorithms.md 10: everything in 1 - cos, nothing divided by g, so that forward peaks and g = 0 keep their digits.
+// Forms of docs/methods/formulas.md: everything in 1 - cos, nothing divided by g, so that forward peaks and g = 0 keep their digits.
 #pragma once
 
 #include <algorithm>

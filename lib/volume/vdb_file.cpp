@@ -20,7 +20,7 @@ constexpr std::uint64_t kExpansion = 64;             ///< bytes in memory for on
 constexpr std::uint64_t kSlowest = 10u << 20;        ///< bytes of the file read in a second, at least
 constexpr std::size_t kMostTogether = 16;            ///< files read by one process: its start is then 3 ms a file
 constexpr std::uint64_t kMostAhead = 16u << 20;      ///< bytes of files read by one process; in memory up to kExpansion times as many
-constexpr std::int32_t kFarStep = 1 << 16;           ///< voxels: float32 tells places within half of it to 1/256 of a voxel
+constexpr std::int32_t kFarStep = 1 << 16;           ///< voxels: within half of it float32 resolves places to 1/256 of a voxel
 
 std::uint64_t size_of(const std::string& path) {
   struct stat status {};
@@ -46,7 +46,7 @@ class Printed {
   std::uint64_t at_ = 0;
 };
 
-/// Voxels far from index 0 get numbers near it, and the transform what that moves them by: float32 does not tell places between voxels from
+/// Voxels far from index 0 get numbers near it, and the transform what that moves them by: float32 does not resolve places between voxels from
 /// 2^24 on. By whole multiples of kFarStep, so that the numbers of a sequence stay the same while its smoke moves on.
 void renumber(std::vector<VoxelBlock>& blocks, Affine& world_from_index) {
   if (blocks.empty()) return;

@@ -50,14 +50,14 @@ class VoxelGrid {
   float largest(const Box3d& box) const;
   float largest() const { return largest_; }
   std::size_t byte_count() const;
-  /// Of all voxels above 0 with their places: equal content, equal hash, however it was cut into blocks.
+  /// Hash of all voxels above 0 with their places. Equal content has an equal hash, however it is cut into blocks.
   const std::string& hash() const { return hash_; }
 
  private:
   static constexpr int kBrick = kBlock + 1;
   static constexpr std::size_t kBrickSize = std::size_t(kBrick) * kBrick * kBrick;
   static constexpr std::uint32_t kNoBrick = 0xffffffffu;
-  /// Of the brick that holds block (x, y, z), or kNoBrick.
+  /// Number of the brick that holds block (x, y, z), or kNoBrick.
   std::uint32_t brick(std::int32_t x, std::int32_t y, std::int32_t z) const;
 
   GridIndex first_block_{}, block_count_{};

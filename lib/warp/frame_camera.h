@@ -56,7 +56,7 @@ class FrameCamera {
     const double w = w_.z * depth + w_shift_;
     return {(at.x * w - x_.z * depth - x_shift_) * per_x_, (at.y * w - y_.z * depth - y_shift_) * per_y_, depth};
   }
-  /// Of a perspective camera: the direction (camera space, z = 1) of what is seen there.
+  /// The direction (camera space, z = 1) of what a perspective camera sees there.
   Vec3d direction(RasterPoint at) const { return unproject(at, 1); }
 
   /// Depth does not shrink what is seen.

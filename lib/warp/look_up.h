@@ -44,7 +44,7 @@ struct WantedPoints {
 struct FoundPoints {
   std::array<LookUp, WantedPoints::kMost> result;
   std::array<Taps, WantedPoints::kMost> taps;
-  std::array<float, WantedPoints::kMost> magnification;   ///< area of target pixels per pixel of the key (algorithms.md 1.3)
+  std::array<float, WantedPoints::kMost> magnification;   ///< area of target pixels per pixel of the key (docs/methods/formulas.md)
 };
 
 /// One key as a target camera at another frame makes use of it.
@@ -75,9 +75,9 @@ class KeyView {
     std::array<double, WantedPoints::kMost> magnification, facing;
     std::array<FacePoint, WantedPoints::kMost> face;        ///< in the key's world
   };
-  /// Of points that stand still and are not infinitely far away; all together.
+  /// Looks up points that stand still and are not infinitely far away, all together.
   void place(const WantedPoints& wanted, Places& places) const;
-  /// Of any point.
+  /// Looks up any point.
   void place_one(const WantedPoints& wanted, std::size_t i, Places& places) const;
   /// At a position of the key, counted in pixels from the centre of its first: of pixels that show the face.
   LookUp gather(double cx, double cy, const FacePoint& face, float tolerance, Taps& taps) const;

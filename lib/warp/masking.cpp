@@ -11,7 +11,7 @@ namespace {
 // Beyond which a difference is not noise: three, and half as much again as interpolated pixels share their neighbours' noise: linear
 // interpolation leaves each (2/3)^2 of the variance on the average, and the mean over all of them the whole.
 constexpr double kStandardErrors = 3 * 1.5;
-constexpr int kReach = 2;               // pixels on each side over which light is averaged, and chance is told
+constexpr int kReach = 2;               // pixels on each side over which light is averaged
 
 std::array<int, 3> place_of(const std::vector<std::string>& names, const std::string& prefix) {
   std::array<int, 3> at{};
@@ -41,33 +41,21 @@ Masking::Masking(const WarpTarget& target, std::span<const WarpKey> keys, const 
 }
 
 float Masking::luminance_of(const float* colour) const { return luminance_at(colour, rgb_); }
-float Masking::specular(const float* colour) const { return luminance_at(colour, specular_); }
-
 bool Masking::specular_matters(std::size_t pixel, const float* colour, const float* first, const float* second) const {
   if (specular_[0] < 0) return !target_.gloss.empty() && target_.gloss[pixel] != 0;
-  if (!shines(colour)) return false;
-  return !first || !second || std::abs(specular(first) - specular(second)) > least_specular(colour);
+  if (judges_gloss() && first && second) return false;
+  return luminance_at(colour, specular_) > float(options_.specular_share) * std::max(luminance_of(colour), dark_);
 }
 
-float Masking::least_specular(const float* colour) const { return float(options_.specular_share) * std::max(luminance_of(colour), dark_); }
-bool Masking::shines(const float* colour) const { return specular_[0] >= 0 && specular(colour) > least_specular(colour); }
-
-void Masking::mark_chance(const std::vector<std::uint8_t>& shines, std::vector<std::uint32_t>& why) const {
-  const int width = target_.seen->width, height = target_.seen->height;
-  const auto index = [&](int x, int y) { return std::size_t(y) * std::size_t(width) + std::size_t(x); };
-  std::vector<std::uint8_t> chance(why.size());
-  parallel_chunks(std::size_t(height), 16, [&](std::size_t first, std::size_t last) {
-    for (int y = int(first); y < int(last); ++y)
-      for (int x = 0; x < width; ++x) {
-        if (!shines[index(x, y)] || (why[index(x, y)] & formats::why_specular)) continue;
-        int around = -1, masked = 0;   // the pixel itself is not around
-        for (int ny = std::max(y - kReach, 0); ny <= std::min(y + kReach, height - 1); ++ny)
-          for (int nx = std::max(x - kReach, 0); nx <= std::min(x + kReach, width - 1); ++nx, ++around) masked += (why[index(nx, ny)] & formats::why_specular) != 0;
-        chance[index(x, y)] = 2 * masked > around;
-      }
-  });
+void Masking::mark_seen_gloss(const std::vector<std::vector<float>>& colour, std::array<std::vector<float>, 3>&& error, std::vector<std::uint32_t>& why) const {
+  const auto dark = [](const std::vector<float>& plane) { return std::all_of(plane.begin(), plane.end(), [](float e) { return e == 0; }); };
+  if (std::all_of(error.begin(), error.end(), dark)) return;   // nothing shines: no viewer is asked
+  GlossInDoubt doubt{{}, std::move(error), std::vector<std::uint8_t>(why.size())};
+  for (std::size_t c = 0; c < 3; ++c) doubt.picture[c] = colour[std::size_t(rgb_[c])];
+  for (std::size_t p = 0; p < why.size(); ++p) doubt.counted[p] = why[p] == 0;
+  const std::vector<float> probability = target_.see_gloss(doubt);
   for (std::size_t p = 0; p < why.size(); ++p)
-    if (chance[p]) why[p] |= formats::why_specular;
+    if (double(probability[p]) > options_.seen_probability) why[p] |= formats::why_specular;
 }
 
 bool Masking::edge_agrees(const float* first, const float* second) const {

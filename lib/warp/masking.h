@@ -21,12 +21,14 @@ class Masking {
   /// give the whole pixel.
   std::uint32_t of_moved_pixel(std::size_t pixel, const float* colour, const float* first, const float* second) const;
 
-  /// Is so much of this light given by mirrors, glass or gloss that it counts? False if the keys do not tell.
-  bool shines(const float* colour) const;
-  /// Masks pixels that shine where most of those around are masked for it: that the keys agree there is chance, as light in a mirror that is now brighter, now
-  /// darker than in the other key is equal to it in between. shines: by pixel, 1 if it does and was moved.
-  void mark_chance(const std::vector<std::uint8_t>& shines, std::vector<std::uint32_t>& why) const;
-
+  /// Is what the keys differ by in specular light to be judged by WarpTarget::see_gloss?
+  bool judges_gloss() const { return specular_[0] >= 0 && keys_.size() == 2 && target_.see_gloss != nullptr; }
+  /// R, G, B of what they differ by.
+  void note_gloss(const float* first, const float* second, std::array<float, 3>& error) const {
+    for (std::size_t c = 0; c < 3; ++c) error[c] = first[specular_[c]] - second[specular_[c]];
+  }
+  /// Masks pixels where a viewer would see it.
+  void mark_seen_gloss(const std::vector<std::vector<float>>& colour, std::array<std::vector<float>, 3>&& error, std::vector<std::uint32_t>& why) const;
   /// Do the keys agree about a pixel that is composed of several surfaces?
   bool edge_agrees(const float* first, const float* second) const;
 
@@ -37,7 +39,7 @@ class Masking {
   Spread spread(const float* mean, const float* square) const;
   /// At how many positions a pixel composed of several surfaces must be known for its error to be WarpOptions::edge_share of its light: n positions in
   /// rows and columns of their own err by sigma n^(-5/6) (docs/pixels.md), sigma the standard deviation of what they show. `at`: of the `count`
-  /// positions tried. What they all missed has a share of 1 / (2 count), about; how it differs is told by the centres of the 3 x 3 pixels
+  /// positions tried. What they all missed has a share of 1 / (2 count), about; how it differs is estimated from the centres of the 3 x 3 pixels
   /// `around`, of which an edge leaves a third on its other side.
   std::size_t edge_positions(Spread at, std::size_t count, Spread around) const;
 
@@ -55,8 +57,6 @@ class Masking {
 
  private:
   bool specular_matters(std::size_t pixel, const float* colour, const float* first, const float* second) const;
-  float specular(const float* colour) const;
-  float least_specular(const float* colour) const;
 
   const WarpTarget& target_;
   std::span<const WarpKey> keys_;

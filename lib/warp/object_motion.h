@@ -28,7 +28,7 @@ class ObjectMotions {
   ObjectMotions() = default;
   ObjectMotions(const SceneFrame& here, const SceneFrame& other);
 
-  /// Of an object that the scene does not have, and of nothing (kNone): still.
+  /// An object that the scene does not have, and nothing (kNone), stand still.
   const ObjectMotion& of(std::uint32_t object) const {
     return object < motions_.size() ? motions_[object] : still_;
   }

@@ -24,10 +24,10 @@ class SceneView {
   /// The same for any raster positions, points[i] of at[i].
   void look(std::span<const RasterPoint> at, FacePoint* points) const;
 
-  /// By pixel, 1: the material has a lobe that mirrors, shines or lets through.
+  /// One entry a pixel. 1: the material has a lobe that mirrors, shines or lets through.
   std::vector<std::uint8_t> gloss() const;
 
-  /// Of the groups Z, N and id those that are named: the same bits as frame-render's data channels.
+  /// Those of the groups Z, N and id that are named, with the bits of frame-render's data channels.
   void add_channels(const std::vector<std::string>& groups, Image& image) const;
 
  private:

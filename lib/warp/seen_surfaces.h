@@ -14,7 +14,7 @@ namespace tempolux {
 inline constexpr std::uint32_t kNoObject = 0xffffffffu;    ///< id.object where nothing is seen
 inline constexpr std::uint32_t kAnyObject = 0xfffffffeu;   ///< of a picture that does not say: it may be any
 
-/// Of the point that the ray through each pixel's centre meets. Nothing met: depth +inf, object kNoObject, normal 0.
+/// The point that the ray through each pixel's centre meets. Nothing met: depth +inf, object kNoObject, normal 0.
 struct SeenSurfaces {
   int width = 0, height = 0;
   std::vector<float> depth;              ///< Z, m
@@ -36,13 +36,13 @@ struct FacePoint {
 };
 
 /// How far two depths of one smooth surface may be apart within a pixel, as a share of the depth: two pixels' width along the
-/// surface, at least a thousandth. `facing` is |n . r| of the surface, `pixel_angle` a pixel's width at depth 1 (algorithms.md
-/// 1.3); of facing at least .05 counts, as normals interpolated over a mesh turn away farther than its triangles do.
+/// surface, at least a thousandth. `facing` is |n . r| of the surface, `pixel_angle` a pixel's width at depth 1 (docs/methods/
+/// formulas.md); of facing at least .05 counts, as normals interpolated over a mesh turn away farther than its triangles do.
 inline float depth_tolerance(float pixel_angle, float facing) {
   return std::max(1e-3f, 2 * pixel_angle / std::max(facing, 0.05f));
 }
 
-/// Cosine below which two normals belong to two faces: their irradiance differs (algorithms.md 1.6).
+/// Cosine below which two normals belong to two faces: their irradiance differs (docs/methods/formulas.md).
 inline constexpr float kSameFace = 0.9f;
 
 /// May two pictures' objects be one? What is not known agrees with all.
@@ -57,7 +57,7 @@ inline bool same_face(const FacePoint& a, const FacePoint& b, float tolerance) {
   return !known || dot(a.normal, b.normal) >= kSameFace;
 }
 
-/// By pixel, 1: the pixel's whole area shows the face that its centre shows, as far as the centres of the 8 around it tell.
+/// One entry a pixel. 1: the pixel's whole area shows the face that its centre shows, judged by the centres of the 8 around it.
 /// What is narrower than a pixel may lie between two centres unseen.
 std::vector<std::uint8_t> whole_pixels(const SeenSurfaces& seen, const FrameCamera& camera);
 

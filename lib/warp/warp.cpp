@@ -98,8 +98,10 @@ class Warping {
   Warping(const WarpTarget& target, std::span<const WarpKey> keys, const WarpOptions& options, WarpedFrame& frame)
       : target_(target), keys_(keys), options_(options), frame_(frame), width_(std::size_t(target.seen->width)),
         height_(std::size_t(target.seen->height)), whole_(whole_pixels(*target.seen, *target.camera)), compositor_(target, keys, options),
-        layers_(frame.names), masking_(target, keys, options, frame.names), edge_(target.seen->pixel_count()), centres_(target.seen->pixel_count()), shines_(target.seen->pixel_count()) {
+        layers_(frame.names), masking_(target, keys, options, frame.names), edge_(target.seen->pixel_count()), centres_(target.seen->pixel_count()) {
     summed_ = std::all_of(keys.begin(), keys.end(), [&](const WarpKey& k) { return layers_.complete_in(k.view->key()); });
+    for (auto& plane : gloss_)
+      if (masking_.judges_gloss()) plane.resize(target.seen->pixel_count());
     for (std::size_t k = 0; k < keys.size() && masking_.light_may_differ(); ++k) light_[k].resize(target.seen->pixel_count());
   }
 
@@ -118,7 +120,7 @@ class Warping {
           if (edge_[p]) edge(p, points, pixel);
       });
     if (masking_.light_may_differ()) masking_.mark_changed_light(light_, frame_.why);
-    masking_.mark_chance(shines_, frame_.why);
+    if (masking_.judges_gloss()) masking_.mark_seen_gloss(frame_.colour, std::move(gloss_), frame_.why);
   }
 
  private:
@@ -198,7 +200,11 @@ class Warping {
     if (pixel.resampled && !pixel.missing && !whole_[p] && (!known || !masking_.edge_agrees(given[0], given[1]))) why |= formats::why_edge;
     if (pixel.resampled) why |= masking_.of_moved_pixel(p, pixel.colour.data(), given[0], given[1]);
     frame_.why[p] = why;
-    shines_[p] = pixel.resampled && masking_.shines(pixel.colour.data());
+    if (masking_.judges_gloss() && pixel.resampled && given[0] && given[1]) {
+      std::array<float, 3> error{};
+      masking_.note_gloss(given[0], given[1], error);
+      for (std::size_t c = 0; c < 3; ++c) gloss_[c][p] = error[c];
+    }
     for (std::size_t k = 0; k < keys_.size(); ++k) {
       if (!light_[k].empty()) light_[k][p] = given[k] ? masking_.luminance_of(given[k]) : -1;
       if (options_.separate && !given[k]) pixel.of_key[k] = pixel.colour;
@@ -217,7 +223,7 @@ class Warping {
   bool summed_ = false;
   std::vector<std::uint8_t> edge_;              ///< 1: composed of several positions
   std::vector<std::array<float, 3>> centres_;   ///< R, G, B of what each pixel's centre shows
-  std::vector<std::uint8_t> shines_;            ///< 1: moved, and mirrors, glass or gloss give light that counts
+  std::array<std::vector<float>, 3> gloss_;     ///< GlossInDoubt::error
   std::array<std::vector<float>, 2> light_;     ///< by key, see Masking::mark_changed_light
 };
 

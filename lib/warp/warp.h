@@ -17,6 +17,13 @@
 
 namespace tempolux {
 
+/// Where do keys give light by mirrors, glass and gloss wrongly? Planes are R, G, B.
+struct GlossInDoubt {
+  std::array<std::vector<float>, 3> picture;     ///< composed of both keys
+  std::array<std::vector<float>, 3> error;       ///< what the keys' specular light differs by, 0 where one key alone gives it
+  std::vector<std::uint8_t> counted;             ///< 0: the pixel is masked already
+};
+
 /// The picture to make.
 struct WarpTarget {
   const FrameCamera* camera = nullptr;
@@ -24,6 +31,8 @@ struct WarpTarget {
   /// What is seen between pixel centres; empty: not known, then pixels with an edge are masked.
   std::function<void(std::span<const RasterPoint>, FacePoint*)> look;
   const std::vector<float>* speed = nullptr;     ///< deg/s by pixel; nullptr: not known, none is slow
+  /// The probability by pixel that a viewer sees the error; empty: everything that shines and was moved is masked.
+  std::function<std::vector<float>(const GlossInDoubt&)> see_gloss;
   std::vector<std::uint8_t> gloss;               ///< by pixel, 1: a surface that mirrors or lets light through; empty: not known
 };
 
@@ -36,9 +45,10 @@ struct WarpKey {
 };
 
 struct WarpOptions {
-  /// Light by mirror, glass and gloss matters if it is more than this share of a pixel's light, and the keys do not agree about
-  /// it to this share. A pixel counts as no darker than a tenth of the picture's mean, as in relMSE.
+  /// Light by mirror, glass and gloss that one key alone gives is believed up to this share of a pixel's light. A pixel counts as no darker than a
+  /// tenth of the picture's mean, as in relMSE. Of what two keys give WarpTarget::see_gloss decides.
   double specular_share = 0.02;
+  double seen_probability = 0.75;                ///< above which an error is seen (algorithms.md 1.2)
   /// A pixel composed of several surfaces is believed if both keys give it alike, to this share of its light; a key shows what lies at an edge,
   /// a contact's shadow above all, only from a pixel's distance.
   double edge_share = 0.05;

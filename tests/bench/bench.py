@@ -83,7 +83,7 @@ def main():
     print(f"wrote {args.results}")
     readme = page.with_name("README.md")
     if readme.exists():
-        readme.write_text(results_page.readme(readme.read_text(), args.docs.resolve() / "results", peers["cornell"]))
+        readme.write_text(results_page.readme(readme.read_text(), args.docs.resolve() / "results"))
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ ALL = ["formats", "lib", "tools", "Makefile.example", "pipelines"]     # of part
 JUDGES = {
     "path-tracer": PATHS, "references": PATHS, "photon-rate": PHOTONS, "photon-growth": PHOTONS, "nearest": ["lib/core", "lib/density"],
     "start": ["tools", "modules", "cmake", "CMakeLists.txt", "lib/CMakeLists.txt"], "reading": ["lib/core", "formats/photons", "formats/CMakeLists.txt"],
-    "estimate": ["lib/plan", "tools/scene-plan.cpp", "tools/common/pilot.cpp", "Makefile.example", "pipelines/stages.mk"], "million": [*SCENE, "lib/light", "tools"],
+    "estimate": ["lib/plan", "tools/scene-plan.cpp", "tools/stages/samples.cpp", "Makefile.example", "pipelines/stages.mk"], "million": [*SCENE, "lib/light", "tools"],
     "loading": [*SCENE, "lib/light", "tools"], "gather-rays": [*SCENE, "lib/irradcache", "lib/gather"],
     "hall": [*SCENE, "lib/irradcache", "lib/gather", "lib/render"]}
 

@@ -37,6 +37,13 @@ def run_make(project, tools, out, goal="demo", **variables):
     return after.children_user - before.children_user + after.children_system - before.children_system
 
 
+def estimate(project, tools, **variables):
+    """What `make estimate` says: CPU seconds and bytes."""
+    done = subprocess.run(command(project, tools, "none", "estimate", **variables), capture_output=True, text=True, env=environment(), check=True)
+    cpu, size, unit = re.search(r"^all +(\S+) +(\S+) (\S+)$", done.stdout, re.M).groups()
+    return {"cpu_s": float(cpu), "bytes": float(size) * {"kB": 1e3, "MB": 1e6, "GB": 1e9}[unit]}
+
+
 # ---- what it has left
 
 def plan_of(out):
@@ -83,8 +90,8 @@ def frame_of(out, frame):
 
 
 def bytes_of(out):
-    """Bytes of all files that the plan makes, the frames and their previews: what --estimate speaks of."""
-    files = [Path(out) / name for name in made_files(out)] + list((Path(out) / "frames").glob("*.*"))
+    """Bytes of all files that the plan makes: what `make estimate` speaks of."""
+    files = [Path(out) / name for name in made_files(out)]
     return sum(file.stat().st_size for file in files if file.exists())
 
 

@@ -116,7 +116,7 @@ def plots(docs, page):
     """The plots side by side, and where their numbers are."""
     found = sorted(docs.glob("error-*.svg"))
     if not found or not (docs / "results" / "curves.md").exists():
-        return "## Error against run time\n\nNot measured: `--only sweep`\n\n"
+        return ""   # not measured: --only sweep
     folder = docs.relative_to(page.parent) if docs.is_relative_to(page.parent) else docs
     made = re.search(r"commit (\S+)", (docs / "results" / "curves.md").read_text())
     return (f"## Error against run time\n\nAll runs, slopes and floors: [curves.md]({folder}/results/curves.md), at commit "
@@ -125,12 +125,11 @@ def plots(docs, page):
 
 # ---- the README
 
-MARKS = "<!-- written by tests/bench/bench.py from RESULTS.md and peers.json -->\n", "<!-- end -->\n"
 DEMO_MARKS = "<!-- written by tests/bench/bench.py, --only demo -->\n", "<!-- end of demo -->\n"
 PEERS_NOISE = 0.002    # of the reference that the peers' errors are against
 
 
-def demo_cost(text, results):
+def readme(text, results):
     """The README's text with the cost of its demo; as it is if either lacks it."""
     begin, end = (text.find(mark) for mark in DEMO_MARKS)
     page = (results / "demo.md").read_text() if (results / "demo.md").exists() else ""
@@ -138,8 +137,8 @@ def demo_cost(text, results):
     if begin < 0 or end < 0 or not all(found.values()):
         return text
     frame, whole, disk = found["final"].groups()
-    return (text[:begin] + DEMO_MARKS[0] + f"A frame costs {frame} CPU seconds (draft: {found['draft'].group(1)}), all 48 together "
-            f"{whole} CPU seconds and {disk} GB of disk.\n" + text[end:])
+    return (text[:begin] + DEMO_MARKS[0] + f"They cost {float(whole) / 60:.1f} CPU minutes in all, {frame} CPU seconds a frame (`QUALITY=draft`: "
+            f"{found['draft'].group(1)}), and {disk} GB of disk.\n" + text[end:])
 
 
 def beside_peers(results, peers):
@@ -158,15 +157,6 @@ def beside_peers(results, peers):
     return table(["", "CPU s", "RMSE, raw", "RMSE without the reference's noise", "bias"], rows) if ours else ""
 
 
-def readme(text, results, peers):
-    """The README's text with the cost of its demo and its rows of the Cornell box, which are those of the folder `results`; as it is
-    where either lacks them."""
-    text = demo_cost(text, results)
-    begin, end = (text.find(mark) for mark in MARKS)
-    rows = beside_peers(results, peers)
-    return text[:begin] + MARKS[0] + rows + text[end:] if begin >= 0 and end >= 0 and rows else text
-
-
 # ---- the page
 
 def said(bench, name, found):
@@ -181,18 +171,26 @@ def said(bench, name, found):
     return text, f"{commit}, {newer} changes ago" if newer else commit
 
 
+def measured(found):
+    """What was measured, as it says itself or as the first row of its table does: its name and its last two columns."""
+    if found.get("measured"):
+        return found["measured"]
+    header, _, row = (line[2:-2].split(" | ") for line in re.findall(r"^\|.*\|$", section("", found, ""), re.M)[:3])
+    return f"{row[0]}: " + ", ".join(f"{name} {cell}" for name, cell in list(zip(header, row))[1:][-2:])
+
+
 def summary(bench, found, figures, left_out, command, link):
-    """A row for each required figure, those too that have not been measured."""
-    rows = []
+    """A row for each required figure whose verdict still holds; below the names of the others."""
+    rows, others = [], []
     for name, f in found.items():
-        if not f:
-            rows.append([figures[name].__doc__.splitlines()[0].rstrip("."), f"`{command} --only {name}`", "", "**not measured**",
-                         left_out.get(name, "")])
+        judged, when = said(bench, name, f) if f else ("expired", "")
+        if judged.startswith("expired"):
+            others.append(f"{name} ({left_out[name]})" if name in left_out else name)
             continue
-        judged, when = said(bench, name, f)
-        rows.append([f"[{f['title']}]({link}/{name}.md)", f["asked"], f.get("measured", ""), judged,
+        rows.append([f"[{f['title']}]({link}/{name}.md)", f["asked"], measured(f), judged,
                      "; not again: ".join(filter(None, (when, left_out.get(name))))])
-    return "## Required figures\n\n" + table(["what", "asked", "measured", "verdict", "at commit"], rows) + "\n"
+    text = "## Required figures\n\n" + table(["what", "asked", "measured", "verdict", "at commit"], rows) + "\n"
+    return text + (f"No current figure: {', '.join(others)}. `{command} --only NAME` measures one.\n\n" if others else "")
 
 
 def write(bench, page, docs, peers, figures, command, left_out):
@@ -205,15 +203,14 @@ def write(bench, page, docs, peers, figures, command, left_out):
         if f:
             (results / f"{name}.md").write_text(section(name, f, command).rstrip("\n") + "\n")
     link = results.relative_to(page.parent) if results.is_relative_to(page.parent) else results
-    expired = sum(said(bench, name, f)[0].startswith("expired") for name, f in found.items() if f)
     text = f"""# Results
 
 Written by `{command}` (tests/bench/bench.py); every number comes out of it, `--only NAME` measures one part again. Details: {link}, a file for each part.
 
 CPU seconds are user and system time of all threads and processes. Normalised: x (bare walk measured in the same run, million photons
 per CPU second of one thread: tests/bench/bare_walk, Embree alone on S2) / 5; absolute limits are in these, comparisons are of one run. Rows called
-preset are the shipped ones, the same for every scene; a row with settings of its own says so. A verdict is the latest run's; it expires after {MOST_CHANGES} changes
-of the code that it judges ({expired} have).
+preset are the shipped ones, the same for every scene; a row with settings of its own says so. A verdict is the latest run's; after {MOST_CHANGES} changes
+of the code that it judges its row goes.
 
 """
     text += summary(bench, found, figures, left_out, command, link)

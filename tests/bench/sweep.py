@@ -71,8 +71,7 @@ PIXELS = ("--spp", 8, "--pixel-error", 0.005)    # of the curves that sweep one 
 
 
 def gathering_curves(bench):
-    """Final gathering and the irradiance cache: all parameters swept together, then each alone, the others as by default;
-    the error bound also without the neighbours' say in radii (--free-radii)."""
+    """Final gathering and the irradiance cache: all parameters swept together, then each alone, the others as by default."""
     def run(settings_of):
         return lambda name, x, seed: chain.frame(bench, name, seed, settings_of(x))
     short = bench.tiny
@@ -84,8 +83,6 @@ def gathering_curves(bench):
          run(lambda x: Settings(records=("--rays", x), pixels=PIXELS))),
         ("gathering, error bound", [0.5, 0.4] if short else [0.5, 0.35, 0.25, 0.18, 0.12, 0.08],
          run(lambda x: Settings(records=("--error-bound", x), pixels=PIXELS))),
-        ("gathering, free radii", [0.5, 0.4] if short else [0.5, 0.35, 0.25, 0.18, 0.12],
-         run(lambda x: Settings(records=("--free-radii", "--error-bound", x), pixels=PIXELS))),
     ]
 
 

@@ -28,7 +28,7 @@ irradcache-build points "$scene" --photons p.photons --point-count 100 -o p.irra
 irradcache-build records "$scene" --points p.irradpoints --size 8x6 --rays 4 -o c.irradcache -q || bad records
 expect 2 'a frame is OpenEXR; name it f.exr' $render -o made.png
 expect 2 '--integrator photons reads no cache' $render --integrator photons --photons p.photons --irradcache c.irradcache -o made.exr
-for option in '--rays 5' '--size 8x6' '--min-weight 0.5' --free-radii '--points p.irradpoints' '--keep-points made.k'; do
+for option in '--rays 5' '--size 8x6' '--min-weight 0.5' '--points p.irradpoints' '--keep-points made.k'; do
   expect 2 "${option% *}: points does not read it" irradcache-build points "$scene" --photons p.photons -o made.irradpoints $option
 done
 for option in '--photons p.photons' '--point-count 5' '--light-samples 1' '--keep-points made.k'; do

@@ -98,7 +98,7 @@ TEST(Radsamples, WorkedExampleReadsAsThePageSays) {
   EXPECT_NE(load(kPage).find("digest is " + digest_of(file)), std::string::npos) << digest_of(file);
 }
 
-// 8 bytes a sample, 4 its anchor, 200 a record, 12 a block's head: the size algorithms.md asks for, header + 8 N #E, and the rest as said.
+// 8 bytes a sample, 4 its anchor, 200 a record, 12 a block's head: the size to expect, header + 8 N #E, and the rest as said.
 TEST(Radsamples, ManyComeBackAndTakeTheRoomThePageSays) {
   Folder folder;
   const RadsamplesFile file = many(6000);   // 72000 samples: two blocks

@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 bad() { echo "FAILED: $*"; failed=1; }
 edit() { python3 -B tests/pipelines/edit_gltf.py "$@" || exit 1; }
 run() {
-  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0-3 SIZE=48x27 PHOTONS=10k POINTS='--point-count 1k' \
+  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0-3 INDIRECT=records SIZE=48x27 PHOTONS=10k POINTS='--point-count 1k' \
     CACHE='--rays 50 --error-bound 0.5' PIXELS='--spp 2 --pixel-error 0' CHANNELS=RGBA,layers "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 }
 planned() { python3 -B tests/pipelines/planned.py "$@"; }

@@ -14,7 +14,7 @@ make_runs() {
   what=$1 expected=$2; shift 2
   : > "$log"
   if ! make -f Makefile.example --no-print-directory $target BIN="$bin" RUN="sh $PWD/tests/pipelines/record.sh $log" \
-      OUT="$work/out" SCENE="$scene" FRAMES=0-3 TIME="--segment $segment" SIZE=32x18 PHOTONS=2k PATHS=2 \
+      OUT="$work/out" SCENE="$scene" FRAMES=0-3 TIME="--segment $segment" INDIRECT=records SIZE=32x18 PHOTONS=2k REFERENCE_SAMPLES=2 \
       POINTS='--point-count 1k' CACHE='--rays 20 --error-bound 1' PIXELS='--spp 1 --pixel-error 0' "$@" \
       > "$work/make.txt" 2>&1; then
     echo "FAILED: $what: make failed:"; cat "$work/make.txt"; exit 1
@@ -66,8 +66,8 @@ make_runs 'and all of them again' "$sheet"
 
 target=report
 make_runs 'a report: path tracing of two frames' "$(path 0000 0003) error-report:report"
-make_runs 'options of the reference: nothing else' "$(path 0000 0003) error-report:report" PATHS=4
-make_runs 'one frame more: that frame' "$(path 0001) error-report:report" PATHS=4 REPORT_FRAMES='0000 0001 0003'
+make_runs 'options of the reference: nothing else' "$(path 0000 0003) error-report:report" REFERENCE_SAMPLES=4
+make_runs 'one frame more: that frame' "$(path 0001) error-report:report" REFERENCE_SAMPLES=4 REPORT_FRAMES='0000 0001 0003'
 target=demo
 
 rm -r "$work/out"

@@ -9,6 +9,7 @@ for scene in pipelines/scenes/*.gl*; do
   else echo "FAILED: $scene: $(cat "$work/stderr")"; failed=1; fi
 done
 python3 pipelines/scenes/make_cornell_classic.py | cmp - pipelines/scenes/cornell_classic.gltf || failed=1
+python3 -B pipelines/scenes/make_evening.py | cmp - pipelines/scenes/evening.glb || failed=1
 
 # The lamp sends pi * radiance * area = pi * (17, 12, 4) * 0.130 * 0.105 W: 0.72901, 0.51460, 0.17153.
 "$bin/photon-trace" pipelines/scenes/cornell_classic.gltf --photons 10k -o "$work/p.photons" &&

@@ -19,7 +19,7 @@ sys.stdout.buffer.write(b"".join(struct.pack("<f", ball(x, y, z)) for x in range
     "$make_vdb" "$work/smoke_000$1.vdb" 16 16 16 .06 -.45 .5 -.45 || exit 3
 }
 run() {
-  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE=pipelines/scenes/S1_cornell.glb FRAMES=0-7 TIME='--segment 4' SIZE=32x18 PHOTONS=20k \
+  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE=pipelines/scenes/S1_cornell.glb FRAMES=0-7 TIME='--segment 4' INDIRECT=records SIZE=32x18 PHOTONS=20k \
     VOLUME="$work/smoke_####.vdb" VOLUME_OPTIONS='--sigma-t 6 --albedo .8' UPDATE=20% POINTS='--point-count 1k' CACHE='--rays 20 --error-bound 1' \
     PIXELS='--spp 1 --pixel-error 0' "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 }

@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 bad() { echo "FAILED: $*"; failed=1; }
 planned() { python3 -B tests/pipelines/planned.py "$@"; }
 run() {
-  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0 SIZE=48x27 PHOTONS=40k POINTS='--point-count 10k' \
+  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0 INDIRECT=records SIZE=48x27 PHOTONS=40k POINTS='--point-count 10k' \
     CACHE='--rays 100 --error-bound 0.5' PIXELS='--spp 4 --pixel-error 0' CHANNELS=RGBA,layers "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 }
 python3 -B tests/bench/spot_room.py "$work/spot.glb" || bad 'no scene'

@@ -10,7 +10,7 @@ bad() { echo "FAILED: $*"; failed=1; }
 edit() { python3 -B tests/pipelines/edit_gltf.py "$@" || exit 1; }
 planned() { python3 -B tests/pipelines/planned.py "$@"; }
 make_it() {
-  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0-7 TIME='--segment 4' SIZE=48x27 PHOTONS=10k POINTS='--point-count 1k' \
+  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" FRAMES=0-7 TIME='--segment 4' INDIRECT=records SIZE=48x27 PHOTONS=10k POINTS='--point-count 1k' \
     CACHE='--rays 50 --error-bound 0.5' PIXELS='--spp 2 --pixel-error 0' CHANNELS=RGBA,layers "$@"
 }
 run() { make_it "$@" > "$work/log" 2>&1 || { cat "$work/log"; exit 1; }; }
@@ -46,7 +46,7 @@ run SCENE="$work/scene.glb" MOVING=time OUT="$work/killed"
 digests "$work/killed" | diff "$work/expected" - || bad 'killed and typed again: other frames'
 
 # What each frame cost, and keys with what lies between them: make finds its way along a segment from any of its frames.
-run report SCENE="$work/scene.glb" MOVING=time OUT="$work/time" PATHS=2
+run report SCENE="$work/scene.glb" MOVING=time OUT="$work/time" REFERENCE_SAMPLES=2
 [ "$(grep -cE '^\| [0-7] \| [0-9]+ \| [0-9]+ \| [0-9]+ \| [0-9]+ \| (first|[0-9.]+ %) \| [0-9.]+ \| [0-9.]+ \|$' "$work/log")" = 8 ] || bad "report: $(tail -12 "$work/log")"
 run SCENE="$work/scene.glb" MOVING=time OUT="$work/walk" METHOD=walkthrough
 

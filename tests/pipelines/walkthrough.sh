@@ -8,7 +8,7 @@ trap 'rm -rf "$work"' EXIT
 bad() { echo "FAILED: $*"; failed=1; }
 python3 -B pipelines/scenes/make_walkthrough.py pan pipelines/scenes/S3_indirect_room.glb "$work/pan.glb" || exit 1
 run() {
-  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
+  make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 INDIRECT=records SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
     CACHE='--rays 20 --error-bound 1' PIXELS='--spp 2 --pixel-error 0' KEY_DISTANCE=4 "$@" > "$work/log" 2>&1
 }
 digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
@@ -16,7 +16,7 @@ digests() { "$bin/tempolux-info" --digest "$1"/frames/*.exr | sed "s|$1/||"; }
 run METHOD=walkthrough OUT="$work/a" || { cat "$work/log"; exit 1; }
 digests "$work/a" > "$work/expected"
 [ "$(wc -l < "$work/expected")" = 7 ] || bad "7 frames, not $(wc -l < "$work/expected")"
-[ "$(tail -n +1 "$work/a/walk.log" | grep -cE '^[0-9]{4} [0-9]{4}  middle [0-9]{4}  difference [^ ]+  traced .*  (warp|split)$')" = "$(wc -l < "$work/a/walk.log")" ] ||
+[ "$(tail -n +1 "$work/a/walk.log" | grep -cE '^[0-9]{4} [0-9]{4}  middle [0-9]{4}  seen [^ ]+  traced .*  (warp|split)$')" = "$(wc -l < "$work/a/walk.log")" ] ||
   bad "log: $(cat "$work/a/walk.log")"
 marked=$(cd "$work/a" && sh "$OLDPWD/pipelines/walkthrough.sh" marks)
 for key in 0000 0004; do case ",${marked#--mark }," in *",frames/$key.exr,"*) ;; *) bad "key $key is not marked in the sheet: $marked";; esac; done
@@ -29,6 +29,16 @@ for key in 0000 0004; do
   [ "$("$bin/tempolux-info" --digest "$work/a/frames/$key.exr" | cut -d' ' -f1)" = "$("$bin/tempolux-info" --digest "$work/f/frames/$key.exr" | cut -d' ' -f1)" ] ||
     bad "key $key is not the frame rendered"
 done
+
+# Filtered: a key is the frame filtered alone, what is warped from keys is there.
+run METHOD=walkthrough FILTER=1 OUT="$work/s" || { cat "$work/log"; exit 1; }
+run METHOD=frames FILTER=1 FRAMES=0,4 OUT="$work/sf" CHANNELS=RGBA,Z,N,id,layers || { cat "$work/log"; exit 1; }
+for key in 0000 0004; do
+  [ "$("$bin/tempolux-info" --digest "$work/s/frames/$key.exr" | cut -d' ' -f1)" = "$("$bin/tempolux-info" --digest "$work/sf/frames/$key.exr" | cut -d' ' -f1)" ] ||
+    bad "filtered key $key is not the frame filtered"
+done
+[ "$(find "$work/s/frames" -name '*.exr' | wc -l)" = 7 ] || bad 'filtered walkthrough: not 7 frames'
+find "$work/s" -name '*.part*' | grep . && bad 'filtered walkthrough: left-overs'
 
 # One frame alone is that of the range. Left out: where the camera stands METHOD=auto takes no keys, and where nothing mirrors no pixel is masked for it.
 run METHOD=walkthrough OUT="$work/one" FRAMES=3 || { cat "$work/log"; exit 1; }
@@ -55,7 +65,7 @@ done
 
 # Killed after a while, ever longer, with all it has started.
 for moment in $(seq 1 "$moments"); do
-  setsid make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
+  setsid make V=1 -f Makefile.example --no-print-directory demo BIN="$bin" SCENE="$work/pan.glb" FRAMES=0-6 INDIRECT=records SIZE=48x27 PHOTONS=5k POINTS='--point-count 1k' \
     CACHE='--rays 20 --error-bound 1' PIXELS='--spp 2 --pixel-error 0' KEY_DISTANCE=4 METHOD=walkthrough OUT="$work/k" > "$work/log" 2>&1 &
   group=$!
   sleep "$(awk "BEGIN { print 0.3 + 3 * ($moment - 1) / $moments }")"

@@ -1,4 +1,4 @@
-"""Media: closed forms of algorithms.md 7.9, by paths and by photons; voxels that lie in the world or in index space in unusual ways.
+"""Media: closed forms (docs/methods/formulas.md), by paths and by photons; voxels that lie in the world or in index space in unusual ways.
 
 The smoke is a cube of density 1, 16 voxels of .05 m: its integral along a line across its middle is .8 m (family_media.py).
 """

@@ -52,7 +52,7 @@ struct Chain {
   template <class At>
   void place(int width, int height, float footprint, const At& at) {
     GatherCounts counts;
-    const PixelViews views = pixel_by_pixel([&](float x, float y, const PathRandom*) -> std::optional<SeenPoint> {
+    const PixelView views = pixel_by_pixel([&](float x, float y, const PathRandom*) -> std::optional<SeenPoint> {
       const std::optional<std::pair<SurfacePoint, Vec3>> seen = at(std::uint32_t(y) * std::uint32_t(width) + std::uint32_t(x));
       if (!seen) return std::nullopt;
       return SeenPoint{seen->first, seen->second, footprint, false};

@@ -48,18 +48,21 @@ inline void moves(Image& image, float u, float v) {
   plane(image, "backward.v", everywhere(-v));
 }
 
+/// Half the difference of the halves of a layer; where the frame says so its noise is known.
+inline void tell_noise(Image& image, const std::string& layer, const OfPixel& noise) { grey(image, layer + ".noise", noise); }
+
 /// The frame in the middle, filtered; flow is that of the frames themselves.
-inline Image filtered(const std::vector<Image>& frames, FilterOptions options = {}) {
-  std::vector<LightFrame> light;
+inline Image filtered(const std::vector<Image>& frames, const FilterOptions& options = {}) {
+  std::vector<WindowLight> light;
   std::vector<FlowFrame> flow(frames.size());
-  std::vector<WindowFrame> window;
-  for (const Image& frame : frames) light.emplace_back(frame);
-  for (std::size_t i = 0; i < frames.size(); ++i) {
+  for (const Image& frame : frames) light.emplace_back(frame, frames.size() == 1);
+  for (std::size_t i = 0; i < frames.size(); ++i)
     if (frames[i].find("forward.u")) flow[i] = FlowFrame(frames[i], frames[i].width, frames[i].height, "flow");
-    window.push_back({&light[i], &flow[i]});
-  }
   const std::size_t middle = (frames.size() - 1) / 2;
-  return filter_frame(frames[middle], window, middle, options);
+  FrameFilter filter(light[middle], flow[middle], middle, frames.size() - 1 - middle, options);
+  for (std::size_t i = middle; i > 0; --i) filter.add(light[i - 1], flow[i - 1]);
+  for (std::size_t i = middle + 1; i < frames.size(); ++i) filter.add(light[i], flow[i]);
+  return filter.finish(frames[middle]);
 }
 
 inline float at(const Image& image, const std::string& channel, int x, int y) {

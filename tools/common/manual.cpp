@@ -101,6 +101,45 @@ std::string see_also(const char* tools) {
   return out + "\n";
 }
 
+/// Text as Markdown prints it unchanged; names of pages of this tree become links, from docs/tools.
+std::string markdown(const std::string& text) {
+  std::string out, word;
+  const auto end_word = [&] {
+    const std::size_t last = word.find_last_not_of(".,;:)");
+    const std::string page = word.substr(0, last + 1);
+    const std::size_t first = page.find_first_not_of('(');
+    const std::string name = first == std::string::npos ? page : page.substr(first);
+    const bool ours = name.starts_with("docs/") || name.starts_with("formats/") || name.starts_with("pipelines/");
+    if (ours && name.ends_with(".md")) out += page.substr(0, first) + "[" + name + "](../../" + name + ")" + word.substr(last + 1);
+    else out += word;
+    word.clear();
+  };
+  for (const char c : text) {
+    if (c == ' ' || c == '\n') {
+      end_word();
+      out += c;
+    } else if (c == '|' || c == '*' || c == '_' || c == '<' || c == '#') {
+      word += std::string(c == '_' ? "" : "\\") + c;
+    } else {
+      word += c;
+    }
+  }
+  end_word();
+  return out;
+}
+
+std::string markdown_entry(const CLI::Option& option) {
+  std::string head;
+  for (const std::string& name : names_of(option)) head += (head.empty() ? "`" : ", `") + name + "`";
+  if (head.empty()) head = "`" + option.get_single_name() + "`";
+  else if (takes_value(option)) head += " " + value_name(option);
+  std::string text = markdown(option.get_description());
+  if (const std::string limits = limits_of(option); !limits.empty()) text += " (" + markdown(limits) + ")";
+  if (option.get_required()) text += " (required)";
+  const std::string preset = option.get_default_str();
+  return "| " + head + " | " + text + " | " + (preset.empty() ? "" : "`" + preset + "`") + " |\n";
+}
+
 /// The words of "UNITS:{raw,spec}".
 std::string words_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
@@ -132,6 +171,32 @@ std::string man_page(const CLI::App& app) {
   if (*text.files) page += ".SH FILES\n" + files(text.files);
   if (*text.examples) page += ".SH EXAMPLES\n" + examples(text.examples);
   if (*text.see_also) page += ".SH SEE ALSO\n" + see_also(text.see_also);
+  return page;
+}
+
+std::string markdown_page(const CLI::App& app) {
+  const std::string name = app.get_name();
+  const ManualText text = manual_text(name);
+  std::string page = "# " + name + "\n\n" + markdown(app.get_description()) + "\n\n    " + name + " [OPTIONS]" + positional_words(app) + "\n\n" +
+                     markdown(text.description) + "\n\n";
+  if (*text.examples) {
+    page += "## Examples\n";
+    for (const std::string& line : lines_of(text.examples))
+      page += line.starts_with("# ") ? "\n" + markdown(line.substr(2)) + "\n" : "\n    " + line + "\n";
+  }
+  page += "\n## Options\n\nCounts take k, M and G (powers of 1000), sizes KiB, MiB and GiB.\n\n| option | what it does | default |\n|---|---|---|\n";
+  for (const bool positional : {true, false})
+    for (const CLI::Option* option : options_of(app, positional)) page += markdown_entry(*option);
+  if (*text.files) {
+    page += "\n## Files\n\n";
+    for (const std::string& line : lines_of(text.files)) page += "- " + markdown(line) + "\n";
+  }
+  if (*text.see_also) {
+    page += "\nSee also:";
+    std::istringstream words(text.see_also);
+    for (std::string word; words >> word;) page += " [" + word + "](" + word + ".md)";
+    page += ". Exit codes: [tools/README.md](../../tools/README.md). This page is printed by `" + name + " --help-markdown`.\n";
+  }
   return page;
 }
 

@@ -25,6 +25,9 @@ ManualText manual_text(const std::string& tool);
 /// FILES, EXAMPLES, SEE ALSO.
 std::string man_page(const CLI::App& app);
 
+/// The same as a page of docs/tools, in Markdown.
+std::string markdown_page(const CLI::App& app);
+
 /// A script for share/bash-completion/completions: options, and the words of those that have a list of words;
 /// everything else is completed as a file name.
 std::string bash_completion(const CLI::App& app);

@@ -131,22 +131,21 @@ constexpr ManualText kTexts[] = {
      "ibr-warp left.exr --view right.exr -o warped.exr --mask why.exr",
      "frame-render aqm-compare tempolux-info"},
     {"st-filter",
-     "Takes noise out of a frame of few samples: light is collected from the frames before and after along the pixel flow and a plane is fitted "
-     "to it around each pixel. A pixel counts if it sees the same surface (id.object, Z, N) and differs by no more than both "
-     "pixels' noise explains. Noise is told by the channels variance or diffuse.variance, or by neighbours where samples is below "
-     "2. Where albedo is there light alone is filtered, not textures. Emission and specular pass: frame-render --for-filter gives pixels that show "
-     "mirrors and glass more samples. With coverage edges are put "
-     "together from the surfaces that a pixel sees, else they stay as they are.\n"
+     "Takes noise out of a frame of few samples: planes are fitted to the light around each pixel, in its own frame and in frames before and after "
+     "along the pixel flow. A pixel counts if it sees the same surface (id.object, Z, N); in large windows it counts as far as its value agrees. Two halves of the "
+     "light, LAYER plus and less LAYER.noise (frame-render --channels halves), say what each candidate errs by; where the samples err less they stay. Where albedo is "
+     "there light alone is filtered, not textures. Emission and specular are filtered by what mirrors and glass show (channels seen). With coverage edges are put "
+     "together from the surfaces that a pixel sees.\n"
      "\n"
-     "Frames of other programs, which know neither variance nor samples, are filtered as far as a viewer cannot see it.\n"
+     "Frames of other programs get halves from their variance, or from what neighbours differ by where they have albedo; without either they stay as they are.\n"
      "\n"
      "st-filter mesh SCENE --photons FILE -o FILE makes light textures instead: photons are counted by small triangles of the surfaces and smoothed "
      "along them; frame-render --meshirrad reads them (docs/methods/light_textures.md). Its options: st-filter mesh --help.",
      "frame .exr: read and written (formats/frames/frames.md)\n"
      "flow .exr: where pixels go and came from (formats/flow/flow.md)\n"
      ".meshirrad: written by st-filter mesh (formats/meshirrad/meshirrad.md)",
-     "frame-render room.glb --frames 0-47 --spp 2 --for-filter --pixel-error 0.016 --seed-mode frame --irradcache c.####.irradcache "
-     "--channels RGBA,layers,Z,N,id,albedo,motion,coverage,samples -o f.####.exr\n"
+     "frame-render room.glb --frames 0-47 --spp 4 --pixel-error 0.016 --seed-mode frame --irradcache c.####.irradcache "
+     "--channels RGBA,layers,Z,N,id,albedo,motion,coverage,halves,seen -o f.####.exr\n"
      "st-filter f.####.exr --frames 0-47 -o filtered.####.exr\n"
      "# One frame, by its five files.\n"
      "st-filter f.0008.exr f.0009.exr f.0010.exr f.0011.exr f.0012.exr -o filtered.0010.exr\n"

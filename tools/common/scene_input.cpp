@@ -118,13 +118,6 @@ formats::Identity identity_of(const SceneFrame& frame) {
   return {h.static_geometry, h.moving_geometry, h.materials, h.lights, h.media, frame.frame, frame.frame};
 }
 
-std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin) {
-  std::vector<AimSphere> spheres;
-  for (const formats::ViewSphere& sphere : view)
-    spheres.push_back({Vec3d{sphere.centre[0], sphere.centre[1], sphere.centre[2]} - origin, sphere.radius, sphere.weight});
-  return spheres;
-}
-
 void check_identity(Tool& tool, const std::string& file, const formats::Identity& file_identity,
                     const SceneFrame& frame) {
   if (!file_identity.known()) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "formats/identity.h"
-#include "formats/plan/view.h"
 #include "lib/light/lights.h"
 #include "lib/scene/at_frame.h"
 #include "tools/common/tool_main.h"
@@ -56,9 +55,6 @@ class SceneInput {
   std::optional<EmissionTable> emission_;
   bool warned_range_ = false;
 };
-
-/// What cameras see (Importance) in scene space; `origin`: that of the frame.
-std::vector<AimSphere> spheres_in_scene(const std::vector<formats::ViewSphere>& view, Vec3d origin);
 
 /// Which state of the scene a file made at this frame belongs to.
 formats::Identity identity_of(const SceneFrame& frame);

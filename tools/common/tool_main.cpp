@@ -177,6 +177,7 @@ void Tool::State::parse() {
 bool Tool::State::print_manual() const {
   const std::string wish = argc == 2 ? argv[1] : "";
   if (wish == "--help-man") std::cout << man_page(app);
+  else if (wish == "--help-markdown") std::cout << markdown_page(app);
   else if (wish == "--help-completion") std::cout << bash_completion(app);
   else return false;
   return true;

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "lib/aqm/animation_quality.h"
 #include "lib/aqm/cortex_channels.h"
 #include "tests/lib/aqm/synthetic.h"
 
@@ -45,6 +46,26 @@ double threshold_times_sensitivity(double frequency, double degrees, double spee
   const double sensitivity = contrast_sensitivity(frequency * kPixelsPerDegree, std::max(speed, kDriftSpeed));
   const double p = seen(grating(frequency, degrees, 1 / sensitivity), speed);
   return kHalfSeen / std::pow(-std::log1p(-p), 1 / kPsychometricSlope);
+}
+
+// Two estimates that err alike, each by d / sqrt(2) of their difference d: m + a and m - a are judged as m + a / sqrt(2) beside m - a / sqrt(2).
+// Grey is below the display's white, so that nothing is clipped; mixtures round in float32.
+TEST(VisibleDifferenceTest, OfTwoEstimatesIsJudgedWhatEitherErrsBy) {
+  const auto image = [](double amplitude) {
+    return synthetic::rgb_image(96, 96, [=](std::size_t i, std::uint32_t) { return 0.4 + amplitude * std::sin(0.6 * double(i % 96)); });
+  };
+  const auto seen = [&](double first, double second, bool either) {
+    const Image a = image(first), b = image(second);
+    VisionOptions options{display_named("office")};
+    options.of_either = either;
+    return judge_frame(synthetic::compare(a, b), nullptr, options, "a").probability[48 * 96 + 48];
+  };
+  const double amplitude = 0.0015;
+  const float expected = seen(amplitude / std::numbers::sqrt2, -amplitude / std::numbers::sqrt2, false);
+  ASSERT_GT(expected, 0.05f);
+  ASSERT_LT(expected, 0.9f);
+  EXPECT_NEAR(seen(amplitude, -amplitude, true), expected, 1e-3);
+  EXPECT_GT(seen(amplitude, -amplitude, false), expected);
 }
 
 // Required: contrast 1/S is seen with probability 1/2 to within 15 % of contrast, at the crests, at band

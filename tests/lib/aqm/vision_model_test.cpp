@@ -45,6 +45,17 @@ TEST(VisionModelTest, ContrastSensitivityPeaksAndEndsWhereTheTableSays) {
   }
 }
 
+// algorithms.md 1.5: at 100 cd/m2, one square degree, half a metre S(4) = 163.58, and the peak is 171.8 at 4.70 cpd.
+TEST(VisionModelTest, StaticSensitivityIsTheTable) {
+  const auto at = [](double frequency) { return static_contrast_sensitivity(frequency, 100, 1, 0.5); };
+  EXPECT_NEAR(at(4), 163.58, 1e-3 * 163.58);
+  EXPECT_NEAR(at(4.705), 171.83, 1e-3 * 171.83);
+  for (const double other : {0.5, 2.0, 4.0, 5.5, 12.0}) EXPECT_LT(at(other), at(4.705));
+  EXPECT_EQ(at(0), 0);
+  // What a larger picture holds more periods of is seen better.
+  EXPECT_GT(static_contrast_sensitivity(0.5, 100, 40, 0.6), 2 * static_contrast_sensitivity(0.5, 100, 1, 0.6));
+}
+
 TEST(VisionModelTest, EyesFollowWithAGainAndALimit) {
   const double table[][2] = {{0, -0.15}, {1, 0.03}, {5, 0.75}, {10, 1.65}, {20, 3.45}, {50, 8.85}, {100, 20}};
   for (const auto& [speed, retinal] : table) EXPECT_NEAR(tracked_retinal_speed(speed), retinal, 1e-12);

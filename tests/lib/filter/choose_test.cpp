@@ -28,7 +28,8 @@ Colours noise(unsigned seed, float sigma) {
   return colours;
 }
 
-const std::vector<std::uint8_t> kInside(kCount, 1);
+const Neighbourhood kInside(std::vector<std::uint8_t>(kCount, 1), kSide, kSide);
+constexpr float kDark = 0.02f;
 
 double mean(const std::vector<float>& values) {
   double sum = 0;
@@ -44,17 +45,17 @@ double squared_error(const std::vector<float>& values, double truth) {
 
 TEST(Choose, WhereHalvesAgreeThePictureStays) {
   const Colours light = noise(1, 0.25f);
-  const Colours out = choose({light, light}, {{constant(1), constant(1)}}, kInside, kSide, kSide);
+  const Colours out = choose({light, light}, {{constant(1), constant(1)}}, kInside, kDark);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(out[c], light[c]);
 }
 
-/// V = sigma^2 / 2 is the variance of M. A candidate without noise that is off by b has the best share V / (V + b^2), so the mean of the result is
-/// off by b V / (V + b^2) and its squared error is V b^2 / (V + b^2), for b^2 = V half of either. V and (F - M)^2 are known by about 60 pixels
-/// each, to sqrt(2 / 60) = 18 %: the share is off by 9 % of 1 at random, which adds (.09)^2 (V + b^2) = .016 V to the squared error, and by a few percent of
-/// itself in the mean, as the inverse of a noisy mean is too large.
+/// V = sigma^2 / 2 is the variance of M. A candidate without noise that is off by b has the best share V / (V + b^2), so the mean of the
+/// result is off by b V / (V + b^2) and its squared error is V b^2 / (V + b^2), for b^2 = V half of either. V and (F - M)^2 are known by
+/// about 60 pixels each, to sqrt(2 / 60) = 18 %: the share is off by 9 % of 1 at random, which adds (.09)^2 (V + b^2) = .016 V to the
+/// squared error, and by a few percent of itself in the mean, as the inverse of a noisy mean is too large.
 TEST(Choose, ABiasedCandidateGetsTheShareThatItsErrorAllows) {
   const float sigma = 0.1f, variance = sigma * sigma / 2, b = std::sqrt(variance);
-  const Colours out = choose({noise(2, sigma), noise(3, sigma)}, {{constant(1 + b), constant(1 + b)}}, kInside, kSide, kSide);
+  const Colours out = choose({noise(2, sigma), noise(3, sigma)}, {{constant(1 + b), constant(1 + b)}}, kInside, kDark);
   EXPECT_NEAR(mean(out[1]) - 1, double(b) / 2, 0.06 * double(b));
   EXPECT_NEAR(squared_error(out[1], 1), double(variance) / 2, 0.08 * double(variance));
 }
@@ -62,20 +63,22 @@ TEST(Choose, ABiasedCandidateGetsTheShareThatItsErrorAllows) {
 /// Off by 10 standard deviations of M: the share is 1 / 101.
 TEST(Choose, AWrongCandidateLeavesTheRawPicture) {
   const float sigma = 0.05f, b = 10 * sigma / std::sqrt(2.0f);
-  const Colours out = choose({noise(4, sigma), noise(5, sigma)}, {{constant(1 + b), constant(1 + b)}}, kInside, kSide, kSide);
+  const Colours out = choose({noise(4, sigma), noise(5, sigma)}, {{constant(1 + b), constant(1 + b)}}, kInside, kDark);
   EXPECT_LT(squared_error(out[0], 1), 1.03 * double(sigma) * double(sigma) / 2);
 }
 
-/// The right one of two leaves next to nothing of the noise, in whatever order they come. Its own estimate of V is off by 18 %, which w is cut to 1 above.
+/// The right one of two leaves next to nothing of the noise, in whatever order they come. Its own estimate of V is off by 18 %, which w is
+/// cut to 1 above.
 TEST(Choose, TheBetterCandidateIsTaken) {
   const float sigma = 0.1f;
   const Halves right{constant(1), constant(1)}, wrong{constant(1.5f), constant(1.5f)}, raw{noise(6, sigma), noise(7, sigma)};
   for (const auto& candidates : {std::vector{right, wrong}, std::vector{wrong, right}})
-    EXPECT_LT(squared_error(choose(raw, candidates, kInside, kSide, kSide)[2], 1), 0.06 * double(sigma) * double(sigma) / 2);
+    EXPECT_LT(squared_error(choose(raw, candidates, kInside, kDark)[2], 1), 0.06 * double(sigma) * double(sigma) / 2);
 }
 
-/// f = (A + c) / 2 and g = (B + c) / 2 with c = 1 + b keep half of the raw noise: the covariance of F and M is V / 2, the mean of (F - M)^2 is (b^2 + V) / 4. With
-/// b^2 = 3 V the share is (V - V / 2) / V = 1 / 2, and the mean is off by b / 4. Without the covariance the share would be 1. Tolerance: as above.
+/// f = (A + c) / 2 and g = (B + c) / 2 with c = 1 + b keep half of the raw noise: the covariance of F and M is V / 2, the mean of (F - M)^2
+/// is (b^2 + V) / 4. With b^2 = 3 V the share is (V - V / 2) / V = 1 / 2, and the mean is off by b / 4. Without the covariance the share
+/// would be 1. Tolerance: as above.
 TEST(Choose, NoiseThatACandidateKeepsCountsAgainstIt) {
   const float sigma = 0.1f, b = sigma * std::sqrt(1.5f);
   const Halves raw{noise(8, sigma), noise(9, sigma)};
@@ -83,13 +86,13 @@ TEST(Choose, NoiseThatACandidateKeepsCountsAgainstIt) {
   for (Colours* half : {&candidate.a, &candidate.b})
     for (auto& plane : *half)
       for (float& v : plane) v = (v + 1 + b) / 2;
-  const Colours out = choose(raw, {candidate}, kInside, kSide, kSide);
+  const Colours out = choose(raw, {candidate}, kInside, kDark);
   EXPECT_NEAR(mean(out[0]) - 1, double(b) / 4, 0.05 * double(b));
 }
 
 TEST(Choose, ACandidateThatFiltersNothingChangesNothing) {
   const Halves raw{noise(8, 0.2f), noise(9, 0.2f)};
-  const Colours out = choose(raw, {raw}, kInside, kSide, kSide);
+  const Colours out = choose(raw, {raw}, kInside, kDark);
   for (std::size_t p = 0; p < kCount; ++p) EXPECT_FLOAT_EQ(out[0][p], (raw.a[0][p] + raw.b[0][p]) / 2);
 }
 
@@ -99,7 +102,7 @@ TEST(Choose, WhatIsNoNumberIsFilledAndDecidesNothing) {
   raw.a[0][100] = std::numeric_limits<float>::quiet_NaN();
   raw.b[1][5000] = std::numeric_limits<float>::infinity();
   raw.a[2][7000] = 1e30f;
-  const Colours out = choose(raw, {candidate}, kInside, kSide, kSide);
+  const Colours out = choose(raw, {candidate}, kInside, kDark);
   for (const auto& plane : out)
     for (std::size_t p = 0; p < kCount; ++p)
       if (p != 7000) {

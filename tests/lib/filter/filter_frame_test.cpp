@@ -19,62 +19,28 @@ using test::grey;
 using test::moves;
 using test::Noise;
 using test::plane;
+using test::tell_noise;
 using test::tell_variance;
 using test::wall;
 
 TEST(Filter, AConstantPictureStays) {
-  for (const bool told : {false, true}) {
-    Image frame = wall(40, 24);
-    grey(frame, "", everywhere(0.7f));
-    moves(frame, 30, 0);
-    if (told) tell_variance(frame, 0.01f);
-    const Image out = filtered(std::vector<Image>(5, frame));
-    for (const char* c : {"R", "G", "B"})
-      for (const float v : out.find(c)->values) EXPECT_NEAR(v, 0.7f, 0.7e-6f);
-  }
+  Image frame = wall(40, 24);
+  grey(frame, "direct", everywhere(0.7f));
+  tell_noise(frame, "direct", everywhere(0));
+  moves(frame, 30, 0);
+  const Image out = filtered(std::vector<Image>(5, frame));
+  for (const char* c : {"direct.R", "direct.G", "direct.B"})
+    for (const float v : out.find(c)->values) EXPECT_EQ(v, 0.7f);
 }
 
-/// With plain weights the filter is linear and the same everywhere inside: the answers to one bright pixel in each frame are its weights, their
-/// sum is 1, and white noise comes out with the sum of their squares for a variance. 17 000 pixels, each like about 10 around: the variance of
-/// that many is known to sqrt(2 x 10 / 17000) = 3.4 %; 4 sigma.
-TEST(Filter, WhiteNoiseComesOutWithTheSumOfSquaredWeights) {
-  constexpr int kWidth = 400, kHeight = 96, kStep = 40;   // 40 pixels a frame at 24 frames and 30 pixels per degree: 32 deg/s
-  const auto frame_of = [&](const test::OfPixel& value) {
-    Image frame = wall(kWidth, kHeight);
-    grey(frame, "", value);
-    moves(frame, kStep, 0);
-    return frame;
-  };
-  double sum = 0, squares = 0;
-  for (int f = 0; f < 5; ++f) {
-    std::vector<Image> frames(5, frame_of(everywhere(0)));
-    const int x0 = kWidth / 2 + (f - 2) * kStep;
-    frames[std::size_t(f)] = frame_of([&](int x, int y) { return x == x0 && y == kHeight / 2 ? 1.0f : 0.0f; });
-    const Image answer = filtered(frames);
-    for (const float w : answer.find("G")->values) {
-      sum += double(w);
-      squares += double(w) * double(w);
-    }
-  }
-  EXPECT_NEAR(sum, 1, 1e-5);
-  EXPECT_LT(squares, 0.1);
-  Noise noise(1);
-  std::vector<Image> frames;
-  for (int f = 0; f < 5; ++f) frames.push_back(frame_of([&](int, int) { return noise(); }));
-  const Image out = filtered(frames);
-  double variance = 0;
-  int count = 0;
-  for (int y = 8; y < kHeight - 8; ++y)
-    for (int x = 2 * kStep + 8; x < kWidth - 2 * kStep - 8; ++x, ++count) variance += std::pow(double(at(out, "G", x, y)), 2);
-  EXPECT_NEAR(variance / count / squares, 1, 0.14);
-}
-
-/// Two sides, told apart by object, by depth or by normal, whose values differ by less than their noise: no light of one in the other.
+/// Two sides, told apart by object, by depth or by normal, whose values differ by less than their noise: no light of one in the other. One
+/// pixel of the 225 of a window would be .1 / 225. Made-up halves of noise .1 give weights that differ by about 4 %: of the noise of a mean
+/// of 225 that leaves 3e-4.
 TEST(Filter, NothingCrossesAnEdge) {
   for (const std::string by : {"object", "depth", "normal"}) {
     Image frame = wall(40, 24);
     grey(frame, "", [](int x, int) { return x < 20 ? 1.0f : 1.1f; });
-    tell_variance(frame, 1);
+    tell_variance(frame, 0.01f);
     for (int y = 0; y < 24; ++y)
       for (int x = 20; x < 40; ++x) {
         const auto p = std::size_t(y * 40 + x);
@@ -84,24 +50,25 @@ TEST(Filter, NothingCrossesAnEdge) {
       }
     const Image out = filtered(std::vector<Image>(5, frame));
     for (int y = 0; y < 24; ++y)
-      for (int x = 0; x < 40; ++x) EXPECT_NEAR(at(out, "G", x, y), x < 20 ? 1.0f : 1.1f, 2e-6f) << by << " " << x;
+      for (int x = 0; x < 40; ++x) EXPECT_NEAR(at(out, "G", x, y), x < 20 ? 1.0f : 1.1f, 2e-3f) << by << " " << x;
   }
 }
 
-/// Light that changes evenly is a plane everywhere, also where the window is cut at the picture's border (a mean would be off by 3 steps there).
+/// Light that changes evenly is a plane everywhere, also where the window is cut at the picture's border (a mean of 15 pixels would be off
+/// by .05 to .1 there). The pull on slopes takes .02 / .27 of them at a border: .011 of the widest window.
 TEST(Filter, ARampStaysUpToItsBorder) {
   Image frame = wall(40, 24);
   const auto ramp = [](int x, int y) { return 1 + 0.01f * float(x) - 0.02f * float(y); };
   grey(frame, "", ramp);
-  tell_variance(frame, 1);
+  tell_variance(frame, 4e-4f);
   const Image out = filtered({frame});
   for (int y = 0; y < 24; ++y)
-    for (int x = 0; x < 40; ++x) EXPECT_NEAR(at(out, "G", x, y), ramp(x, y), 0.01f) << x << " " << y;
+    for (int x = 0; x < 40; ++x) EXPECT_NEAR(at(out, "G", x, y), ramp(x, y), 0.015f) << x << " " << y;
 }
 
-/// A step of light, 1 to 2, that moves by four pixels a frame over a wall that stands. Noise of .1: every column's mean error over 60 lines is within
-/// 4 sigma of the noise that was there, .1 / sqrt(60). (Without comparing values the columns it passes in five frames are off by .2 to .8.)
-/// Without noise, and told so, the picture stays.
+/// A step of light, 1 to 2, that moves by four pixels a frame over a wall that stands. Noise of .1: every column's mean error over 60 lines
+/// is within 4 sigma of the noise that was there, .1 / sqrt(60). (Without comparing values the columns it passes in five frames are off by
+/// .2 to .8.) Without noise, and told so, the picture stays.
 TEST(Filter, AMovingStepOfLightLeavesNoTrail) {
   for (const float deviation : {0.0f, 0.1f}) {
     Noise noise(1);
@@ -143,13 +110,15 @@ TEST(Filter, TheFlowIsFollowedTheRightWay) {
       frames.push_back(frame);
     }
     FilterOptions options;
-    options.radius = 0;
+    options.scales = 0;
     const Image out = filtered(frames, options);
     double square = 0;
     for (int y = 10; y < 54; ++y)
       for (int x = 10; x < 54; ++x) square += std::pow(double(at(out, "G", x, y)) - double(10 * pattern(x + 100, y + 100)), 2) / (44 * 44);
-    if (sign > 0) EXPECT_NEAR(std::sqrt(square), 0.1 / std::sqrt(5), 0.07 * 0.1 / std::sqrt(5));
-    else EXPECT_GT(std::sqrt(square), 0.08);
+    if (sign > 0)
+      EXPECT_NEAR(std::sqrt(square), 0.1 / std::sqrt(5), 0.07 * 0.1 / std::sqrt(5));
+    else
+      EXPECT_GT(std::sqrt(square), 0.08);
   }
 }
 
@@ -159,10 +128,10 @@ TEST(Filter, AlbedoIsNotBlurred) {
   Image frame = wall(32, 32);
   grey(frame, "direct", [&](int x, int y) { return albedo(x, y) * 3; });
   grey(frame, "albedo", albedo);
-  tell_variance(frame, 4);
+  tell_noise(frame, "direct", everywhere(0.01f));
   const Image out = filtered({frame, frame, frame});
   for (int y = 0; y < 32; ++y)
-    for (int x = 0; x < 32; ++x) EXPECT_NEAR(at(out, "direct.G", x, y), albedo(x, y) * 3, 1e-5f);
+    for (int x = 0; x < 32; ++x) EXPECT_NEAR(at(out, "direct.G", x, y), albedo(x, y) * 3, 1e-3f);
 }
 
 Image layered_frame(Noise& noise) {
@@ -187,13 +156,15 @@ TEST(Filter, EmissionAndSpecularPassAndLayersSumToTheImage) {
     EXPECT_NE(out.find("direct." + std::string(c))->values, frame.find("direct." + std::string(c))->values);
     for (std::size_t p = 0; p < 32 * 24; ++p) {
       float sum = 0;
-      for (const char* layer : {"emission.", "specular.", "direct.", "caustic.", "indirect."}) sum += out.find(layer + std::string(c))->values[p];
+      for (const char* layer : {"emission.", "specular.", "direct.", "caustic.", "indirect."})
+        sum += out.find(layer + std::string(c))->values[p];
       EXPECT_EQ(out.find(c)->values[p], sum);
     }
   }
 }
 
-/// Light of smoke passes and stays in the picture. Of a frame that has some layers alone the picture changes as they do, and keeps the rest: here 5.
+/// Light of smoke passes and stays in the picture. Of a frame that has some layers alone the picture changes as they do, and keeps the
+/// rest: here 5.
 TEST(Filter, ThePictureKeepsWhatIsInNoFilteredLayer) {
   Noise noise(1);
   Image smoky = layered_frame(noise);
@@ -203,75 +174,65 @@ TEST(Filter, ThePictureKeepsWhatIsInNoFilteredLayer) {
   const Image of_smoky = filtered({smoky});
   for (std::size_t p = 0; p < 32 * 24; ++p) {
     float sum = 0;
-    for (const char* layer : {"emission.G", "specular.G", "direct.G", "caustic.G", "indirect.G", "volume.G"}) sum += of_smoky.find(layer)->values[p];
+    for (const char* layer : {"emission.G", "specular.G", "direct.G", "caustic.G", "indirect.G", "volume.G"})
+      sum += of_smoky.find(layer)->values[p];
     EXPECT_EQ(of_smoky.find("G")->values[p], sum);
   }
   Image some = layered_frame(noise);
-  std::erase_if(some.channels, [](const Channel& channel) { return channel.name.starts_with("emission") || channel.name.starts_with("specular"); });
-  for (std::size_t p = 0; p < 32 * 24; ++p)   // R and B hold what was taken out
-    some.find("G")->values[p] = some.find("direct.G")->values[p] + some.find("caustic.G")->values[p] + some.find("indirect.G")->values[p] + 5;
+  std::erase_if(some.channels,
+                [](const Channel& channel) { return channel.name.starts_with("emission") || channel.name.starts_with("specular"); });
+  for (std::size_t p = 0; p < 32 * 24; ++p)  // R and B hold what was taken out
+    some.find("G")->values[p] =
+        some.find("direct.G")->values[p] + some.find("caustic.G")->values[p] + some.find("indirect.G")->values[p] + 5;
   const Image of_some = filtered({some});
-  for (std::size_t p = 0; p < 32 * 24; ++p)   // of numbers up to about 15: some roundings of 2^-21
-    EXPECT_NEAR(of_some.find("G")->values[p], of_some.find("direct.G")->values[p] + of_some.find("caustic.G")->values[p] + of_some.find("indirect.G")->values[p] + 5, 1e-5f);
+  for (std::size_t p = 0; p < 32 * 24; ++p)  // of numbers up to about 15: some roundings of 2^-21
+    EXPECT_NEAR(of_some.find("G")->values[p],
+                of_some.find("direct.G")->values[p] + of_some.find("caustic.G")->values[p] + of_some.find("indirect.G")->values[p] + 5,
+                1e-5f);
 }
 
-/// A quarter of the pixels in column 20 is what column 19 shows. Their own sample is of either side; what comes out is the mixture, from both
-/// sides' other pixels; emission, which is not filtered, likewise.
+/// A quarter of the pixels in column 20 is what column 19 shows. Their own sample is of either side, and their halves say so; what comes
+/// out is the mixture, from both sides' other pixels; emission likewise.
 TEST(Filter, EdgesArePutTogetherByCoverage) {
-  Image frame = wall(40, 24);
+  Image frame = wall(40, 64);
   const auto mixed = [](int x, int y) { return x < 20 ? 4.0f : x > 20 ? 1.0f : y % 4 == 0 ? 4.0f : 1.0f; };
-  grey(frame, "direct", mixed);
-  grey(frame, "emission", mixed);
-  plane(frame, "samples", everywhere(1));
+  for (const char* layer : {"direct", "emission"}) {
+    grey(frame, layer, mixed);
+    tell_noise(frame, layer, [&](int x, int y) { return x == 20 ? mixed(x, y) - 1.75f : 0.0f; });
+  }
   frame.add_ids("coverage");
-  for (int y = 0; y < 24; ++y)
+  for (int y = 0; y < 64; ++y)
     for (int x = 20; x < 40; ++x) {
       frame.find("id.object")->ids[std::size_t(y * 40 + x)] = 1;
       if (x == 20) frame.find("coverage")->ids[std::size_t(y * 40 + x)] = 4u << 12;
     }
   const Image out = filtered({frame});
-  for (int y = 0; y < 24; ++y)
+  for (int y = 16; y < 48; ++y)  // in corners ten pixels of a side are not at hand (unmix.h)
     for (int x = 0; x < 40; ++x) {
       const float expected = x < 20 ? 4.0f : x > 20 ? 1.0f : 1.75f;
-      EXPECT_NEAR(at(out, "direct.G", x, y), expected, 1e-5f) << x << " " << y;
-      EXPECT_NEAR(at(out, "emission.G", x, y), expected, 1e-5f) << x << " " << y;
+      EXPECT_NEAR(at(out, "direct.G", x, y), expected, 1e-4f) << x << " " << y;
+      EXPECT_NEAR(at(out, "emission.G", x, y), expected, 1e-4f) << x << " " << y;
     }
 }
 
-/// What passes the filter at an edge pixel is the mean of n samples, 6, where both sides have 2: one sample is not believed; of 17 the mean counts as much
-/// as what 16 rays of coverage put together; of 129 by 8^(5/3) = 32.
-TEST(Filter, ManySamplesOfWhatPassesAreBelievedAtEdges) {
-  for (const auto& [samples, expected] : {std::pair{1.0f, 2.0f}, {17.0f, 4.0f}, {129.0f, 2 + 4 * 32.0f / 33}}) {
-    Image frame = wall(40, 24);
-    grey(frame, "direct", everywhere(1));
-    grey(frame, "specular", [](int x, int) { return x == 20 ? 6.0f : 2.0f; });
-    plane(frame, "samples", everywhere(samples));
-    frame.add_ids("coverage");
-    for (int y = 0; y < 24; ++y)
-      for (int x = 20; x < 40; ++x) {
-        frame.find("id.object")->ids[std::size_t(y * 40 + x)] = 1;
-        if (x == 20) frame.find("coverage")->ids[std::size_t(y * 40 + x)] = 4u << 12;
-      }
-    const Image out = filtered({frame});
-    for (int y = 0; y < 24; ++y) {
-      EXPECT_NEAR(at(out, "specular.G", 20, y), expected, 1e-5f) << samples;
-      EXPECT_EQ(at(out, "specular.G", 10, y), 2.0f);
-    }
-  }
-}
-
-TEST(Filter, EdgesStayAsTheyAreWhereCoverageIsNotKnown) {
+/// Of a frame that has albedo and says nothing of noise pixels at edges keep their values: what they see of which surface is not known.
+TEST(Filter, EdgesStayAsTheyAreWhereNothingIsKnownOfThem) {
   Image frame = wall(40, 24);
-  Noise noise(1);
-  grey(frame, "", [&](int, int) { return noise(); });
-  tell_variance(frame, 1);
+  Noise noise(0.1f);
+  std::vector<float> values;
+  for (int p = 0; p < 40 * 24; ++p) values.push_back(1 + noise());
+  grey(frame, "direct", [&](int x, int y) { return values[std::size_t(y * 40 + x)]; });
+  grey(frame, "albedo", everywhere(1));
   for (int y = 0; y < 24; ++y)
     for (int x = 20; x < 40; ++x) frame.find("id.object")->ids[std::size_t(y * 40 + x)] = 1;
-  const Image out = filtered({frame, frame, frame});
+  const Image out = filtered({frame});
+  double before = 0, after = 0;
   for (int y = 0; y < 24; ++y) {
-    EXPECT_EQ(at(out, "G", 20, y), at(frame, "G", 20, y));
-    EXPECT_NE(at(out, "G", 25, y), at(frame, "G", 25, y));
+    EXPECT_EQ(at(out, "direct.G", 20, y), at(frame, "direct.G", 20, y));
+    for (int x = 22; x < 38; ++x)
+      before += std::pow(double(at(frame, "direct.G", x, y)) - 1, 2), after += std::pow(double(at(out, "direct.G", x, y)) - 1, 2);
   }
+  EXPECT_LT(after, before / 4);
 }
 
 /// Nothing that is not a number comes out, whatever goes in; values beyond squares in float32 stay.
@@ -287,13 +248,32 @@ TEST(Filter, StrangePixelsAreLeftOutAndFilled) {
   frame.find("Z")->values[7] = NAN;
   frame.find("Z")->values[9] = 0;
   const Image out = filtered({frame, frame, frame});
-  for (const int x : {3, 8, 12}) EXPECT_NEAR(at(out, "G", x, 3), 1, 1e-5f) << x;
+  for (const int x : {3, 8, 12}) EXPECT_NEAR(at(out, "G", x, 3), 1, 0.05f) << x;  // made-up halves have noise of .1
   EXPECT_EQ(at(out, "G", 3, 12), 1e30f);
   for (const Channel& channel : out.channels)
     for (const float v : channel.values) EXPECT_TRUE(std::isfinite(v) || (channel.name == "Z" && v > 0)) << channel.name;
   Image one = wall(1, 1);
   grey(one, "", everywhere(0));
   EXPECT_EQ(at(filtered({one, one}), "G", 0, 0), 0);
+  grey(one, "direct", everywhere(2));
+  tell_noise(one, "direct", everywhere(1));
+  EXPECT_EQ(at(filtered({one}), "direct.G", 0, 0), 2);
+}
+
+/// Tiles are not seen: a picture of three tiles is the same as in one piece, to the rounding of sums.
+TEST(Filter, TilesAreNotSeen) {
+  Image frame = wall(700, 370);
+  Noise noise(0.2f);
+  std::vector<float> halves;
+  for (int p = 0; p < 2 * 700 * 370; ++p) halves.push_back(noise());
+  const auto half = [&](int x, int y, int h) {
+    return 1 + 0.2f * std::sin(0.05f * float(x + y)) + halves[std::size_t(2 * (y * 700 + x) + h)];
+  };
+  grey(frame, "direct", [&](int x, int y) { return (half(x, y, 0) + half(x, y, 1)) / 2; });
+  tell_noise(frame, "direct", [&](int x, int y) { return (half(x, y, 0) - half(x, y, 1)) / 2; });
+  const Image whole = filtered({frame}), tiled = filter_alone(frame, {});
+  for (std::size_t p = 0; p < frame.pixel_count(); ++p)
+    EXPECT_NEAR(whole.find("direct.G")->values[p], tiled.find("direct.G")->values[p], 1e-5f);
 }
 
 TEST(Filter, TheSameBytesForAnyThreads) {

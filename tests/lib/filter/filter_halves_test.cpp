@@ -1,12 +1,11 @@
 // Frames in halves whose answer is known: noise on a wall, a star, a mirror, what is no number.
-#include "lib/filter/filter_halves.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "formats/error.h"
+#include "lib/filter/filter_frame.h"
 #include "tests/support/filter_frames.h"
 
 namespace tempolux {
@@ -27,20 +26,14 @@ Image noisy(const std::string& layer, const OfPixel& light, float sigma) {
   for (float& v : a) v = sigma > 0 ? normal(random) : 0;
   for (float& v : b) v = sigma > 0 ? normal(random) : 0;
   const auto at = [](int x, int y) { return std::size_t(y * kSide + x); };
-  grey(image, layer + ".a", [&](int x, int y) { return light(x, y) + a[at(x, y)]; });
-  grey(image, layer + ".b", [&](int x, int y) { return light(x, y) + b[at(x, y)]; });
+  test::tell_noise(image, layer, [&](int x, int y) { return (a[at(x, y)] - b[at(x, y)]) / 2; });
   const OfPixel mean = [&](int x, int y) { return light(x, y) + (a[at(x, y)] + b[at(x, y)]) / 2; };
   grey(image, layer, mean);
   grey(image, "", mean);
   return image;
 }
 
-Image filtered(Image image) {
-  const FrameHalves halves(image);
-  const FlowFrame flow;
-  HalvesFilter filter(halves, flow, 0, 0, {});
-  return filter.finish(std::move(image));
-}
+Image filtered(Image image) { return filter_alone(std::move(image), {}); }
 
 double squared_error(const Image& image, const OfPixel& light) {
   double sum = 0;
@@ -52,16 +45,18 @@ double squared_error(const Image& image, const OfPixel& light) {
   return sum / (kSide * kSide);
 }
 
-/// 169 pixels of a plane leave 1 / 169 of the variance in the middle, up to 4 times that at the borders; the choice is off by a few percent of w, which leaves (.1)^2
-/// of it. The small window leaves 1 / 25 where it is taken. Less than a tenth in all; the mean over the wall is that of the samples, to 1 / 10 of its own error.
+/// 169 pixels of a plane leave 1 / 169 of the variance in the middle, up to 4 times that at the borders; the choice is off by a few percent
+/// of w, which leaves (.1)^2 of it. The small window leaves 1 / 25 where it is taken. Less than a tenth in all; the mean over the wall is
+/// that of the samples, to 1 / 10 of its own error.
 TEST(FilterHalves, NoiseOnAWallGoes) {
   const float sigma = 0.2f;
   const OfPixel light = [](int x, int y) { return 1 + 0.004f * float(x) - 0.002f * float(y); };
-  for (const char* layer : {"direct", "indirect"}) EXPECT_LT(squared_error(filtered(noisy(layer, light, sigma)), light), 0.1 * double(sigma) * double(sigma) / 2);
+  for (const char* layer : {"direct", "indirect"})
+    EXPECT_LT(squared_error(filtered(noisy(layer, light, sigma)), light), 0.1 * double(sigma) * double(sigma) / 2);
 }
 
-/// What is seen in mirrors is filtered by what they show (seen.*): here two walls in a mirror that meet at column 40. Without the channels light crosses
-/// the border, or the halves see to it that none is filtered there.
+/// What is seen in mirrors is filtered by what they show (seen.*): here two walls in a mirror that meet at column 40. Without the channels
+/// light crosses the border, or the halves see to it that none is filtered there.
 TEST(FilterHalves, LightInAMirrorIsFilteredByWhatItShows) {
   const float sigma = 0.2f;
   const OfPixel light = [](int x, int) { return x < 40 ? 1.0f : 3.0f; };
@@ -86,7 +81,8 @@ TEST(FilterHalves, AStarStays) {
 
 TEST(FilterHalves, WhatIsNoNumberIsFilled) {
   Image image = noisy("direct", test::everywhere(1), 0.01f);
-  for (const char* name : {"direct.a.R", "direct.R", "R"}) image.find(name)->values[30 * kSide + 30] = std::numeric_limits<float>::quiet_NaN();
+  for (const char* name : {"direct.noise.R", "direct.R", "R"})
+    image.find(name)->values[30 * kSide + 30] = std::numeric_limits<float>::quiet_NaN();
   const Image out = filtered(std::move(image));
   for (const Channel& channel : out.channels)
     if (channel.name == "R" || channel.name == "direct.R") {
@@ -97,7 +93,7 @@ TEST(FilterHalves, WhatIsNoNumberIsFilled) {
 TEST(FilterHalves, HalvesWithoutTheirLayerAreRefused) {
   Image image = noisy("direct", test::everywhere(1), 0.01f);
   std::erase_if(image.channels, [](const Channel& channel) { return channel.name == "direct.G"; });
-  EXPECT_THROW(FrameHalves{image}, InputError);
+  EXPECT_THROW(FrameLight{image}, InputError);
 }
 
 }  // namespace

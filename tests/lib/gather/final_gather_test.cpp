@@ -1,4 +1,4 @@
-// Final gathering against the half-plane emitter of algorithms.md 8.2 and the furnace.
+// Final gathering against the half-plane emitter of docs/methods/formulas.md and the furnace.
 #include "lib/gather/final_gather.h"
 
 #include <gtest/gtest.h>
@@ -182,8 +182,6 @@ TEST(FinalGather, UniformRoomIsUniform) {
   // Harmonic mean distance in a cube seen from its floor is between the nearest and the farthest wall.
   EXPECT_GT(record.radius_unclamped, 0.7f);
   EXPECT_LT(record.radius_unclamped, 2.2f);
-  // The nearest wall is 0.7 away, seen by the outermost ring a little above the floor.
-  EXPECT_NEAR(record.radius, 0.72f, 0.05f);
 }
 
 TEST(FinalGather, AllMissesGiveNothingAndAnInfiniteRadius) {
@@ -201,7 +199,6 @@ TEST(FinalGather, AllMissesGiveNothingAndAnInfiniteRadius) {
   const IrradianceRecord record = gather.gather(from, {0, 1, 0}, counts);
   EXPECT_EQ(record.irradiance, Rgb(0.0f));
   EXPECT_EQ(record.translational[0], Vec3{});
-  EXPECT_EQ(record.radius, INFINITY);
   EXPECT_EQ(record.radius_unclamped, INFINITY);
 }
 

@@ -21,22 +21,13 @@ TEST(Hemisphere, UniformLight) {
   EXPECT_NEAR(sky.harmonic_distance(), 1.0 / 3, 1e-6);
 }
 
-/// One thing 2 m away in an empty landscape: what is near decides, not how much sky there is around it.
-TEST(Hemisphere, TheSkyDoesNotMakeThingsFarther) {
+/// One thing 2 m away in an empty landscape of 300 cells.
+TEST(Hemisphere, DistanceAndShareOfWhatIsThere) {
   Hemisphere sky;
   sky.reset(10, 30);
   sky.inverse_distance[7] = sky.inverse_distance[120] = 0.5f;
   EXPECT_FLOAT_EQ(sky.harmonic_distance(), 2);
-}
-
-TEST(Hemisphere, CountsTheCellsThatCarryTheLight) {
-  Hemisphere sky;
-  sky.reset(10, 30);
-  EXPECT_EQ(sky.lit_cells(), 0);
-  for (std::size_t c = 0; c < 12; ++c) sky.radiance[c] = Rgb(3.0f);
-  EXPECT_FLOAT_EQ(sky.lit_cells(), 12);
-  sky.radiance[50] = Rgb(3000.0f);   // one outshines them
-  EXPECT_NEAR(sky.lit_cells(), 1.0f, 0.03f);
+  EXPECT_FLOAT_EQ(sky.seen_share(), 2 / 300.0f);
 }
 
 /// Light in every cell to the right of a meridian: further rays along its border alone. Beside it three of eight
@@ -84,7 +75,6 @@ TEST(Hemisphere, NothingThereIsFarAway) {
   Hemisphere sky;
   sky.reset(2, 7);
   EXPECT_EQ(sky.harmonic_distance(), INFINITY);
-  EXPECT_EQ(sky.nearest_across(), INFINITY);
 }
 
 }  // namespace

@@ -21,10 +21,12 @@ float value_of(const Image& image, const char* name) {
 
 TEST(ForeignNames, AreThoseOfThePage) {
   for (const auto& [theirs, ours] : {std::pair{"ViewLayer.Combined.R", "R"}, {"Combined.A", "A"}, {"View Layer.Depth.Z", "Z"}, {"depth.Z", "Z"},
-                                     {"ViewLayer.Z.Z", "Z"}, {"a.b.Normal.X", "N.X"}, {"ViewLayer.Vector.Y", "backward.v"}})
+                                     {"ViewLayer.Z.Z", "Z"}, {"a.b.Normal.X", "N.X"}, {"ViewLayer.Vector.Y", "backward.v"},
+                                     {"ViewLayer.Denoising Albedo.G", "albedo.G"}, {"ViewLayer.Denoising Normal.X", "N.X"},
+                                     {"ViewLayer.Denoising Depth.Z", "Z"}})
     EXPECT_EQ(our_name(theirs), ours);
   // Ours, and passes that only sound alike.
-  for (const char* name : {"R", "Z", "N.X", "direct.R", "forward.u", "ViewLayer.Denoising Depth.Z", "ViewLayer.DiffDir.R", "Depth.V", ".Z", "", "Combined"})
+  for (const char* name : {"R", "Z", "N.X", "direct.R", "forward.u", "ViewLayer.Noisy Image.R", "ViewLayer.DiffDir.R", "Depth.V", ".Z", "", "Combined"})
     EXPECT_EQ(our_name(name), name);
 }
 
@@ -38,6 +40,14 @@ TEST(ForeignNames, DepthAndMotionMeanWhatOursMean) {
   EXPECT_EQ(value_of(image, "forward.u"), 4);
   EXPECT_EQ(value_of(image, "forward.v"), 3);
   EXPECT_EQ(image.channels.front().name, "Z");   // sorted by name, capitals first
+}
+
+TEST(ForeignNames, PlainPassesComeBeforeThoseOfDenoisers) {
+  Image image = with({{"V.Depth.Z", 3}, {"V.Denoising Depth.Z", 5}, {"V.Denoising Normal.X", 1}});
+  name_as_ours(image);
+  EXPECT_EQ(value_of(image, "Z"), 3);
+  EXPECT_EQ(value_of(image, "V.Denoising Depth.Z"), 5);
+  EXPECT_EQ(value_of(image, "N.X"), 1);
 }
 
 TEST(ForeignNames, OursComeFirstAndOneViewLayerCounts) {

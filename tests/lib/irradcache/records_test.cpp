@@ -235,12 +235,9 @@ TEST(RecordStore, WhatIsBehindARecordIsNotLitByIt) {
 TEST(RecordStore, OneRecordAndNone) {
   RecordStore store;
   EXPECT_EQ(store.interpolate({0.5f, 0.5f, 0.5f}, {0, 1, 0}).weight, 0);
-  EXPECT_EQ(store.interpolate_relaxed({0.5f, 0.5f, 0.5f}, {0, 1, 0}).weight, 0);
   store.add(record_at({0.5f, 0.5f, 0.5f}, {0, 1, 0}, 0.1f, Rgb(2.0f)));
   EXPECT_EQ(store.interpolate({0.55f, 0.5f, 0.5f}, {0, 1, 0}).irradiance, Rgb(2.0f));
   EXPECT_EQ(store.interpolate({0.7f, 0.5f, 0.5f}, {0, 1, 0}).count, 0);
-  EXPECT_EQ(store.interpolate_relaxed({0.7f, 0.5f, 0.5f}, {0, 1, 0}).irradiance, Rgb(2.0f));
-  EXPECT_EQ(store.interpolate_relaxed({0.95f, 0.5f, 0.5f}, {0, 1, 0}).count, 0);
 }
 
 /// Five records in one place, and two one float apart: all count, the mean is theirs.
@@ -283,35 +280,16 @@ TEST(RecordStore, ParallelPlanesKeepTheirLight) {
   }
 }
 
-/// Slope 0.5: a record of 0.1 m at 0.3 m from one of 1 m leaves that one 0.25 m; one of 2 m at 0.2 m from it gets 1.1 m
-/// itself, as its neighbour saw nothing nearer than 1 m (radius_unclamped) whatever others left it.
-TEST(RecordStore, NeighboursClampEachOther) {
+/// What look-ups see follows a radius that shrinks, also after the table has grown.
+TEST(RecordStore, ShrunkRecordsHoldLessFar) {
   RecordStore store;
   store.add(record_at({0, 0, 0}, {0, 1, 0}, 1, Rgb(1.0f)));
-  IrradianceRecord small = record_at({0.3f, 0, 0}, {0, 1, 0}, 0.1f, Rgb(1.0f));
-  store.clamp_with_neighbours(small, 0.5f);
-  store.add(small);
-  EXPECT_FLOAT_EQ(small.radius, 0.1f);
-  EXPECT_FLOAT_EQ(store.records()[0].radius, 0.25f);
-  IrradianceRecord large = record_at({0, 0, 0.2f}, {0, 1, 0}, 2, Rgb(1.0f));
-  store.clamp_with_neighbours(large, 0.5f);
-  EXPECT_FLOAT_EQ(large.radius, 1.1f);
-  // What look-ups see follows, also after the table has grown.
+  EXPECT_EQ(store.interpolate({-0.5f, 0, 0}, {0, 1, 0}).count, 1);
+  store.shrink(0, 0.25f);
   EXPECT_EQ(store.interpolate({-0.5f, 0, 0}, {0, 1, 0}).count, 0);
   EXPECT_EQ(store.interpolate({-0.24f, 0, 0}, {0, 1, 0}).count, 1);
   for (int i = 0; i < 3000; ++i) store.add(record_at({2 + 0.0005f * float(i), 0, 0}, {0, 1, 0}, 0.9f, Rgb(1.0f)));
   EXPECT_EQ(store.interpolate({-0.5f, 0, 0}, {0, 1, 0}).count, 0);
-  // Neighbours that are narrow by their gradients alone tell nothing about distances.
-  IrradianceRecord steep = record_at({0.5f, 0, -1}, {0, 1, 0}, 0.1f, Rgb(1.0f));
-  steep.radius_unclamped = 1;
-  store.add(steep);
-  IrradianceRecord beside = record_at({0.5f, 0, -1.05f}, {0, 1, 0}, 0.8f, Rgb(1.0f));
-  store.clamp_with_neighbours(beside, 0.5f);
-  EXPECT_FLOAT_EQ(beside.radius, 0.8f);
-  // A record that faces another way is no neighbour.
-  IrradianceRecord wall = record_at({0, 0, 0.1f}, {1, 0, 0}, 2, Rgb(1.0f));
-  store.clamp_with_neighbours(wall, 0.5f);
-  EXPECT_FLOAT_EQ(wall.radius, 2);
 }
 
 TEST(RecordStore, WhatIsNotFiniteIsLeftOutAndCounted) {

@@ -132,5 +132,30 @@ TEST_F(ThroughTheRoof, OfTheSky) {
   EXPECT_LT(aimed.error, 0.05 * aimed.mean);
 }
 
+/// Ways into spheres: of one the density is 1 / (2 pi (1 - sqrt(1 - r^2 / d^2))) everywhere in its cone; of several the mean of
+/// 1 / density over the ways is the solid angle of all cones together, here of the wider of two about one axis.
+TEST(Aim, WaysIntoSpheresHaveTheDensityOfTheirCones) {
+  const Vec3 place{40, -30, 20};
+  const auto solid_angle = [](double r, double d) { return 2 * kPiD * (1 - std::sqrt(1 - r * r / (d * d))); };
+  const Aim one(std::vector<AimSphere>{{{10, 10, -5}, 4, 2}}, {1, 2, 3}, 100);
+  const double far = length(Vec3d(place) - Vec3d{10, 10, -5});
+  for (int i = 0; i < 1000; ++i) {
+    const Aim::Way way = one.towards(place, PathRandom(3, std::uint64_t(i)).get2(0, Purpose::test));
+    EXPECT_NEAR(way.density * solid_angle(4, far), 1, 1e-6);
+    EXPECT_NEAR(length(way.direction), 1, 1e-6);
+    const Vec3 to = Vec3{10, 10, -5} - place;
+    EXPECT_LE(length(cross(to, way.direction)), 4 * (1 + 1e-5f));
+  }
+  const Aim two(std::vector<AimSphere>{{{40, -30, 0}, 3, 1}, {{40, -30, -20}, 2, 4}}, {1, 2, 3}, 100);
+  int other = 0;   // ways at a rim, where rounding decides
+  const Estimate angle = estimate(1 << 16, [&](const auto& u) {
+    const Aim::Way way = two.towards(place, {float(u[0]), float(u[1])});
+    other += std::abs(two.density_towards(place, way.direction) / way.density - 1) > 1e-4;
+    return 1 / way.density;
+  });
+  EXPECT_NEAR(angle.mean, solid_angle(3, 20), 4 * angle.error);
+  EXPECT_LT(other, 64);
+}
+
 }  // namespace
 }  // namespace tempolux

@@ -104,5 +104,44 @@ TEST(AimedPhotons, BringTheLightOfUniformOnes) {
   EXPECT_EQ(uniform.seen, 0u);
 }
 
+/// A wall of 2 x 2 m on a ground of 600 x 600 m under a sun overhead, in a sphere: it gets rho E / 2 (1 - 4 d / pi) of light that the
+/// ground reflects, d = 1 / 300 its mean height over the ground's reach. Bounces outside of the sphere are aimed at it, so no photon
+/// on the wall carries much. The heaviest starts on the innermost of the eight discs around, of 3 m: 9 pi / (kAround / 8 x 100 000) = .009 W, and is multiplied by less
+/// than 1, as the sphere covers 2 sr and less from there. Unaimed bounces bring single photons of .1 W, and without the division by both
+/// densities the wall is far too bright.
+TEST(AimedPhotons, LightOfFarGroundComesInSmallParts) {
+  test::HandMadeScene scene;
+  scene.add_quad({-300, 0, 300}, {300, 0, 300}, {300, 0, -300}, {-300, 0, -300}, test::matte(Rgb(0.5f)));
+  const std::uint32_t wall = scene.add_quad({-1, 0, 0}, {1, 0, 0}, {1, 2, 0}, {-1, 2, 0}, test::matte(Rgb(0.0f)));
+  SceneFrame frame = scene.frame();
+  PlacedLight sun;
+  sun.light.kind = PunctualLight::Kind::directional;
+  sun.light.intensity = Rgb(1.0f);
+  sun.direction = {0, -1, 0};
+  frame.lights.push_back(sun);
+  EmissionTable table = build_emission_table({&frame, 1});
+  table.aim = {{{0, 1, 0}, 1.5, 1}};
+  const Tracer tracer(frame);
+  const Lights lights(frame, table);
+  double sum = 0, squares = 0, most = 0;
+  constexpr int kSeeds = 16;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const PhotonTracer photons(tracer, lights, {.seed = seed, .photon_count = 100'000, .group_count = 1});
+    double flux = 0;
+    for (std::size_t b = 0; b < photons.batch_count(); ++b)
+      for (const formats::Photon& p : photons.trace(b).block.photons) {
+        if (p.object != wall || !(formats::decode_normal(p.normal)[2] > 0)) continue;
+        flux += double(p.flux[1]);
+        most = std::max(most, double(p.flux[1]));
+      }
+    sum += flux / kSeeds;
+    squares += flux * flux / kSeeds;
+  }
+  const double exact = 0.5 * 0.5 * 4 * (1 - 4 / (300 * 3.14159265)), error = std::sqrt((squares - sum * sum) / (kSeeds - 1));
+  EXPECT_NEAR(sum, exact, 4 * error);
+  EXPECT_LT(error, 0.01);   // of 1.6 million paths
+  EXPECT_LT(most, 0.009);
+}
+
 }  // namespace
 }  // namespace tempolux

@@ -162,7 +162,7 @@ TEST(Plan, FramesOutsideTheAnimationShowItsNearestEnd) {
   const Plan plan = plan_of(scene, {-2, 0, 3, 9}, 2);
   EXPECT_EQ(lit_frames(plan), (Numbers{{-2, 0}, {0, 0}, {3, 3}, {9, 3}}));
   ASSERT_EQ(plan.warnings.size(), 1u);
-  EXPECT_EQ(plan.warnings[0], "2 frames outside the animation: the nearest end is shown");
+  EXPECT_EQ(plan.warnings[0], "of the frames asked for -2, 9 are outside the animation (0 to 3): its nearest end is shown");
 }
 
 TEST(Plan, TheOrderOfTheRangeIsKeptAndDuplicatesAreNot) {
@@ -323,7 +323,8 @@ TEST(PlanFiles, JsonGivesFactsAndHashesOfEachFrame) {
 TEST(PlanFiles, DecisionsAreReadBackAsTheyWere) {
   Decisions d = records();
   d.moving = MovingMethod::light;
-  d.moving_cost = {0.25, 0.5, 0.125};
+  d.new_share = 0.125;
+  d.together = 8;
   d.photon_paths = 12345678901;
   d.learn_lights = true;
   d.view = "tempolux view 1.0\n1 2 3 4 5\n";

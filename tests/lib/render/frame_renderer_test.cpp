@@ -139,7 +139,7 @@ TEST(FrameRenderer, PixelsOutsideTheMaskAreTheBasesToTheBit) {
   Image image{64, 36, {}, {}, {}, {}};
   add_colour_channels(part.mean, {"RGBA"}, image);
   const Image traced = image;
-  keep_base_pixels(options.mask, base, image);
+  keep_base_pixels(options.mask, base, 0, image);
   for (std::size_t k = 0; k < image.channels.size(); ++k)
     for (std::size_t p = 0; p < options.mask.size(); ++p) {
       const float expected = options.mask[p] ? traced.channels[k].values[p] : base.channels[k].values[p];
@@ -148,9 +148,18 @@ TEST(FrameRenderer, PixelsOutsideTheMaskAreTheBasesToTheBit) {
       if (options.mask[p] && k > 0) { ASSERT_EQ(image.channels[k].values[p], base.channels[k].values[p]); }
     }
   Image small{8, 8, {}, {}, {}, {}};
-  EXPECT_THROW(keep_base_pixels(options.mask, small, image), InputError);
+  EXPECT_THROW(keep_base_pixels(options.mask, small, 0, image), InputError);
   base.channels.pop_back();
-  EXPECT_THROW(keep_base_pixels(options.mask, base, image), InputError);
+  EXPECT_THROW(keep_base_pixels(options.mask, base, 0, image), InputError);
+}
+
+TEST(FrameRenderer, HalvesOfABaseWithoutThemAreItsLayers) {
+  Image base{2, 1, {}, {}, {}, {}}, image = base;
+  base.add("direct.R").values = {3, 4};
+  for (const char* name : {"albedo.R", "direct.R", "direct.a.R", "direct.b.R"}) image.add(name).values = {1, 2};
+  keep_base_pixels({0, 1}, base, 1, image);
+  EXPECT_EQ(image.find("albedo.R")->values, (std::vector<float>{1, 2}));   // holds for every pixel
+  for (const char* name : {"direct.R", "direct.a.R", "direct.b.R"}) EXPECT_EQ(image.find(name)->values, (std::vector<float>{3, 2})) << name;
 }
 
 TEST(FrameRenderer, TargetErrorIsReached) {

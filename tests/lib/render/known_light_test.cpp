@@ -122,40 +122,40 @@ TEST(CacheLeaks, ThinPartitionOnAFloor) {
   }
   for (float side : {-1.0f, 1.0f}) {
     double cached = 0, exact = 0;
+    int answered = 0;
     for (int i = 0; i < 16; ++i) {
       const auto seen = chain.surface_at({side * (t + 0.01f + 0.005f * float(i)), -1, 0.1f * float(i) - 0.75f}, {0, 1, 0}, 0.01f);
       ASSERT_TRUE(seen);
       const auto found = chain.store.interpolate(seen->first.position, seen->second);
-      const auto near = found.weight > 0 ? found : chain.store.interpolate_relaxed(seen->first.position, seen->second);
-      ASSERT_GT(near.weight, 0);
-      cached += double(near.irradiance.g);
+      if (!(found.weight > 0)) continue;   // a path finds the light there
+      ++answered;
+      cached += double(found.irradiance.g);
       exact += path_traced(chain, seen->first, seen->second, 4096);
     }
+    EXPECT_GE(answered, 12);
     EXPECT_NEAR(cached / exact, 1, 0.03) << (side < 0 ? "bright" : "dark") << " side: " << exact / 16;
   }
 }
 
-/// A record whose radius ends short of a place speaks for it where it is seen directly: it is of the same pixel or the next.
-/// Through glass or gloss it may be anything, the ground under a ball of glass for what is inside, and is not asked.
-TEST(KnownLight, RecordsThatEndShortCountInDirectViewOnly) {
+/// Where no record counts there is no answer, however near one ends: a path finds the light. A record of the lit side of a board, which ended 19 cm before it and
+/// was open all around, lit the dark floor beside the board when its radius was taken four times as large.
+TEST(KnownLight, RecordsThatEndShortSayNothing) {
   test::ClosedBox box(Shape::cube, 0.5f);
   const Tracer tracer(box.scene.frame());
   IrradianceRecord record;
   record.position = {0.1f, -1, 0.2f};
   record.normal = {0, 1, 0};
   record.irradiance = Rgb(1000.0f);
-  record.radius = record.radius_unclamped = 0.1f;   // 0.2 away
+  record.radius = record.radius_unclamped = 0.1f;
   RecordStore store;
   ASSERT_TRUE(store.add(record));
   KnownLight known;
   known.records = &store;
-  Hit hit;
-  ASSERT_TRUE(tracer.intersect({{0.3f, -0.9f, 0.2f}, {0, -1, 0}}, hit));
-  const SurfacePoint seen = tracer.surface_point(hit);
-  const std::optional<Rgb> direct = known.indirect(seen, {0, 1, 0}, {0, 1, 0}, true);
-  ASSERT_TRUE(direct);
-  EXPECT_NEAR(direct->g, 1000, 1e-3f);
-  EXPECT_FALSE(known.indirect(seen, {0, 1, 0}, {0, 1, 0}, false));
+  for (const float away : {0.09f, 0.11f, 0.2f}) {
+    Hit hit;
+    ASSERT_TRUE(tracer.intersect({{0.1f + away, -0.9f, 0.2f}, {0, -1, 0}}, hit));
+    EXPECT_EQ(known.indirect(tracer.surface_point(hit), {0, 1, 0}, {0, 1, 0}).has_value(), away < 0.1f) << away;
+  }
 }
 
 /// Points speak for what is not too near: at 0.5 and 1.5 of kNear radii the limit's ends, between them by u.

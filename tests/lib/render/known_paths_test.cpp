@@ -244,9 +244,7 @@ TEST(KnownPaths, NoLightIsCountedTwiceOrLost) {
   Chain chain(room.made, 400000, 8000, 500);
   const CameraView view = RoomWithMirror::view(64, 36);
   GatherCounts gathered;
-  const PixelViews views = [&](std::span<const Look> looks, std::span<std::optional<SeenPoint>> seen) {
-    seen_through(chain.tracer, view, looks, seen);
-  };
+  const PixelView views = [&](const Look& look) { return seen_through(chain.tracer, view, look); };
   place_records(chain.gather, views, 64, 36, {}, chain.store, gathered);
   PhotonLightOptions caustics;
   caustics.caustic_only = true;

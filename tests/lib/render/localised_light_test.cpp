@@ -37,7 +37,7 @@ struct Records {
 };
 
 float at(const LocalisedLight& light, const SurfacePoint& point) {
-  const auto e = light.at(point, kUp, false);
+  const auto e = light.at(point, kUp);
   return e ? e->g : -1;
 }
 
@@ -68,7 +68,7 @@ TEST(LocalisedLight, WhatIsMissingIsNotMadeUp) {
 TEST(LocalisedLight, BelowZeroIsCutWhereItIsShown) {
   Records dark;
   dark.changes[0].update = {-1, 2, 0};
-  const auto e = dark.light().at(place({0, 0, 0}), kUp, false);
+  const auto e = dark.light().at(place({0, 0, 0}), kUp);
   ASSERT_TRUE(e);
   EXPECT_EQ(e->r, 0);
   EXPECT_EQ(e->g, 2);
@@ -86,8 +86,8 @@ TEST(LocalisedLight, ItTakesThePlaceOfRecords) {
   KnownLight known;
   known.localised = &light;
   const SurfacePoint point = place({0, 0, 0});
-  ASSERT_TRUE(known.indirect(point, kUp, kUp, true));
-  EXPECT_EQ(known.indirect(point, kUp, kUp, true)->g, 8);
+  ASSERT_TRUE(known.indirect(point, kUp, kUp));
+  EXPECT_EQ(known.indirect(point, kUp, kUp)->g, 8);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The path tracer against answers known on paper (evaluation.md 5).
+// The path tracer against answers known on paper.
 #include "lib/render/path_tracer.h"
 
 #include <gtest/gtest.h>

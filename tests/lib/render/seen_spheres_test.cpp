@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "lib/core/random.h"
+#include "tests/support/scenes.h"
 
 namespace tempolux {
 namespace {
@@ -82,6 +84,60 @@ TEST(SpheresAround, OnePlaceIsOneCell) {
 TEST(SpheresAround, ASmallStepLeavesThemAsTheyAre) {
   const std::vector<WeighedPlace> before = room({100.3, 2.2, -40.6}, 4, 3000), after = room({100.301, 2.2, -40.6}, 4, 3000);
   EXPECT_EQ(formats::view_text(spheres_around(before, 700)), formats::view_text(spheres_around(after, 700)));
+}
+
+// ---- cameras on a lattice
+
+/// A camera at `eye` that looks along -z, turned by `yaw` about +y.
+PlacedCamera camera_at(Vec3d eye, double yaw) {
+  PlacedCamera placed;
+  placed.camera.yfov_rad = 1;
+  placed.scene_from_camera.row = {Vec3d{std::cos(yaw), 0, std::sin(yaw)}, Vec3d{0, 1, 0}, Vec3d{-std::sin(yaw), 0, std::cos(yaw)}};
+  placed.scene_from_camera.translation = eye;
+  return placed;
+}
+
+class CamerasOfARoom : public testing::Test {
+ protected:
+  CamerasOfARoom() {
+    scene_.add_room({-2, 0, -2}, {2, 2.6f, 2}, test::matte(Rgb(0.5f)));
+    scene_.add_quad({-300, -0.1f, 300}, {300, -0.1f, 300}, {300, -0.1f, -300}, {-300, -0.1f, -300}, test::matte(Rgb(0.5f)));
+    tracer_.emplace(scene_.frame());
+  }
+  SeenAround look(const PlacedCamera& camera) {
+    SeenAround seen;
+    look_around(*tracer_, camera, 160, 90, seen);
+    return seen;
+  }
+  test::HandMadeScene scene_;
+  std::optional<Tracer> tracer_;
+};
+
+/// Walls are seen from about 2 m, half of the picture is 1.1 m high there: cells are 1 m wide, with planes at 2/3 and 5/3 m. A step of directions is 19 degrees.
+TEST_F(CamerasOfARoom, OfACellSeeTheSame) {
+  const SeenAround first = look(camera_at({0.2, 1.2, 1}, 0.02));
+  ASSERT_FALSE(first.places.empty());
+  const std::string view = formats::view_text(spheres_around(first.places, 420));
+  for (const Vec3d eye : {Vec3d{0.3, 1.2, 1}, Vec3d{0.2, 1.3, 1}, Vec3d{0.2, 1.2, 0.9}, Vec3d{-0.1, 1, 1.4}}) {
+    EXPECT_EQ(formats::view_text(spheres_around(look(camera_at(eye, 0.02)).places, 420)), view);
+    EXPECT_EQ(look(camera_at(eye, -0.1)).looked, first.looked);
+  }
+  EXPECT_NE(look(camera_at({0.2, 1.2, 1}, 0.5)).looked, first.looked);
+  EXPECT_NE(look(camera_at({1.2, 1.2, 1}, 0.02)).looked, first.looked);
+  SeenAround twice = first;
+  look_around(*tracer_, camera_at({0.3, 1.2, 1}, 0), 160, 90, twice);
+  EXPECT_EQ(twice.places.size(), first.places.size()) << "one cell";
+}
+
+/// In a corner most of the cell lies outside of the room: no eye is there.
+TEST_F(CamerasOfARoom, LookFromInsideAlone) {
+  const SeenAround seen = look(camera_at({-1.9, 1.2, 1.9}, -0.7));
+  ASSERT_FALSE(seen.places.empty());
+  for (const WeighedPlace& place : seen.places) {
+    EXPECT_LE(std::abs(place.position.x), 2.001);
+    EXPECT_LE(std::abs(place.position.z), 2.001);
+    EXPECT_GE(place.position.y, -0.001);
+  }
 }
 
 }  // namespace

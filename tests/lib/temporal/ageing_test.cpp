@@ -86,7 +86,7 @@ TEST(AgeDraw, SaturatedAgesAreAlwaysDrawn) {
   EXPECT_EQ(std::set<std::uint32_t>(drawn.begin(), drawn.begin() + 2), (std::set<std::uint32_t>{1, 3}));
 }
 
-/// What 500 cells of which 50 are drawn in each frame come to (algorithms.md 4.3): ages count 1 in the frame of the draw; stale: share of cells
+/// What 500 cells of which 50 are drawn in each frame come to (docs/methods/formulas.md): ages count 1 in the frame of the draw; stale: share of cells
 /// not drawn in so many frames.
 struct Steady {
   double mean = 0, above_10 = 0, above_20 = 0;

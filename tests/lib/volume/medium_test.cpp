@@ -1,4 +1,4 @@
-// Voxels, majorants and free flight against answers known on paper (algorithms.md 7.9).
+// Voxels, majorants and free flight against answers known on paper (docs/methods/formulas.md).
 #include "lib/volume/medium.h"
 
 #include <gtest/gtest.h>
@@ -199,7 +199,7 @@ TEST(Flight, KeepsThinMediaExact) {
 }
 
 /// What a half-space of isotropic scattering reflects of light at normal incidence: 1 - sqrt(1 - w) H(1). Chandrasekhar 1950;
-/// values of algorithms.md 7.9. Any profile of density along the normal reflects the same.
+/// values of docs/methods/formulas.md. Any profile of density along the normal reflects the same.
 TEST(Flight, HalfSpaceReflectsByChandrasekhar) {
   const Media media = cube(3, 24000, {});   // voxels of 1000 free ways
   struct Case {

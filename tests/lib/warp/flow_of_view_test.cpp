@@ -106,7 +106,7 @@ TEST(FlowOfView, SpeedIsInDegreesPerSecond) {
   EXPECT_NEAR(angular_speed({0, 0, 1}, {1e-9, 0, 1}, 24) / (1e-9 * 180 / std::numbers::pi * 24), 1, 1e-6);
 }
 
-/// Table and examples of algorithms.md 1.4 and 1.5: where sensitivity falls to 1, and what is slow on displays of 30 and 60 pixels per
+/// Tables of docs/methods/formulas.md: where sensitivity falls to 1, and what is slow on displays of 30 and 60 pixels per
 /// degree.
 TEST(SlowSpeed, AsInTheTable) {
   for (const auto& [speed, cutoff] : {std::pair{0.15, 26.3347}, {1.0, 16.0878}, {5.0, 5.4202}, {20.0, 1.5232}})

@@ -82,14 +82,15 @@ struct Warped {
     bool cut_off = false, light_may_differ = false;
   };
 
-  Warped(const View& target, std::vector<Source> sources, WarpOptions options = {.slow_deg_per_s = 0}) {
+  Warped(const View& target, std::vector<Source> sources, WarpOptions options = {.slow_deg_per_s = 0},
+         std::function<std::vector<float>(const GlossInDoubt&)> see_gloss = {}) {
     for (Source& source : sources) {
       keys.push_back(std::make_unique<KeyFrame>(source.image, "key", source.view.seen.camera()));
       motions.push_back(std::make_unique<ObjectMotions>(target.room.frame, source.view.room.frame));
       views.push_back(std::make_unique<KeyView>(*keys.back(), source.view.seen.camera(), target.seen.camera(), *motions.back()));
       list.push_back({views.back().get(), source.frames_away, source.cut_off, source.light_may_differ});
     }
-    WarpTarget wanted{&target.seen.camera(), &target.seen.seen(), {}, nullptr, {}};
+    WarpTarget wanted{&target.seen.camera(), &target.seen.seen(), {}, nullptr, std::move(see_gloss), {}};
     wanted.look = [&](std::span<const RasterPoint> at, FacePoint* points) { target.seen.look(at, points); };
     frame = warp(wanted, list, options);
   }

@@ -1,0 +1,64 @@
+#include "lib/gather/gather_points.h"
+
+#include <algorithm>
+
+#include "formats/error.h"
+#include "lib/gather/high_shares.h"
+#include "lib/gather/whole_photons.h"
+#include "lib/material/surface_material.h"
+#include "lib/scene/standing.h"
+
+namespace tempolux {
+
+Vec3d shift_of(const std::array<double, 3>& origin, const SceneFrame& frame) { return Vec3d{origin[0], origin[1], origin[2]} - frame.origin; }
+
+bool holds_kind(const std::string& kinds, const std::string& kind) { return ("," + kinds + ",").find("," + kind + ",") != std::string::npos; }
+
+GatherPoints make_points(const formats::PhotonMap& map, const Tracer& tracer, const Lights& lights, const PointOptions& options) {
+  const SceneFrame& frame = tracer.frame();
+  const bool caustic = holds_kind(map.header.kinds, "caustic") || !lobes_of(frame).specular;
+  PlacedPoints placed = place_points(frame, options);
+  GatherPoints result{std::move(placed.points), placed.spacing, caustic ? "direct,caustic,indirect" : "direct,indirect", map.header.history,
+                      map.header.emitted_count};
+  estimate_points(tracer, lights, map, shift_of(map.header.origin, frame), options, result.points);
+  return result;
+}
+
+DividedGatherPoints make_points(const DividedPhotonMap& map, const Tracer& tracer, const Lights& lights, const PointOptions& options) {
+  DividedGatherPoints divided{make_points(map.whole, tracer, lights, options), {}};
+  divided.high_shares = shares_of_photons(tracer, lights, map.high, options, divided.whole.points);
+  return divided;
+}
+
+PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, const Tracer& standing, const Lights& lights,
+                                const PointOptions& options, GatherPoints& points) {
+  const SceneFrame& frame = whole.frame();
+  const std::vector<bool> moves = moving_objects(frame);
+  const auto on_mover = [&moves](std::uint32_t object) { return object < moves.size() && moves[object]; };
+  const PlacedPoints placed = place_points(frame, options);
+  const auto own_points = std::ranges::find_if(placed.points, [&](const auto& p) { return on_mover(p.object); });
+  const auto standing_count = std::size_t(own_points - placed.points.begin());
+  if (standing_count != points.points.size() || placed.spacing != points.spacing)
+    throw InputError("--update: its points are not those of --point-count " + std::to_string(options.count) + " (" +
+                     std::to_string(points.points.size()) + ", not " + std::to_string(standing_count) +
+                     "); give the options they were made with, --importance included");
+  // As placed: a file rounds normals, and light sampled by a rounded one is another.
+  for (std::size_t i = 0; i < standing_count; ++i) {
+    points.points[i].position = placed.points[i].position;
+    points.points[i].normal = placed.points[i].normal;
+  }
+  const Vec3d static_shift = shift_of(light.fixed.header.origin, frame), dynamic_shift = shift_of(light.moved.header.origin, frame);
+  const PointUpdateCounts counts =
+      update_points({whole, standing, lights, light.fixed, light.moved, static_shift, dynamic_shift}, options, points.points);
+  // What moves has its photons in the dynamic map alone.
+  formats::PhotonBlock on_movers;
+  for (std::size_t i = 0; i < light.moved.photons.size(); ++i)
+    if (on_mover(light.moved.photons[i].object)) append(light.moved, i, light.moved.photons[i], on_movers);
+  points.points.insert(points.points.end(), own_points, placed.points.end());
+  std::vector<std::uint32_t> own;
+  for (std::size_t i = standing_count; i < points.points.size(); ++i) own.push_back(std::uint32_t(i));
+  estimate_points(whole, lights, on_movers, dynamic_shift, options, own, points.points);
+  return counts;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,82 @@
+#include "lib/render/choose_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "lib/gather/irradiance_points.h"
+
+namespace tempolux {
+namespace {
+
+constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
+constexpr double kFewestRays = 64;   ///< of a record: by so many lit_share() says how many it needs
+constexpr double kLeastError = 1e-12;
+
+/// Of light that photons show and paths do not meet: what n samples leave of it, at most all.
+double left_of(double square, double variance, double samples) { return std::min(square, variance / std::max(1.0, samples)); }
+
+Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, bool map) {
+  const bool records = method == IndirectMethod::records;
+  const SampleEffort& effort = method == IndirectMethod::paths ? rough.path : rough.gather;
+  const double variance = records ? (map ? effort.other_without_caustic : effort.other) : map ? effort.without_caustic : effort.all;
+  const double wanted = std::max(kLeastError, rough.wanted), samples = std::max(1.0, variance / wanted);
+  const double sample = (records ? rough.record_sample : effort.work) + (map ? Work::kCausticLookUp : 0);
+  double fixed = 0;
+  if (map || method != IndirectMethod::paths) fixed += double(order.photons) * Work::kPhoton * (1 + rough.photons_per_path);
+  if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
+  Way way{method, map, 0, fixed + order.pixels * sample * samples, wanted};
+  if (map) way.error += rough.map_error;
+  else way.error += left_of(rough.missed_caustic_square, rough.missed_caustic_variance, samples);
+  if (method == IndirectMethod::paths) way.error += left_of(rough.missed_square, rough.missed_variance, samples);
+  if (records) {
+    const double ray = rough.records * rough.record_ray;
+    const double best = ray > 0 ? std::sqrt(rough.record_error * way.work / (ray * way.error)) : 0;
+    way.rays = int(std::lround(std::clamp(best, std::min(kFewestRays, double(order.rays)), double(order.rays))));
+    way.work += ray * way.rays;
+    way.error += rough.record_error / way.rays;
+  }
+  return way;
+}
+
+}  // namespace
+
+std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool caustics) {
+  std::vector<Way> ways;
+  for (const IndirectMethod method : {IndirectMethod::paths, IndirectMethod::gather, IndirectMethod::records})
+    for (const bool map : {false, true})
+      if ((!map || caustics) && (method == IndirectMethod::paths || rough.places > 0)) ways.push_back(way_of(rough, order, method, map));
+  std::ranges::stable_sort(ways, {}, &Way::score);
+  return ways;
+}
+
+std::vector<Way> joined(const std::vector<std::vector<Way>>& ways_of_frames) {
+  std::vector<Way> all;
+  for (const std::vector<Way>& ways : ways_of_frames)
+    for (const Way& way : ways) {
+      const auto same = std::ranges::find_if(all, [&](const Way& other) { return other.method == way.method && other.map == way.map; });
+      if (same == all.end()) {
+        all.push_back(way);
+        continue;
+      }
+      same->work += way.work;
+      same->error += way.error;
+      same->rays = std::max(same->rays, way.rays);
+    }
+  std::ranges::stable_sort(all, {}, &Way::score);
+  return all;
+}
+
+std::string because(const std::vector<Way>& ways) {
+  char text[96];
+  std::string words;
+  const double least = ways.front().score();
+  for (const Way& way : ways) {
+    std::snprintf(text, sizeof text, "%s%s%s %.3g", words.empty() ? "work x squared error: " : ", ", kIndirectMethods[std::size_t(way.method)],
+                  way.map ? " beside caustics of photons" : "", least > 0 ? way.score() / least : 1.0);
+    words += text;
+  }
+  return words;
+}
+
+}  // namespace tempolux

@@ -1,0 +1,77 @@
+#!/bin/sh
+# progress.sh -- what make says at the screen. Run inside OUT by run.sh and stages.mk.
+#
+#     progress.sh begin        how much there is to do
+#     progress.sh say FILE     before the command that makes FILE:  [12/97] 0:41, about 4:50 left: frame 3, pixels
+#     progress.sh end          after the last one: what the frames cost, how noisy they are, where to look
+#
+# The environment has PROGRESS, a file that gets a line for each command begun; TOTAL, how many commands there will be; WEIGHT, what they
+# weigh together (progress.sh weigh); BEGAN, when the first one did (date +%s).
+clock() { if [ "$1" -lt 3600 ]; then printf '%d:%02d' $(($1 / 60)) $(($1 % 60)); else printf '%d h %02d min' $(($1 / 3600)) $(($1 % 3600 / 60)); fi; }
+
+stage() {   # a file inside OUT in words
+  case $1 in
+    photons) echo photons;; stands) echo 'photons of what stands still';; moved) echo 'photons that movers change';;
+    refined) echo 'more photons where smoke is noisy';; points) echo 'light on surfaces';; stands_points) echo 'light on what stands still';;
+    split) echo 'bright points apart';; cache) echo 'indirect light';; stands_cache) echo 'indirect light on what stands still';;
+    kept) echo 'indirect light, kept over time';; textures) echo 'light textures';; counts) echo 'photons counted';; lights) echo 'which way sky and sun come in';;
+    pictures | raw) echo pixels;; filtered) echo 'noise filter';; smoky) echo smoke;; keys) echo 'pixels of a key frame';;
+    walk) echo 'distance of keys';; walked) echo 'warped from keys';; path) echo 'path-traced reference';; error) echo comparison;; *) echo "$1";;
+  esac
+}
+
+# What commands cost beside each other, from names of files on standard input: CPU seconds of a frame of the demo.
+weigh() {
+  awk -F / 'BEGIN { w["stands_cache"] = 16; w["raw"] = w["pictures"] = w["keys"] = w["walked"] = 7; w["path"] = 60; w["cache"] = 5; w["kept"] = 5
+                    w["photons"] = w["stands"] = w["points"] = w["stands_points"] = w["filtered"] = w["textures"] = w["lights"] = w["smoky"] = 1 }
+            { sum += $1 in w ? w[$1] : .2 } END { printf "%.1f", sum }'
+}
+
+say() {
+  [ -n "$PROGRESS" ] || return 0   # not begun: an estimate, or rules of stages.mk by hand
+  echo "$1" >> "$PROGRESS"
+  n=$(wc -l < "$PROGRESS")
+  [ "$n" -le "$TOTAL" ] || TOTAL=$n   # a walkthrough adds keys as it goes
+  passed=$(($(date +%s) - BEGAN))
+  left=
+  [ "$passed" -lt 10 ] || left=$(sed '$d' "$PROGRESS" | weigh | awk -v passed="$passed" -v all="$WEIGHT" \
+    '$1 > .02 * all && $1 < all { printf "%d", passed * (all - $1) / $1 }')
+  [ -z "$left" ] || left=", about $(clock "$left") left"
+  name=${1##*/} folder=${1%/*}
+  frame=${name%%[-.]*}
+  case $frame in
+    *[!0-9+]*) what=$folder;;
+    *+*) what="frames $(number "${frame%+*}") to $(number "${frame#*+}"), $(stage "$folder")";;
+    *) what="frame $(number "$frame"), $(stage "$folder")";;
+  esac
+  echo "[$((n))/$TOTAL] $(clock "$passed")$left: $what"
+}
+
+number() { n_=${1#"${1%%[!0]*}"}; echo "${n_:-0}"; }   # 0012 -> 12
+
+count() { sed -n "s/^$1 := //p" plan.mk | wc -w; }
+
+begin() { echo "$(count frames) frames of $SIZE, $QUALITY: $TOTAL commands to run (V=1 shows them)"; }
+
+# Statistics of all commands that led to the frames, those of earlier makes too; what compares them with path tracing is not among them.
+end() {
+  sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk | grep -v '^path/\|^error/' | while read -r file; do
+    [ ! -f "$file" ] || echo "$file"
+  done | xargs awk -v frames="$(count frames)" -v size="$SIZE" -v out="$OUT" '
+    # The first cpu_s of a file is that of the whole command.
+    FNR == 1 { folder = FILENAME; sub("/.*", "", folder); seen = 0 }
+    /"cpu_s":/ && !seen { split($0, word, ": *"); cpu += word[2]; seen = 1 }
+    /"noise.codes":/ { split($0, word, ": *"); noise[folder] += word[2]; counted[folder]++ }
+    END {
+      printf "%d frames of %s: %.*f CPU s in all, %.1f a frame", frames, size, cpu < 10, cpu, cpu / frames
+      last = counted["filtered"] ? "filtered" : counted["pictures"] ? "pictures" : counted["raw"] ? "raw" : "keys"
+      if (counted[last]) printf "; noise %.1f codes%s", noise[last] / counted[last], last == "raw" ? " before the filter" : ""
+      printf "; %s/sheet.png\n", out
+    }'
+}
+
+case $1 in
+  say) say "$2";;
+  begin | weigh | end) $1;;
+  *) echo "progress.sh: '$1' is none of begin, say, weigh, end" >&2; exit 2;;
+esac

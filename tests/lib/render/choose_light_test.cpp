@@ -1,0 +1,121 @@
+// What way to light costs least, by rough frames that are made up.
+#include "lib/render/choose_light.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tempolux {
+namespace {
+
+/// Samples that leave .1 of a variance.
+double samples(double variance) { return variance / 0.1; }
+
+/// 10^6 pixels; a path takes 10 shadow rays and errs by 2, one half of it indirect light; the wish leaves .1.
+RoughFrame example() {
+  RoughFrame rough;
+  rough.places = 2048;
+  rough.wanted = 0.1;
+  rough.path = {10, 2, 2, 1, 1};
+  rough.gather = {8, 1.5, 1.5, 1, 1};
+  rough.record_sample = 6;
+  rough.records = 10'000;
+  rough.record_ray = 10;
+  rough.record_error = 1;
+  return rough;
+}
+constexpr Order kOrder{1e6, 0, 500};
+constexpr double kPoints = 40'000 * Work::kPoint;
+
+Way way(const std::vector<Way>& ways, IndirectMethod method, bool map = false) {
+  for (const Way& one : ways)
+    if (one.method == method && one.map == map) return one;
+  ADD_FAILURE() << "no such way";
+  return {};
+}
+
+/// Paths: 10^6 x n(2) x 10. Gathering: n(1.5) of 8, and the points. Records: n(1) of 6, W in all with the points, and 10^5 a ray: with k rays the score is
+/// (W + 1e5 k) (.1 + 1 / k), least at k = sqrt(W / (1e5 x .1)).
+TEST(WaysToLight, CostAndErrAsDerived) {
+  const std::vector<Way> ways = ways_to_light(example(), kOrder, false);
+  ASSERT_EQ(ways.size(), 3u);
+  EXPECT_NEAR(way(ways, IndirectMethod::paths).work, 1e7 * samples(2), 1);
+  EXPECT_NEAR(way(ways, IndirectMethod::paths).error, 0.1, 1e-12);
+  EXPECT_NEAR(way(ways, IndirectMethod::gather).work, 8e6 * samples(1.5) + kPoints, 1);
+  const Way records = way(ways, IndirectMethod::records);
+  EXPECT_EQ(records.rays, int(std::lround(std::sqrt((6e7 + kPoints) / 1e4))));
+  EXPECT_NEAR(records.work, 6e6 * samples(1) + kPoints + 1e5 * records.rays, 1);
+  EXPECT_NEAR(records.error, 0.1 + 1.0 / records.rays, 1e-12);
+  EXPECT_EQ(ways.front().method, IndirectMethod::records);
+}
+
+/// No other number of rays has a lower score.
+TEST(WaysToLight, RecordsHaveTheBestNumberOfRays) {
+  RoughFrame rough = example();
+  rough.record_error = 10;
+  const Way best = way(ways_to_light(rough, kOrder, false), IndirectMethod::records);
+  EXPECT_GT(best.rays, 64);
+  for (int rays = 64; rays <= 500; ++rays) {
+    const Way other{IndirectMethod::records, false, rays, 6e6 * samples(1) + kPoints + 1e5 * rays, 0.1 + 10.0 / rays};
+    EXPECT_GE(other.score(), 0.9999 * best.score()) << rays;
+  }
+}
+
+/// Without indirect light nothing pays that is to find it. Where it is most of the noise records pay, and in a small picture they do not.
+TEST(WaysToLight, FollowTheIndirectLight) {
+  RoughFrame rough = example();
+  rough.path = {10, 1, 1, 1, 1};
+  rough.gather = {8, 1, 1, 1, 1};
+  rough.record_error = 0;
+  rough.record_sample = 10;
+  EXPECT_EQ(ways_to_light(rough, kOrder, false).front().method, IndirectMethod::gather) << "a sample of it is cheaper here";
+  rough.gather.work = 10;
+  EXPECT_EQ(ways_to_light(rough, kOrder, false).front().method, IndirectMethod::paths);
+  EXPECT_EQ(ways_to_light(example(), {1e4, 0, 500}, false).front().method, IndirectMethod::paths) << "10^4 pixels do not pay for points";
+}
+
+/// A map costs its photons and look-ups and takes the caustics' noise away; its own error stays. Caustics that paths do not meet stay wrong without it.
+TEST(WaysToLight, AMapOfCausticsPaysWhereTheyAreNoisyOrNotMet) {
+  RoughFrame rough = example();
+  rough.path = {10, 20, 2, 19, 1};
+  rough.gather = {8, 19.5, 1.5, 19, 1};
+  EXPECT_TRUE(ways_to_light(rough, kOrder, true).front().map);
+  EXPECT_FALSE(ways_to_light(rough, kOrder, false).front().map) << "nothing can send them";
+  rough.map_error = 10;
+  EXPECT_FALSE(ways_to_light(rough, kOrder, true).front().map);
+  rough = example();
+  EXPECT_FALSE(ways_to_light(rough, kOrder, true).front().map);
+  rough.missed_caustic_square = 1;
+  rough.missed_caustic_variance = 1e9;
+  EXPECT_TRUE(ways_to_light(rough, kOrder, true).front().map);
+}
+
+/// Light of photons alone: paths leave it out, so records; though nothing that paths have found calls for them.
+TEST(WaysToLight, RecordsFindWhatPathsMiss) {
+  RoughFrame rough = example();
+  rough.path = {10, 1, 1, 1, 1};
+  rough.missed_square = 5;
+  rough.missed_variance = 1e9;
+  EXPECT_NE(ways_to_light(rough, kOrder, false).front().method, IndirectMethod::paths);
+}
+
+TEST(WaysToLight, WhereNothingIsMatteArePaths) {
+  RoughFrame rough;
+  const std::vector<Way> ways = ways_to_light(rough, kOrder, true);
+  for (const Way& one : ways) EXPECT_EQ(one.method, IndirectMethod::paths);
+}
+
+/// Of two frames the way with the least work x error of both: in one paths are a hundredth better, in the other ten times worse.
+TEST(WaysToLight, JoinedByTheSums) {
+  const Way paths{IndirectMethod::paths, false, 0, 1, 0.99}, records{IndirectMethod::records, false, 80, 1, 1}, slow{IndirectMethod::paths, false, 0, 10, 1};
+  Way more = records;
+  more.rays = 120;
+  const std::vector<Way> all = joined({{paths, records}, {more, slow}});
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all.front().method, IndirectMethod::records);
+  EXPECT_EQ(all.front().rays, 120);
+  EXPECT_EQ(all.front().work, 2);
+}
+
+}  // namespace
+}  // namespace tempolux

@@ -1,0 +1,53 @@
+#!/bin/sh
+# looks.sh BIN_DIR -- `make compare`: a page of two runs that asks for nothing outside, whose slider, flicker and strip work in a browser. `make film`: a film, or one
+# line that says what is missing. The browser's part is skipped without chromium.
+bin=$(cd "$1" && pwd) || exit 1
+work=$(mktemp -d) || exit 3
+trap 'rm -rf "$work"' EXIT
+bad() { echo "looks: $*" >&2; exit 1; }
+run() { make -f Makefile.example "$@" BIN="$bin" FRAMES=0,3 SIZE=32x18 QUALITY=draft PHOTONS=2k POINTS='--point-count 300' SCENE=pipelines/scenes/S2_cornell_moving.glb > "$work/log" 2>&1; }
+run demo OUT="$work/a" && run demo OUT="$work/b & <b>" PIXELS='--spp 1 --pixel-error 0' || bad "two runs: $(tail -3 "$work/log")"
+grep -q '^\[1/[0-9]*\] 0:0' "$work/log" && grep -q ', pixels$' "$work/log" || bad "no words of progress: $(cat "$work/log")"
+grep -q '^2 frames of 32x18.* CPU s' "$work/log" || bad "no last line: $(tail -3 "$work/log")"
+run compare OUT="$work/a" OTHER="$work/b & <b>" && [ -s "$work/a/compare.html" ] || bad "compare: $(cat "$work/log")"
+grep -o 'src=.\{9\}\|href=.\{9\}\|https\{0,1\}:\|url(' "$work/a/compare.html" | grep -v '^src="data:ima' | head -3 | grep . && bad 'the page asks for something outside'
+run compare OUT="$work/a" OTHER="$work/none" && bad 'compare with nothing'
+grep -q 'none: has no frames; OTHER=FOLDER names' "$work/log" || bad "compare with nothing: $(cat "$work/log")"
+
+if command -v ffmpeg > /dev/null; then
+  run film OUT="$work/a" && [ -s "$work/a/film.mp4" ] || bad "film: $(tail -3 "$work/log")"
+  n=$(ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 "$work/a/film.mp4") && [ "${n%,}" = 2 ] || bad "the film has $n frames"
+else
+  run film OUT="$work/a" && bad 'film without ffmpeg'
+  grep -q 'there is no ffmpeg; install it' "$work/log" || bad "film without ffmpeg: $(tail -1 "$work/log")"
+fi
+
+command -v chromium > /dev/null || { echo 'compare and film are right; the page in a browser: skipped, there is no chromium'; exit 0; }
+# A script at the page's end moves the slider, presses keys, and leaves what it saw as the title.
+sed 's|</html>||' "$work/a/compare.html" > "$work/tried.html"
+cat >> "$work/tried.html" << 'END'
+<script>
+addEventListener('load', () => setTimeout(() => {
+  const seen = [], b = () => document.querySelector('section.shown img.b');
+  const note = () => seen.push(document.querySelector('section.shown').dataset.frame + ' ' + b().style.clipPath);
+  note();
+  document.getElementById('split').value = 20;
+  document.getElementById('split').dispatchEvent(new Event('input'));
+  note();
+  dispatchEvent(new Event('x'));
+  document.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight'}));
+  note();
+  document.dispatchEvent(new KeyboardEvent('keydown', {key: ' '}));
+  note();
+  document.getElementById('strip').firstChild.click();
+  note();
+  seen.push(b().naturalWidth + 'x' + b().naturalHeight + ', ' + document.getElementById('strip').children.length + ' in the strip');
+  document.title = seen.join('; ');
+}, 50));
+</script>
+END
+want='0000 inset(0px 0px 0px 50%); 0000 inset(0px 0px 0px 20%); 0003 inset(0px 0px 0px 20%); 0003 inset(0px 0px 0px 100%); 0000 inset(0px 0px 0px 100%); 32x18, 2 in the strip'
+timeout 60 chromium --headless --no-sandbox --disable-gpu --user-data-dir="$work/browser" --virtual-time-budget=400 --dump-dom "file://$work/tried.html" 2> /dev/null |
+  grep -o '<title>[^<]*' > "$work/title"
+[ "$(cat "$work/title")" = "<title>$want" ] || bad "the page in a browser: $(cat "$work/title")"
+echo 'compare, its page in a browser, and film are right'

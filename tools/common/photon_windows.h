@@ -1,9 +1,0 @@
-// tools/common/photon_windows.h -- gather-temporal density.
-#pragma once
-
-namespace tempolux::tools {
-
-/// Light textures from the photons of many frames: docs/methods/density.md. Returns the exit code.
-int photon_windows(int argc, char** argv);
-
-}  // namespace tempolux::tools

@@ -1,0 +1,182 @@
+// tempolux-info on images: facts, difference, pictures.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "formats/error.h"
+#include "lib/image/any_io.h"
+#include "lib/image/exr_io.h"
+#include "lib/image/frame_identity.h"
+#include "lib/image/preview.h"
+#include "lib/image/statistics.h"
+#include "lib/image/why_mask.h"
+#include "tools/info/info_facts.h"
+
+namespace tempolux::tools {
+namespace {
+
+/// EXR with or without NaN, its R, G and B alone if it has them; any other format as lib/image reads it.
+Image load(const std::string& path, bool allow_nan, bool only_rgb = false) {
+  std::string magic(4, '\0');
+  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
+    magic.resize(std::fread(magic.data(), 1, magic.size(), file));
+    std::fclose(file);
+  }
+  if (magic != std::string("\x76\x2f\x31\x01", 4)) return load_image(path);
+  ExrReadOptions options;
+  options.allow_nan = allow_nan;
+  options.only_rgb = only_rgb;
+  return load_exr(path, options);
+}
+
+/// What a picture of it needs.
+Image load_shown(const std::string& path, const PictureOptions& options) { return load(path, true, options.layer.empty()); }
+
+constexpr std::string_view kHistory = "tempolux:history";
+
+/// History and identity by themselves, then all other attributes by their names in the file.
+Facts attribute_facts(const Image& image) {
+  Facts facts = {{"history", Facts::array()}, {"identity", nullptr}};
+  for (const auto& [name, value] : image.text) {
+    if (name == kHistory)
+      facts["history"] = lines_of(value);
+    else if (name.starts_with(kIdentityPrefix))
+      facts["identity"][name.substr(kIdentityPrefix.size())] = value;
+    else
+      facts[name] = value;
+  }
+  for (const auto& [name, value] : image.numbers) facts[name] = value;
+  for (const auto& [name, value] : image.matrices) facts[name] = value;
+  return facts;
+}
+
+/// Errors of lib/image about layers do not know the file's name.
+template <class Make>
+auto named(const std::string& path, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  }
+}
+
+Facts channel_facts(const ChannelStatistics& channel) {
+  Facts facts = {{"channel", channel.name}, {"type", channel.ids ? "uint" : "float"}, {"min", channel.min}};
+  facts.update({{"max", channel.max}, {"mean", channel.mean}, {"zeros", channel.zeros}});
+  if (channel.infinities > 0) facts["infinities"] = channel.infinities;
+  if (channel.nans > 0) facts["nans"] = channel.nans;
+  return facts;
+}
+
+/// Of a mask: for each cause the pixels that have it, and the share of the picture that it is the first cause of.
+Facts cause_facts(const Image& image, const std::string& path) {
+  Facts facts = Facts::array();
+  const double pixels = double(image.pixel_count());
+  double traced = 0;
+  for (const WhyCount& cause : count_whys(whys_in(image, path))) {
+    traced += double(cause.first);
+    facts.push_back({{"cause", cause.name}, {"pixels", cause.pixels}, {"share", double(cause.first) / pixels}});
+  }
+  facts.push_back({{"cause", "all"}, {"pixels", std::uint64_t(traced)}, {"share", traced / pixels}});
+  return facts;
+}
+
+/// A mask in the colours of its causes, any other image by its layer.
+Picture picture_of(const std::string& path, const Image& image, const PreviewOptions& preview) {
+  if (preview.layer.empty() && !image.find("R") && is_why_mask(image)) return why_picture(image, whys_in(image, path));
+  return named(path, [&] { return make_picture(image, preview); });
+}
+
+/// Stops that suit it: none for a mask, whose colours are fixed.
+double stops_of(const std::string& path, const Image& image, const std::string& layer) {
+  if (layer.empty() && !image.find("R") && is_why_mask(image)) return 0;
+  return named(path, [&] { return auto_exposure_stops(image, layer); });
+}
+
+}  // namespace
+
+Facts image_facts(const std::string& path, bool allow_nan) {
+  const Image image = load(path, allow_nan);
+  Facts facts = {{"file", path}, {"type", "image"}, {"width", image.width}, {"height", image.height}};
+  facts.update(attribute_facts(image));
+  facts["layers"] = Facts::array();
+  const std::vector<std::string> layers = image.layers();
+  for (const std::string& layer : layers) facts["layers"].push_back(layer.empty() ? "RGB" : layer);
+  facts["channels"] = Facts::array();
+  for (const ChannelStatistics& channel : channel_statistics(image))
+    facts["channels"].push_back(channel_facts(channel));
+  if (is_why_mask(image)) facts["causes"] = cause_facts(image, path);
+  if (std::ranges::find(layers, "") != layers.end()) facts["auto_exposure_stops"] = auto_exposure_stops(image, "");
+  facts["digest"] = digest_of(image);
+  return facts;
+}
+
+Facts image_difference(const std::string& a, const std::string& b) {
+  const Image image_a = load(a, true), image_b = load(b, true);
+  const std::string digest_a = digest_of(image_a), digest_b = digest_of(image_b);
+  Facts facts = {{"files", {a, b}}, {"type", "image"}, {"equal", digest_a == digest_b}};
+  Facts differing = Facts::object();
+  const Facts attributes_a = attribute_facts(image_a), attributes_b = attribute_facts(image_b);
+  Facts all = attributes_a;
+  all.update(attributes_b);
+  for (const auto& [key, unused] : all.items()) {
+    const Facts x = attributes_a.value(key, Facts()), y = attributes_b.value(key, Facts());
+    if (x != y) differing[key] = {x, y};
+  }
+  if (image_a.width != image_b.width || image_a.height != image_b.height)
+    differing["size"] = {{image_a.width, image_a.height}, {image_b.width, image_b.height}};
+  for (const Channel& channel : image_a.channels)
+    if (!image_b.find(channel.name)) differing["channel " + channel.name] = {"there", nullptr};
+  for (const Channel& channel : image_b.channels)
+    if (!image_a.find(channel.name)) differing["channel " + channel.name] = {nullptr, "there"};
+  facts["differing"] = differing;
+  if (!differing.contains("size")) {
+    facts["channels_differing"] = Facts::array();
+    for (const ChannelDifference& channel : channel_differences(image_a, image_b))
+      if (channel.differing > 0)
+        facts["channels_differing"].push_back({{"channel", channel.name},
+                                               {"pixels", channel.differing},
+                                               {"largest", channel.largest},
+                                               {"at", {channel.x, channel.y}}});
+  }
+  facts["digests"] = {digest_a, digest_b};
+  return facts;
+}
+
+void write_picture(const std::string& path, const PictureOptions& options, Output& output) {
+  const Image image = load_shown(path, options);
+  const PreviewOptions preview{options.layer, options.exposure_stops};
+  save_png(output.temporary_path(), picture_of(path, image, preview));
+}
+
+void write_sheet(const std::vector<std::string>& paths, const PictureOptions& options, Output& output) {
+  for (const std::string& path : options.marked)
+    if (std::find(paths.begin(), paths.end(), path) == paths.end()) throw InputError("--mark " + path + ": is not among the images of the sheet");
+  PreviewOptions preview{options.layer, options.exposure_stops};
+  const double steps = double(paths.size()) * (preview.exposure_stops ? 1 : 2);
+  double done = 0;
+  const auto step = [&] {
+    if (options.progress) options.progress(++done / steps);
+  };
+  if (!preview.exposure_stops) {  // frames are read twice, so that one at a time is in memory
+    std::vector<double> stops;
+    for (const std::string& path : paths) {
+      const Image image = load_shown(path, options);
+      stops.push_back(stops_of(path, image, options.layer));
+      step();
+    }
+    preview.exposure_stops = sequence_exposure_stops(stops);
+  }
+  std::vector<Picture> pictures;
+  for (const std::string& path : paths) {
+    const Image image = load_shown(path, options);
+    const Picture picture = picture_of(path, image, preview);
+    pictures.push_back(contact_sheet({picture}, 1, options.tile_width));
+    if (std::find(options.marked.begin(), options.marked.end(), path) != options.marked.end()) mark(pictures.back());
+    step();
+  }
+  save_png(output.temporary_path(), contact_sheet(pictures, options.columns, options.tile_width));
+}
+
+}  // namespace tempolux::tools

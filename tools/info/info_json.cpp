@@ -1,0 +1,110 @@
+// tempolux-info on our JSON files: statistics, comparisons, plans.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "formats/error.h"
+#include "formats/hash.h"
+#include "tools/info/info_facts.h"
+
+namespace tempolux::tools {
+namespace {
+
+constexpr std::uintmax_t kMaxBytes = 256u << 20;
+constexpr int kMaxDepth = 32;
+
+[[noreturn]] void bad(const std::string& path, const std::string& why) {
+  throw InputError(path + ": " + why);
+}
+
+Facts parse(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::file_size(path, error) > kMaxBytes && !error) bad(path, "more than 256 MiB of JSON");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) bad(path, "cannot be opened");
+  const auto limit_depth = [&](int depth, Facts::parse_event_t, Facts&) {
+    if (depth > kMaxDepth) bad(path, "nested deeper than 32 levels; this is no file of ours");
+    return true;
+  };
+  try {
+    return Facts::parse(std::istreambuf_iterator<char>(file), {}, limit_depth);
+  } catch (const nlohmann::json::parse_error& parse_error) {
+    bad(path, "byte " + std::to_string(parse_error.byte) + ": not JSON; make it anew");
+  }
+}
+
+/// The name of the format: "tempolux.stats"; scene-plan's is kept in `format`.
+std::string schema_of(const Facts& document) {
+  for (const char* key : {"schema", "format"})
+    if (document.is_object() && document.contains(key) && document[key].is_string()) {
+      const std::string name = document[key];
+      if (name.starts_with("tempolux")) return name;
+    }
+  return "";
+}
+
+void check_stats(const std::string& path, const Facts& document) {
+  for (const char* key : {"cpu_s", "wall_s"})
+    if (!document.value(key, Facts()).is_number()) bad(path, std::string(key) + ": is no number");
+  if (!document.value("tool", Facts()).is_string()) bad(path, "tool: is no text");
+}
+
+/// What error-report needs of a comparison.
+void check_comparison(const std::string& path, const Facts& document) {
+  const Facts total = document.value("total", Facts());
+  if (!total.is_object()) bad(path, "total: is missing, or no object");
+  for (const char* key : {"pixels", "mse"})
+    if (!total.value(key, Facts()).is_number()) bad(path, std::string("total: ") + key + ": is no number");
+}
+
+Facts load(const std::string& path) {
+  Facts document = parse(path);
+  const std::string schema = schema_of(document);
+  if (schema.empty()) bad(path, "JSON, but not of ours: it has no \"schema\": \"tempolux...\"");
+  const Facts version = document.value("version", Facts());
+  const std::string text = version.is_string() ? version.get<std::string>() : version.dump();
+  if (text != "1" && !text.starts_with("1."))
+    bad(path, "version " + text + " is not known; use a newer tempolux");
+  if (schema == "tempolux.stats") check_stats(path, document);
+  if (schema == "tempolux.comparison") check_comparison(path, document);
+  return document;
+}
+
+std::string digest_of_document(Facts document) {
+  for (const char* key : {"command", "history", "tool_version"}) document.erase(key);
+  return hash_hex(nlohmann::json(document).dump());  // keys sorted
+}
+
+}  // namespace
+
+Facts json_facts(const std::string& path) {
+  const Facts document = load(path);
+  Facts facts = {{"file", path}, {"type", schema_of(document)}};
+  facts["content"] = document;
+  facts["digest"] = digest_of_document(document);
+  return facts;
+}
+
+Facts json_difference(const std::string& a, const std::string& b) {
+  const Facts document_a = load(a), document_b = load(b);
+  Facts facts = {{"files", {a, b}}, {"type", schema_of(document_a)}};
+  facts["equal"] = digest_of_document(document_a) == digest_of_document(document_b);
+  Facts differing = Facts::object();
+  // JSON Pointer of each place that is not the same, with both values.
+  for (const auto& step : nlohmann::json::diff(nlohmann::json(document_a), nlohmann::json(document_b))) {
+    const std::string place = step["path"];
+    const nlohmann::json pointed_a = nlohmann::json(document_a), pointed_b = nlohmann::json(document_b);
+    const nlohmann::json::json_pointer pointer(place);
+    const auto value_in = [&](const nlohmann::json& document) {
+      return document.contains(pointer) ? Facts(document[pointer]) : Facts(nullptr);
+    };
+    differing[place] = {value_in(pointed_a), value_in(pointed_b)};
+  }
+  facts["differing"] = differing;
+  facts["digests"] = {digest_of_document(document_a), digest_of_document(document_b)};
+  return facts;
+}
+
+}  // namespace tempolux::tools

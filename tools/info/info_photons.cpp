@@ -1,0 +1,236 @@
+// tempolux-info on .photons: facts, difference, export.
+#include <array>
+#include <bit>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "formats/photons/summary.h"
+#include "lib/image/statistics.h"
+#include "tools/info/info_facts.h"
+
+namespace tempolux::tools {
+namespace {
+
+using namespace formats;
+
+constexpr const char* kKindNames[] = {"direct", "caustic", "indirect", "volume", "tentative"};
+
+std::string column_names(std::uint32_t columns) {
+  std::string names;
+  if (columns & column_direction) names = "direction";
+  if (columns & column_albedo) names += names.empty() ? "albedo" : ",albedo";
+  return names.empty() ? "none" : names;
+}
+
+/// The header but for history and identity.
+Facts header_facts(const PhotonHeader& header) {
+  Facts facts = {
+      {"map", header.map},         {"kinds", header.kinds},        {"columns", column_names(header.columns)},
+      {"origin_m", header.origin}, {"groups", header.group_count}, {"emitted_paths", header.emitted_count}};
+  if (!header.part.empty()) facts["part"] = header.part;
+  if (header.pilots > 0) facts["pilots_of_a_group"] = header.pilots;
+  if (!header.base_name.empty()) {
+    facts["overlay_of"] = header.base_name;
+    facts["base_digest"] = header.base_digest;
+  }
+  return facts;
+}
+
+Facts share_facts(const PhotonShare& share) { return {{"photons", share.count}, {"flux_W", share.flux}}; }
+
+Facts kind_facts(const PhotonSummary& summary) {
+  Facts facts = Facts::object();
+  for (std::size_t kind = 0; kind < summary.by_kind.size(); ++kind)
+    if (summary.by_kind[kind].count > 0) facts[kKindNames[kind]] = share_facts(summary.by_kind[kind]);
+  return facts;
+}
+
+Facts total_facts(const PhotonTotals& totals) {
+  return {{"emitted_flux_W", totals.emitted_flux},
+          {"stored_flux_W", totals.stored_flux},
+          {"escaped_flux_W", totals.escaped_flux},
+          {"absorbed_flux_W", totals.absorbed_flux}};
+}
+
+/// How old the groups are: of each frame at which some were traced their number and paths.
+Facts group_facts(const std::vector<GroupFlux>& ledger) {
+  std::map<std::int32_t, std::pair<std::uint64_t, std::uint64_t>> by_frame;
+  for (const GroupFlux& group : ledger) {
+    ++by_frame[group.frame].first;
+    by_frame[group.frame].second += group.paths;
+  }
+  Facts facts = Facts::array();
+  for (const auto& [frame, count] : by_frame) facts.push_back({{"frame", frame}, {"groups", count.first}, {"paths", count.second}});
+  return facts;
+}
+
+std::string ply_header(std::uint64_t count) {
+  std::string text = "ply\nformat binary_little_endian 1.0\ncomment photons; flux in W, positions in m\n";
+  text += "element vertex " + std::to_string(count) + "\n";
+  for (const char* name : {"x", "y", "z"}) text += std::string("property double ") + name + "\n";
+  for (const char* name : {"nx", "ny", "nz", "flux_r", "flux_g", "flux_b"})
+    text += std::string("property float ") + name + "\n";
+  text += "property ushort object\n";
+  for (const char* name : {"kind", "bounce", "red", "green", "blue"})
+    text += std::string("property uchar ") + name + "\n";
+  return text + "end_header\n";
+}
+
+/// One vertex as the header above says, little-endian as every machine we build for.
+void append_vertex(std::string& to, const std::array<double, 3>& position, const Photon& photon,
+                   double white) {
+  static_assert(std::endian::native == std::endian::little);
+  const auto put = [&to](const auto& value) {
+    char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    to.append(bytes, sizeof value);
+  };
+  put(position);
+  put(decode_normal(photon.normal));
+  put(photon.flux);
+  put(photon.object);
+  put(photon.kind);
+  put(photon.bounce);
+  put(point_color(photon.flux, white));
+}
+
+/// A photon of a block, with the columns that the file has.
+void append_row(std::string& to, const std::array<double, 3>& position, const PhotonBlock& block, std::size_t i,
+                std::uint32_t columns) {
+  const Photon& photon = block.photons[i];
+  const auto normal = decode_normal(photon.normal);
+  char text[400];
+  const int length =
+      std::snprintf(text, sizeof text, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.6g,%.6g,%.6g,%u,%s,%u", position[0],
+                    position[1], position[2], double(photon.flux[0]), double(photon.flux[1]),
+                    double(photon.flux[2]), double(normal[0]), double(normal[1]), double(normal[2]),
+                    unsigned(photon.object), kKindNames[std::size_t(photon.kind)], unsigned(photon.bounce));
+  to.append(text, std::size_t(length));
+  const auto add = [&](double value) {
+    to.append(text, std::size_t(std::snprintf(text, sizeof text, ",%.6g", value)));
+  };
+  if (columns & column_direction)
+    for (const float w : decode_normal(block.directions[i])) add(double(w));
+  if (columns & column_albedo)
+    for (std::size_t c = 0; c < 3; ++c) add(block.albedos[i][c] / 255.0);
+  to += '\n';
+}
+
+}  // namespace
+
+Facts photon_facts(const std::string& path) {
+  PhotonReader reader(path);
+  const PhotonSummary summary = summarise(reader);
+  const PhotonTotals& totals = reader.totals();
+  Facts facts = {{"file", path}, {"type", "photons"}, {"history", lines_of(reader.header().history)}};
+  facts["identity"] = identity_facts(reader.header().identity);
+  facts.update(header_facts(reader.header()));
+  facts["photons"] = totals.photon_count;
+  if (summary.all.count > 0) {
+    facts["bounds_m"] = {{"min", summary.bounds_min}, {"max", summary.bounds_max}};
+    facts["mean_flux_W"] = summary.mean_flux;
+    facts["largest_flux_W"] = summary.largest_flux;
+    facts["largest_bounce"] = summary.largest_bounce;
+  }
+  facts.update(total_facts(totals));
+  facts["by_kind"] = kind_facts(summary);
+  if (!reader.header().majorants.empty()) facts["groups_traced_at"] = group_facts(reader.ledger());
+  facts["by_object"] = Facts::array();
+  for (const auto& [object, share] : summary.by_object) {
+    Facts line = {{"object", object}};
+    line.update(share_facts(share));
+    facts["by_object"].push_back(line);
+  }
+  facts["digest"] = reader.digest();
+  return facts;
+}
+
+Facts photon_difference(const std::string& a, const std::string& b) {
+  PhotonReader reader_a(a), reader_b(b);
+  const PhotonDifference records = compare(reader_a, reader_b);
+  Facts differing = Facts::object();
+  const auto compare_facts = [&differing](const Facts& x, const Facts& y) {
+    for (const auto& [key, value] : x.items())
+      if (const Facts other = y.value(key, Facts()); other != value) differing[key] = {value, other};
+  };
+  const PhotonHeader &header_a = reader_a.header(), &header_b = reader_b.header();
+  compare_facts({{"history", lines_of(header_a.history)}}, {{"history", lines_of(header_b.history)}});
+  compare_facts({{"identity", identity_facts(header_a.identity)}},
+                {{"identity", identity_facts(header_b.identity)}});
+  compare_facts(header_facts(header_a), header_facts(header_b));
+  compare_facts({{"photons", reader_a.totals().photon_count}}, {{"photons", reader_b.totals().photon_count}});
+  compare_facts(total_facts(reader_a.totals()), total_facts(reader_b.totals()));
+
+  Facts facts = {{"files", {a, b}}, {"type", "photons"}};
+  facts["equal"] = reader_a.digest() == reader_b.digest();
+  facts["differing"] = differing;
+  facts["records_compared"] = records.records;
+  facts["records_differing"] = records.differing;
+  if (records.differing > 0) {
+    facts["first_differing_record"] = records.first;
+    facts["largest_position_difference_m"] = records.largest_position;
+    facts["largest_flux_difference_W"] = records.largest_flux;
+  }
+  facts["digests"] = {reader_a.digest(), reader_b.digest()};
+  return facts;
+}
+
+void print_groups(const std::string& path, Output& output) {
+  PhotonReader reader(path, {.digest = false});
+  std::vector<std::uint64_t> photons(reader.header().group_count);
+  PhotonBlock block;
+  while (reader.read_block(block)) photons[block.group] += block.photons.size();
+  if (reader.ledger().empty()) throw InputError(path + ": does not say what became of its groups: it has no ledger");
+  const bool dated = !reader.header().majorants.empty();
+  std::string text = std::string("group,") + (dated ? "frame,paths," : "") + "photons,emitted_r_W,emitted_g_W,emitted_b_W\n";
+  for (const GroupFlux& group : reader.ledger()) {
+    char line[200];
+    int length = std::snprintf(line, sizeof line, "%u,", unsigned(group.group));
+    if (dated) length += std::snprintf(line + length, sizeof line - std::size_t(length), "%d,%llu,", int(group.frame), (unsigned long long)(group.paths));
+    std::snprintf(line + length, sizeof line - std::size_t(length), "%llu,%.9g,%.9g,%.9g\n", (unsigned long long)(photons[group.group]),
+                  group.emitted[0], group.emitted[1], group.emitted[2]);
+    text += line;
+  }
+  output.write(text.data(), text.size());
+}
+
+void export_photons(const std::string& path, const std::string& format, Output& output) {
+  const bool ply = format == "ply";
+  double white = 0;
+  std::string text;
+  if (ply) {  // its header says the count and colours need the brightest photon: the file is read twice
+    if (path == "-") throw InputError("-: PLY reads its input twice; save the stream to a file first");
+    PhotonReader first(path, {.digest = false});
+    const PhotonSummary summary = summarise(first);
+    white = summary.largest_flux;
+    text = ply_header(summary.all.count);
+  }
+  PhotonReader reader(path, {.digest = false});
+  const std::array<double, 3> origin = reader.header().origin;
+  const std::uint32_t columns = reader.header().columns;
+  if (!ply)
+    text = std::string("x_m,y_m,z_m,flux_r_W,flux_g_W,flux_b_W,nx,ny,nz,object,kind,bounce") +
+           (columns & column_direction ? ",wi_x,wi_y,wi_z" : "") +
+           (columns & column_albedo ? ",albedo_r,albedo_g,albedo_b" : "") + "\n";
+  PhotonBlock block;
+  while (reader.read_block(block)) {
+    for (std::size_t i = 0; i < block.photons.size(); ++i) {
+      const Photon& photon = block.photons[i];
+      std::array<double, 3> position = origin;
+      for (std::size_t c = 0; c < 3; ++c) position[c] += double(photon.position[c]);
+      if (ply)
+        append_vertex(text, position, photon, white);
+      else
+        append_row(text, position, block, i, columns);
+    }
+    output.write(text.data(), text.size());
+    text.clear();
+  }
+  output.write(text.data(), text.size());
+}
+
+}  // namespace tempolux::tools

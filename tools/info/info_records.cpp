@@ -1,0 +1,235 @@
+// tempolux-info on .irradpoints and .irradcache: facts, difference, export.
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "formats/irradcache/summary.h"
+#include "formats/irradpoints/summary.h"
+#include "lib/image/statistics.h"
+#include "tools/info/info_facts.h"
+#include "tools/info/point_table.h"
+
+namespace tempolux::tools {
+namespace {
+
+using namespace formats;
+
+/// nullptr of what holds no number.
+Facts spread_facts(const Spread& spread) {
+  if (spread.count == 0) return nullptr;
+  return {{"min", spread.min}, {"max", spread.max}, {"mean", spread.mean()}};
+}
+
+Facts channel_facts(const std::array<Spread, 3>& channels) {
+  Facts facts = {{"min", Facts::array()}, {"max", Facts::array()}, {"mean", Facts::array()}};
+  for (const Spread& channel : channels) {
+    if (channel.count == 0) return nullptr;
+    facts["min"].push_back(channel.min);
+    facts["max"].push_back(channel.max);
+    facts["mean"].push_back(channel.mean());
+  }
+  return facts;
+}
+
+void add_census(const RecordCensus& census, const char* what, Facts& facts) {
+  facts["by_set"] = {{"static", census.by_set[0]}, {"dynamic", census.by_set[1]}};
+  if (census.count > 0)
+    facts["bounds_m"] = {{"min", {census.position[0].min, census.position[1].min, census.position[2].min}},
+                         {"max", {census.position[0].max, census.position[1].max, census.position[2].max}}};
+  facts["by_object"] = Facts::array();
+  for (const auto& [object, count] : census.by_object)
+    facts["by_object"].push_back({{"object", object}, {what, count}});
+}
+
+Facts header_facts(const IrradpointsHeader& header) {
+  Facts facts = {{"kinds", header.kinds},
+                 {"origin_m", header.origin},
+                 {"spacing_m", header.spacing},
+                 {"emitted_paths", header.emitted_count}};
+  if (!header.part.empty()) facts["part"] = header.part;
+  return facts;
+}
+
+std::string column_names(std::uint32_t columns) {
+  std::string names;
+  if (columns & column_influence) names = "influence";
+  if (columns & column_update) names += names.empty() ? "update" : ",update";
+  if (columns & column_clearance) names += names.empty() ? "clearance" : ",clearance";
+  return names.empty() ? "none" : names;
+}
+
+Facts header_facts(const IrradcacheHeader& header) {
+  return {{"columns", column_names(header.columns)},
+          {"origin_m", header.origin},
+          {"rays", header.rays},
+          {"error_bound", header.error_bound},
+          {"least_cosine", header.least_cosine},
+          {"radius_limits_m", {header.min_radius, header.max_radius}},
+          {"placed_frames", header.placed_frames}};
+}
+
+Facts total_facts(const IrradpointsTotals& totals) {
+  return {{"points", totals.point_count},
+          {"direct_sum_W_m2", totals.direct},
+          {"caustic_sum_W_m2", totals.caustic},
+          {"indirect_sum_W_m2", totals.indirect}};
+}
+
+Facts total_facts(const IrradcacheTotals& totals) {
+  return {{"records", totals.record_count}, {"irradiance_sum_W_m2", totals.irradiance}};
+}
+
+template <class File>
+Facts start_of(const std::string& path, const char* type, const File& file) {
+  Facts facts = {{"file", path}, {"type", type}, {"history", lines_of(file.header.history)}};
+  facts["identity"] = identity_facts(file.header.identity);
+  facts.update(header_facts(file.header));
+  facts.update(total_facts(file.totals));
+  return facts;
+}
+
+template <class File>
+Facts difference(const std::array<std::string, 2>& names, const char* type, const File& a, const File& b) {
+  const auto all_of = [](const File& file) {
+    Facts facts = {{"history", lines_of(file.header.history)}, {"identity", identity_facts(file.header.identity)}};
+    facts.update(header_facts(file.header));
+    facts.update(total_facts(file.totals));
+    return facts;
+  };
+  const Facts of_a = all_of(a), of_b = all_of(b);
+  const std::string digest_a = digest_of(a), digest_b = digest_of(b);
+  Facts facts = {{"files", names}, {"type", type}, {"equal", digest_a == digest_b}, {"differing", Facts::object()}};
+  for (const auto& [key, value] : of_a.items())
+    if (of_b[key] != value) facts["differing"][key] = {value, of_b[key]};
+  const RecordDifference records = compare(a, b);
+  facts["records_compared"] = records.records;
+  facts["records_differing"] = records.differing;
+  if (records.differing > 0) {
+    facts["first_differing_record"] = records.first;
+    facts["largest_position_difference_m"] = records.largest_position;
+    facts["largest_irradiance_difference_W_m2"] = records.largest_irradiance;
+  }
+  facts["digests"] = {digest_a, digest_b};
+  return facts;
+}
+
+/// Position in world space and normal: how every row begins.
+template <class Record, class Normal>
+void start_row(PointTable& table, const std::array<double, 3>& origin, const Record& record, const Normal& normal) {
+  for (std::size_t c = 0; c < 3; ++c) table.add(origin[c] + double(record.position[c]));
+  for (const float n : normal) table.add(double(n));
+}
+
+void add_colour(PointTable& table, const std::array<float, 3>& irradiance, double white) {
+  for (const std::uint8_t c : point_color(irradiance, white)) table.add_colour(c);
+}
+
+double largest(const std::array<float, 3>& irradiance) {
+  return double(std::max({irradiance[0], irradiance[1], irradiance[2]}));
+}
+
+std::array<float, 3> all_kinds(const IrradiancePointRecord& point) {
+  std::array<float, 3> sum{};
+  for (std::size_t c = 0; c < 3; ++c) sum[c] = point.direct[c] + point.caustic[c] + point.indirect[c];
+  return sum;
+}
+
+}  // namespace
+
+Facts irradpoints_facts(const std::string& path) {
+  const IrradpointsFile file = load_irradpoints(path);
+  const IrradpointsSummary summary = summarise(file);
+  Facts facts = start_of(path, "irradpoints", file);
+  const auto add_kind = [&](const char* name, const IrradianceShare& share) {
+    if (("," + file.header.kinds + ",").find(std::string(",") + name + ",") == std::string::npos) return;
+    facts["by_kind"][name] = {{"irradiance_W_m2", channel_facts(share.irradiance)}, {"flux_W", share.flux}};
+  };
+  facts["by_kind"] = Facts::object();
+  add_kind("direct", summary.direct);
+  add_kind("caustic", summary.caustic);
+  add_kind("indirect", summary.indirect);
+  facts["radius_m"] = spread_facts(summary.radius);
+  add_census(summary.points, "points", facts);
+  facts["digest"] = digest_of(file);
+  return facts;
+}
+
+Facts irradcache_facts(const std::string& path) {
+  const IrradcacheFile file = load_irradcache(path);
+  const IrradcacheSummary summary = summarise(file);
+  Facts facts = start_of(path, "irradcache", file);
+  facts["irradiance_W_m2"] = channel_facts(summary.irradiance);
+  facts["radius_m"] = spread_facts(summary.radius);
+  facts["radius_unclamped_m"] = spread_facts(summary.radius_unclamped);
+  if (file.header.columns & column_influence) facts["influence_W_m2"] = spread_facts(summary.influence);
+  add_census(summary.records, "records", facts);
+  facts["digest"] = digest_of(file);
+  return facts;
+}
+
+Facts irradpoints_difference(const std::string& a, const std::string& b) {
+  return difference({a, b}, "irradpoints", load_irradpoints(a), load_irradpoints(b));
+}
+
+Facts irradcache_difference(const std::string& a, const std::string& b) {
+  return difference({a, b}, "irradcache", load_irradcache(a), load_irradcache(b));
+}
+
+void export_irradpoints(const std::string& path, const std::string& format, Output& output) {
+  const IrradpointsFile file = load_irradpoints(path);
+  double white = 0;
+  for (const IrradiancePointRecord& point : file.records) white = std::max(white, largest(all_kinds(point)));
+  PointTable table(format, output, file.records.size(), "irradiance points; irradiance in W/m^2, positions in m",
+                   {{"direct", "W_m2", 3}, {"caustic", "W_m2", 3}, {"indirect", "W_m2", 3}, {"radius", "m", 1}});
+  for (const IrradiancePointRecord& point : file.records) {
+    start_row(table, file.header.origin, point, decode_normal(point.normal));
+    for (const auto* irradiance : {&point.direct, &point.caustic, &point.indirect})
+      for (const float e : *irradiance) table.add(double(e));
+    table.add(double(point.radius));
+    add_colour(table, all_kinds(point), white);
+    table.end_row(point.object, std::uint8_t(point.set));
+  }
+  table.finish();
+}
+
+void export_irradcache(const std::string& path, const std::string& format, Output& output) {
+  const IrradcacheFile file = load_irradcache(path);
+  double white = 0;
+  for (const IrradianceCacheRecord& record : file.records) white = std::max(white, largest(record.irradiance));
+  std::vector<PointTable::Column> columns{{"irradiance", "W_m2", 3}, {"radius", "m", 1}, {"radius_unclamped", "m", 1}};
+  const bool csv = format == "csv", influence = csv && file.header.columns & column_influence,
+             update = csv && file.header.columns & column_update, clearance = csv && file.header.columns & column_clearance;
+  if (csv)
+    for (const auto& [gradient, unit] : {std::pair{"rotational", "W_m2"}, {"translational", "W_m3"}})
+      for (const char* channel : {"_r", "_g", "_b"})
+        for (const char* axis : {"_x", "_y", "_z"})
+          columns.push_back({std::string(gradient) + channel + axis, unit, 1});
+  if (influence) columns.push_back({"influence", "W_m2", 1});
+  if (update) columns.push_back({"update", "W_m2", 3});
+  if (clearance)
+    for (int k = 0; k < 16; ++k) columns.push_back({"clearance_" + std::to_string(k), "m", 1});
+  PointTable table(format, output, file.records.size(), "irradiance records; irradiance in W/m^2, positions in m",
+                   columns);
+  for (const IrradianceCacheRecord& record : file.records) {
+    start_row(table, file.header.origin, record, record.normal);
+    for (const float e : record.irradiance) table.add(double(e));
+    table.add(double(record.radius));
+    table.add(double(record.radius_unclamped));
+    if (csv)
+      for (const auto* gradients : {&record.rotational, &record.translational})
+        for (const auto& channel : *gradients)
+          for (const float g : channel) table.add(double(g));
+    if (influence) table.add(double(record.influence));
+    if (update)
+      for (const float e : record.update) table.add(double(e));
+    if (clearance)
+      for (std::size_t k = 0; k < 16; ++k)
+        table.add(double(record.clearance_reach) * double(record.clearance[k]) / 255);
+    add_colour(table, record.irradiance, white);
+    table.end_row(record.object, std::uint8_t(record.set));
+  }
+  table.finish();
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,47 @@
+#include "tools/stages/base_frame.h"
+
+#include <cmath>
+
+#include "formats/error.h"
+#include "lib/image/exr_io.h"
+#include "lib/image/frame_identity.h"
+#include "lib/image/nonzero_pixels.h"
+
+namespace tempolux::tools {
+namespace {
+
+std::vector<std::uint8_t> read_mask(const std::string& name, const Picture& picture) {
+  const Image image = load_exr(name);
+  if (image.width != picture.width || image.height != picture.height)
+    throw InputError(name + ": " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+                     " pixels; a mask has the size of the picture");
+  return nonzero_pixels(image);
+}
+
+/// Matrices are stored as float32, so that of one camera they are equal to the bit; absent: not known, not another.
+bool is_other(const Image& image, const char* name, const std::array<double, 16>& matrix) {
+  const auto found = image.matrices.find(name);
+  if (found == image.matrices.end()) return false;
+  for (std::size_t i = 0; i < 16; ++i)
+    if (float(found->second[i]) != float(matrix[i])) return true;
+  return false;
+}
+
+}  // namespace
+
+BaseFrame read_base_frame(Tool& tool, const std::string& mask, const std::string& base, const SceneFrame& frame,
+                          const Picture& picture) {
+  BaseFrame result{read_mask(mask, picture), load_exr(base)};
+  tool.depends_on(mask);
+  tool.depends_on(base, InputRole::replaceable);
+  check_identity(tool, base, identity_in(result.base), frame);
+  if (is_other(result.base, "worldToCamera", picture.world_to_camera) ||
+      is_other(result.base, "worldToNDC", picture.world_to_ndc)) {
+    const std::string message = base + ": seen by another camera than frame " + std::to_string(frame.frame) + " is";
+    if (!tool.common().allow_stale) throw InputError(message + "; give a base of this view, or pass --allow-stale");
+    tool.warn(message);
+  }
+  return result;
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,213 @@
+#include "tools/stages/build_records.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "formats/error.h"
+#include "lib/gather/bright_points.h"
+#include "lib/gather/cache_files.h"
+#include "lib/image/images_by_module.h"
+#include "lib/render/camera_records.h"
+#include "lib/scene/standing.h"
+
+namespace tempolux::tools {
+namespace {
+
+/// Header of a cache placed for these frames.
+formats::IrradcacheHeader cache_header(const CacheOptions& options, const SceneFrame& frame, const std::vector<int>& frames,
+                                       std::span<const IrradianceRecord> records, float least_cosine) {
+  formats::IrradcacheHeader header;
+  header.identity = identity_of(frame);
+  header.identity.first_frame = *std::min_element(frames.begin(), frames.end());
+  header.identity.last_frame = *std::max_element(frames.begin(), frames.end());
+  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  header.columns = formats::column_clearance;
+  header.rays = std::uint32_t(options.gather.rays);
+  header.error_bound = double(options.placement.error_bound);
+  header.least_cosine = double(least_cosine);
+  for (const IrradianceRecord& record : records) {
+    header.min_radius =
+        header.max_radius > 0 ? std::min(header.min_radius, double(record.radius)) : double(record.radius);
+    header.max_radius = std::max(header.max_radius, double(record.radius));
+  }
+  std::vector<int> sorted = frames;
+  std::sort(sorted.begin(), sorted.end());
+  for (int f : sorted) {
+    if (!header.placed_frames.empty() && header.placed_frames.back()[1] >= f - 1) header.placed_frames.back()[1] = f;
+    else header.placed_frames.push_back({f, f});
+  }
+  return header;
+}
+
+/// By pixel of the frame, 0: nobody looks there; empty without --mask.
+std::vector<std::uint8_t> wanted_pixels(Tool& tool, const CacheOptions& options, int number) {
+  if (options.mask.empty()) return {};
+  const std::string name = frame_name(options.mask, number);
+  tool.depends_on(name);
+  MaskPixels mask = mask_by_module(name, 512ull << 20);
+  if (mask.width != options.width || mask.height != options.height)
+    throw InputError(name + ": " + std::to_string(mask.width) + "x" + std::to_string(mask.height) +
+                     " pixels; a mask has the size of the picture, --size");
+  return std::move(mask.pixels);
+}
+
+/// InputError unless all but the cameras is the same at two frames.
+void check_lit_alike(const CacheOptions& options, const SceneFrame& frame, const SceneFrame& first) {
+  if (!formats::stale_concerns(identity_of(frame), identity_of(first)).empty())
+    throw InputError(options.scene() + ": frame " + std::to_string(frame.frame) + " is lit or built differently from frame " +
+                     std::to_string(first.frame) + ": one cache cannot hold for both; make one for each");
+}
+
+/// The cameras that records are placed for. `at`: the scene at a frame, or as it stands there; `first`: at the first.
+RecordCameras cameras_of(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames, const SceneFrame& first,
+                         std::function<SceneFrame(int)> at) {
+  RecordCameras cameras{frames, input.scene().camera_node(tool.common().camera), options.width, options.height, {}, {}, {}, {}};
+  cameras.at = [&options, &first, at = std::move(at)](int number) {
+    SceneFrame frame = at(number);
+    check_lit_alike(options, frame, first);
+    return frame;
+  };
+  cameras.wanted = [&](int number) { return wanted_pixels(tool, options, number); };
+  cameras.progress = [&](double done) { tool.progress(done); };
+  cameras.added = [&](int number, std::size_t records) { tool.stats().set("records_added." + std::to_string(number), double(records)); };
+  return cameras;
+}
+
+void count(Tool& tool, std::size_t records, const GatherCounts& counts) {
+  tool.stats().count("records", double(records));
+  tool.stats().count("gather_rays", double(counts.rays));
+  tool.stats().count("near_hits", double(counts.near_hits));
+  tool.stats().count("points_read", double(counts.points_read));
+  tool.stats().count("shadow_rays", double(counts.shadow_rays));
+  tool.stats().count("unanswered", double(counts.unanswered));
+}
+
+/// Points made from photons, read, or read as two parts: high_shares receives what the high part has of each.
+GatherPoints gather_points(Tool& tool, const CacheOptions& options, const Tracer& tracer, const Lights& lights, std::vector<float>& high_shares) {
+  if (options.high.empty())
+    return options.points.empty() ? points_of_photons(tool, options.photons, tracer, lights, options.points_of(tracer.frame()))
+                                  : read_points(tool, options.points, tracer.frame());
+  DividedGatherPoints divided = options.points.empty() ? points_of_parts(tool, options, tracer, lights)
+                                                       : read_divided_points(tool, options.points, options.high, tracer.frame());
+  high_shares = std::move(divided.high_shares);
+  return std::move(divided.whole);
+}
+
+/// Dynamic maps of a frame, its own first, as densities over the standing scene.
+std::vector<SignedDensity> read_changes(Tool& tool, const CacheOptions& options, const Tracer& standing, const SceneFrame& frame) {
+  std::vector<SignedDensity> maps;
+  const DensityOptions density{options.point.neighbours, options.point.max_radius, kChangeProbes};
+  for (const std::string& name : options.dynamic) {
+    const std::string file = frame_name(name, frame.frame);
+    const bool own = maps.empty();
+    const formats::PhotonMap map = own ? read_photons(tool, file, frame, LightNeeded::all, "dynamic")
+                                       : read_earlier_change(tool, file, frame);
+    const std::array<double, 3>& origin = map.header.origin;
+    maps.emplace_back(standing, map.photons, density, Vec3d{origin[0], origin[1], origin[2]} - frame.origin);
+  }
+  return maps;
+}
+
+}  // namespace
+
+void build_records(Tool& tool, SceneInput& input, CacheOptions options, const std::vector<int>& frames) {
+  Output output(options.output, tool.common().no_clobber);
+  tool.stats().phase("evaluate");
+  const bool standing = options.map == "static";
+  const auto state = [&](int number) { return standing ? standing_scene(input.at(number)) : input.at(number); };
+  const SceneFrame first = state(frames.front());
+  tool.stats().phase("build");
+  const Tracer tracer(first);
+  const Lights lights(first, input.emission(first.frame));
+  if (!options.points.empty()) tool.stats().phase("read points");
+  std::vector<float> high_shares;
+  const GatherPoints points = gather_points(tool, options, tracer, lights, high_shares);
+  tool.stats().phase("prepare records");
+  if (!options.keep_points.empty()) {
+    Output keep(options.keep_points, tool.common().no_clobber);
+    write_points(tool, points, first, keep);
+  }
+  PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
+  const std::vector<LampPhoton> beside_lamps = note_lamps_beside(tracer, lights, lookup);
+  std::optional<BrightPoints> bright;
+  if (!beside_lamps.empty() || std::ranges::any_of(high_shares, [](float share) { return share > 0; })) {
+    bright.emplace(tracer, lights, lookup, std::move(high_shares), BrightOptions{.seed = options.gather.seed, .beside_lamps = beside_lamps});
+    tool.stats().count("bright_points", double(bright->spot_count()));
+    tool.stats().count("bright_sites", double(bright->site_count()));
+    options.gather.bright = &*bright;
+  }
+  const FinalGather gather(tracer, lights, lookup, options.gather);
+  RecordStore store({.least_cosine = least_cosine_of(options.placement.error_bound)});
+  std::string history = points.history;
+  if (!options.records.empty())
+    history = read_records(tool, options.records, InputRole::replaceable, first, store);
+
+  tool.stats().phase("records", true);
+  const GatherCounts counts = place_for_cameras(gather, tracer, cameras_of(tool, input, options, frames, first, state), options.placement, store);
+  tool.stats().phase("write");
+  formats::IrradcacheHeader header = cache_header(options, first, frames, store.records(), store.least_cosine());
+  if (standing) header.identity.first_frame = first.segment.first, header.identity.last_frame = first.segment.last;
+  header.history = history + tool.history_line();
+  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  writer.write(to_file(store.records(), first));
+  writer.finish();
+  output.commit();
+  tool.stats().end_phase();
+  count(tool, store.records().size(), counts);
+}
+
+void build_updated_records(Tool& tool, SceneInput& input, const CacheOptions& options, const std::vector<int>& frames,
+                           StandingTree& tree) {
+  const int number = frames.front();
+  Output output(frame_name(options.output, number), tool.common().no_clobber);
+  tool.stats().phase("evaluate");
+  const SceneFrame frame = input.at(number), standing = standing_scene(frame);
+  tool.stats().phase("build");
+  const Tracer tracer(frame, tree), without(standing, tree);
+  const Lights lights(frame, input.emission(frame.frame));
+  tool.stats().phase("read points");
+  const GatherPoints points = read_points(tool, frame_name(options.points, number), frame);
+  tool.stats().phase("read photons");
+  const std::vector<SignedDensity> maps = read_changes(tool, options, without, frame);
+  tool.stats().phase("prepare records");
+  const std::string name = frame_name(options.update, number);
+  tool.depends_on(name);
+  const formats::IrradcacheFile file = formats::load_irradcache(name);
+  RecordStore fixed({.least_cosine = 0, .only_read = true});
+  LocalisedRecords cache;
+  cache.history = add_records(tool, name, file, standing, fixed) + points.history;
+  cache.standing.assign(fixed.records().begin(), fixed.records().end());
+  PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
+  const std::vector<LampPhoton> beside_lamps = note_lamps_beside(tracer, lights, lookup);
+  std::optional<BrightPoints> bright;
+  GatherOptions gathering = options.gather;
+  if (!beside_lamps.empty()) {
+    bright.emplace(tracer, lights, lookup, std::vector<float>{}, BrightOptions{.seed = gathering.seed, .beside_lamps = beside_lamps});
+    gathering.bright = &*bright;
+  }
+  const FinalGather gather(tracer, lights, lookup, gathering);
+
+  tool.stats().phase("records", true);
+  const RecordCameras cameras = cameras_of(tool, input, options, frames, frame, [&](int f) { return input.at(f); });
+  const GatherCounts counts = update_for_cameras({gather, tracer, lookup, maps, options.influence, options.gather.seed}, cameras, options.placement, cache);
+
+  tool.stats().phase("write");
+  std::vector<IrradianceRecord> all = cache.standing;
+  all.insert(all.end(), cache.gathered.begin(), cache.gathered.end());
+  formats::IrradcacheHeader header =
+      cache_header(options, frame, frames, all, std::max(cache.least_cosine, fixed.least_cosine()));
+  header.columns |= formats::column_influence | formats::column_update;
+  header.history = cache.history + (frames.size() == 1 ? tool.history_line(number) : tool.history_line());
+  formats::IrradcacheWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  writer.write(to_file(cache, frame));
+  writer.finish();
+  output.commit();
+  tool.stats().end_phase();
+  count(tool, cache.gathered.size(), counts);
+  tool.stats().count("records_updated", double(cache.standing.size()));
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,9 @@
+// tools/stages/filter_mesh.h -- st-filter mesh: light textures from photons.
+#pragma once
+
+namespace tempolux::tools {
+
+/// The whole program `st-filter mesh`; argv[0] is that word. Returns the exit code.
+int filter_mesh(int argc, char** argv);
+
+}  // namespace tempolux::tools

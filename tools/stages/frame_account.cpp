@@ -1,0 +1,107 @@
+#include "tools/stages/frame_account.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace tempolux::tools {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+void add(const Noise& noise, const std::string& name, std::map<std::string, double>& numbers) {
+  if (!(noise.codes >= 0)) return;
+  numbers[name + ".codes"] = noise.codes;
+  numbers[name + ".codes_error"] = noise.codes_error;
+  numbers[name + ".linear"] = noise.linear;
+  numbers[name + ".linear_error"] = noise.linear_error;
+}
+
+std::string noise_line(const RenderedFrame& rendered) {
+  const FrameNoise& noise = rendered.noise;
+  std::string line = "noise " + number(noise.image.codes) + " +- " + number(noise.image.codes_error) + " codes";
+  for (std::size_t l = 0; l < kLayerCount; ++l)
+    if (noise.layer[l].codes > 0) line += ", " + std::string(kLayerNames[l]) + " " + number(noise.layer[l].codes);
+  return line + "; " + number(rendered.samples_per_pixel) + " samples a pixel";
+}
+
+/// Of a layer's parts the one that is farthest off in light, if surely so.
+const AuditEntry* worst_of(const std::vector<AuditEntry>& audit, Layer layer, const std::string& kind) {
+  const AuditEntry* worst = nullptr;
+  for (const AuditEntry& entry : audit) {
+    if (entry.layer != layer || !entry.part.starts_with(kind) || std::abs(entry.bias.value) <= kAuditErrors * entry.bias.error) continue;
+    const auto light = [](const AuditEntry& of) { return std::abs(of.bias.value) * double(of.pixels); };
+    if (!worst || light(entry) > light(*worst)) worst = &entry;
+  }
+  return worst;
+}
+
+std::string percent(double value, double error) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%+.3g +- %.2g %%", 100 * value, 100 * error);
+  return text;
+}
+
+std::string audit_line(const AuditEntry& of, const std::vector<AuditEntry>& audit) {
+  std::string line = std::string(kLayerNames[std::size_t(of.layer)]) + " light " + percent(of.of_layer(), of.of_layer_error()) + " (" + percent(of.share(), of.share_error()) + " of the picture)";
+  for (const char* kind : {"object", "tile"})
+    if (const AuditEntry* worst = worst_of(audit, of.layer, kind)) line += ", " + worst->part + " " + percent(worst->of_layer(), worst->of_layer_error());
+  return line;
+}
+
+void add(const std::vector<AuditEntry>& audit, std::map<std::string, double>& numbers) {
+  for (const AuditEntry& entry : audit) {
+    if (entry.part != "picture") continue;
+    const std::string name = "audit." + std::string(kLayerNames[std::size_t(entry.layer)]);
+    numbers[name] = entry.share();
+    numbers[name + "_error"] = entry.share_error();
+    if (entry.shown - entry.bias.value > 0) {
+      numbers[name + ".of_layer"] = entry.of_layer();
+      numbers[name + ".of_layer_error"] = entry.of_layer_error();
+    }
+    for (const char* kind : {"object", "tile"})
+      if (const AuditEntry* worst = worst_of(audit, entry.layer, kind)) {
+        const std::string of = name + ".worst_" + kind;
+        numbers[of] = worst->share();
+        numbers[of + "_error"] = worst->share_error();
+        if (worst->object != kNone) numbers[of + "_id"] = worst->object;
+      }
+  }
+}
+
+}  // namespace
+
+std::map<std::string, double> account_of(const RenderedFrame& rendered, const std::vector<AuditEntry>& audit) {
+  std::map<std::string, double> numbers;
+  add(audit, numbers);
+  const FrameNoise& noise = rendered.noise;
+  if (!noise.known()) return numbers;
+  add(noise.image, "noise", numbers);
+  for (std::size_t l = 0; l < kLayerCount; ++l)
+    if (noise.layer[l].linear > 0) add(noise.layer[l], "noise." + std::string(kLayerNames[l]), numbers);
+  numbers["noise.exposure"] = noise.exposure;
+  numbers["noise.pixels"] = double(noise.pixels);
+  return numbers;
+}
+
+void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit, const FrameOptions& asked) {
+  for (const auto& [name, value] : account_of(rendered, audit)) tool.stats().set(name, value);
+  if (asked.pixel_error > 0) tool.stats().set("at_pixel_limit", rendered.at_limit);
+  for (const AuditEntry& entry : audit) {
+    if (entry.part != "picture") continue;
+    const std::string line = "audit: " + audit_line(entry, audit);
+    tool.say(line);
+    if (is_biased(entry) && entry.layer != Layer::direct)
+      tool.warn(line + "; more points (irradcache-build --point-count), bright ones apart (photonmap-split, --high), or paths (no files of light) mend it");
+  }
+  if (!rendered.noise.known()) return;
+  tool.say(noise_line(rendered));
+  if (asked.seen_error > 0 && rendered.noise.image.codes > asked.seen_error)
+    tool.warn("--seen-error " + number(asked.seen_error) + ": " + number(rendered.noise.image.codes) + " codes are left, and " + number(100 * rendered.at_limit) +
+              " % of the pixels are at --pixel-limit " + std::to_string(asked.adaptive_limit) + "; raise it, or give files of light (--points, --irradcache)");
+}
+
+}  // namespace tempolux::tools

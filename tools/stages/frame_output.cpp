@@ -1,0 +1,49 @@
+#include "tools/stages/frame_output.h"
+
+#include "lib/image/frame_identity.h"
+
+namespace tempolux::tools {
+namespace {
+
+/// "f.0012.exr" -> "f.0012_a.exr"
+std::string half_name(const std::string& path, char letter) {
+  const std::size_t dot = path.rfind('.'), slash = path.rfind('/');
+  const std::size_t end = dot == std::string::npos || (slash != std::string::npos && dot < slash) ? path.size() : dot;
+  return path.substr(0, end) + '_' + letter + path.substr(end);
+}
+
+void describe(const FrameDescription& description, int samples, Image& image) {
+  image.text["tempolux:history"] = description.history;
+  set_identity(image, description.identity);
+  image.numbers["tempolux:frame"] = description.frame;
+  image.numbers["tempolux:samples"] = samples;
+  image.numbers["framesPerSecond"] = description.fps;
+  image.matrices["worldToCamera"] = description.world_to_camera;
+  image.matrices["worldToNDC"] = description.world_to_ndc;
+}
+
+}  // namespace
+
+FrameOutputs::FrameOutputs(const std::string& path, bool halves, bool no_clobber) {
+  outputs_.emplace_back(path, no_clobber);
+  if (!halves) return;
+  for (char letter : {'a', 'b'}) outputs_.emplace_back(half_name(path, letter), no_clobber);
+}
+
+void FrameOutputs::write(const RenderedFrame& rendered, const Image& data, const std::vector<std::string>& channels,
+                         const FrameDescription& description, const ExrWriteOptions& options,
+                         const std::vector<std::uint8_t>& mask, const Image& base) {
+  const LayerImage* parts[3] = {&rendered.mean, &rendered.half[0], &rendered.half[1]};
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    Image image = data;
+    add_colour_channels(*parts[i], channels, image);
+    if (!mask.empty()) keep_base_pixels(mask, base, data.channels.size(), image);
+    describe(description, parts[i]->samples, image);
+    if (i == 0)   // of the mean of all samples
+      for (const auto& [name, value] : description.account) image.numbers["tempolux:" + name] = value;
+    save_exr(outputs_[i].temporary_path(), image, options);
+  }
+  for (Output& output : outputs_) output.commit();
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,175 @@
+#include "tools/stages/gather_input.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "formats/error.h"
+#include "lib/density/split_light.h"
+#include "lib/gather/cache_files.h"
+#include "lib/material/surface_material.h"
+
+namespace tempolux::tools {
+namespace {
+
+/// Light that the scene has and a file lacks is not left out without a word. `remedy`: how to make a file that has it.
+void check_kinds(Tool& tool, const std::string& file, const std::string& kinds, const std::vector<std::string>& wanted,
+                 const SceneFrame& frame, const std::string& remedy) {
+  const Lobes lobes = lobes_of(frame);
+  if (!lobes.lambert) return;
+  for (const std::string& kind : wanted) {
+    if (holds_kind(kinds, kind)) continue;
+    const std::string lacks = file + ": holds no " + kind + " light (its kinds: " + kinds + ")";
+    if (kind != "caustic") throw InputError(lacks + ", which this scene has; " + remedy);
+    if (lobes.specular)
+      tool.warn(lacks + ", which mirrors, glass and gloss of this scene throw: it is left out; " + remedy);
+  }
+}
+
+/// A part of the light taken for all of it would be light lost without a word.
+void refuse_part(const std::string& file, const std::string& part) {
+  if (!part.empty())
+    throw InputError(file + ": holds the " + part + " part of the light alone (photonmap-split); give the whole, or the low part here and the high "
+                     "one as --high");
+}
+
+void check_photons(Tool& tool, const std::string& file, const formats::PhotonHeader& header, const SceneFrame& frame, LightNeeded needed,
+                   const std::string& wanted) {
+  if (header.map != wanted)
+    throw InputError(file + ": a " + header.map + " map" + (header.map == "global" ? "" : " is a part of the scene's light") +
+                     "; give a " + wanted + " one, as photon-trace writes it with --map " + wanted);
+  refuse_part(file, header.part);
+  check_identity(tool, file, header.identity, frame);
+  const std::vector<std::string> kinds = needed == LightNeeded::all ? std::vector<std::string>{"indirect", "caustic"}
+                                                                    : std::vector<std::string>{"caustic"};
+  check_kinds(tool, file, header.kinds, kinds, frame, "trace it with --kinds caustic,indirect");
+}
+
+}  // namespace
+
+namespace {
+
+GatherPoints checked_points(Tool& tool, const std::string& file, const formats::IrradpointsFile& in, const SceneFrame& frame) {
+  check_identity(tool, file, in.header.identity, frame);
+  check_kinds(tool, file, in.header.kinds, {"direct", "caustic", "indirect"}, frame, "make the points again");
+  return {from_file(in.records, shift_of(in.header.origin, frame)), float(in.header.spacing), in.header.kinds,
+          in.header.history, in.header.emitted_count};
+}
+
+/// One of the files of photonmap-split.
+formats::IrradpointsFile load_part(Tool& tool, const std::string& file, const std::string& part, const std::string& option) {
+  tool.depends_on(file);
+  formats::IrradpointsFile in = formats::load_irradpoints(file);
+  if (in.header.part != part)
+    throw InputError(file + ": is " + (in.header.part.empty() ? "not a part of light" : "the " + in.header.part + " part") + "; give " + option +
+                     " the " + part + " part that photonmap-split writes");
+  return in;
+}
+
+}  // namespace
+
+GatherPoints read_points(Tool& tool, const std::string& file, const SceneFrame& frame) {
+  tool.depends_on(file);
+  const formats::IrradpointsFile in = formats::load_irradpoints(file);
+  refuse_part(file, in.header.part);
+  return checked_points(tool, file, in, frame);
+}
+
+DividedGatherPoints read_divided_points(Tool& tool, const std::string& low_file, const std::string& high_file, const SceneFrame& frame) {
+  formats::IrradpointsFile low = load_part(tool, low_file, "low", "--points");
+  const formats::IrradpointsFile high = load_part(tool, high_file, "high", "--high");
+  check_identity(tool, high_file, high.header.identity, frame);
+  DividedGatherPoints divided;
+  divided.high_shares = tempolux::join_parts(low.records, high.records);
+  // Points of a surface are the first of one sequence: fewer of them lie at places that more of them have, too.
+  if (divided.high_shares.size() != low.records.size() || low.header.origin != high.header.origin || low.header.spacing != high.header.spacing ||
+      low.header.emitted_count != high.header.emitted_count)
+    throw InputError(high_file + ": its points are not those of " + low_file + "; give the two parts of one file");
+  divided.whole = checked_points(tool, low_file, low, frame);
+  return divided;
+}
+
+formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
+                                const std::string& wanted) {
+  tool.depends_on(file);
+  formats::PhotonMap map = formats::load_photons(file);
+  check_photons(tool, file, map.header, frame, needed, wanted);
+  return map;
+}
+
+formats::PhotonMap read_photons(Tool& tool, const std::string& file, const SceneFrame& frame, LightNeeded needed,
+                                const std::string& wanted, const std::function<bool(Vec3, const formats::Photon&)>& keep) {
+  tool.depends_on(file);
+  formats::PhotonMap map = formats::load_photons(file, [&](const formats::PhotonHeader& header, const formats::Photon& photon) {
+    const Vec3d place{double(photon.position[0]), double(photon.position[1]), double(photon.position[2])};
+    return keep(Vec3(place + shift_of(header.origin, frame)), photon);
+  });
+  check_photons(tool, file, map.header, frame, needed, wanted);
+  return map;
+}
+
+DividedPhotonMap read_divided_photons(Tool& tool, const std::string& low, const std::string& high, const SceneFrame& frame, LightNeeded needed) {
+  DividedPhotonMap map;
+  for (const bool is_high : {false, true}) {
+    const std::string& file = is_high ? high : low;
+    const std::string part = is_high ? "high" : "low";
+    formats::PhotonMap& in = is_high ? map.high : map.whole;
+    tool.depends_on(file);
+    in = formats::load_photons(file);
+    if (in.header.part != part)
+      throw InputError(file + ": is " + (in.header.part.empty() ? "not a part of light" : "the " + in.header.part + " part") + "; give " +
+                       (is_high ? "--high" : "--photons") + " the " + part + " part that photonmap-split writes");
+  }
+  const formats::PhotonHeader &one = map.whole.header, &other = map.high.header;
+  // A photon's place is one of the whole map's: both parts have its paths, its flux sent out and the state of the scene.
+  if (one.emitted_count != other.emitted_count || one.origin != other.origin || one.columns != other.columns || one.kinds != other.kinds ||
+      one.map != other.map || map.whole.totals.emitted_flux != map.high.totals.emitted_flux)
+    throw InputError(high + ": its photons are not those of " + low + "; give the two parts of one file");
+  check_identity(tool, high, other.identity, frame);
+  join_parts(map.whole, map.high);
+  check_photons(tool, low, map.whole.header, frame, needed, "global");
+  return map;
+}
+
+formats::PhotonMap read_earlier_change(Tool& tool, const std::string& file, const SceneFrame& frame) {
+  tool.depends_on(file);
+  formats::PhotonMap map = formats::load_photons(file);
+  if (map.header.map != "dynamic") throw InputError(file + ": a " + map.header.map + " map; give a dynamic one");
+  formats::Identity identity = map.header.identity;
+  identity.moving_geometry.clear(), identity.lights.clear(), identity.materials.clear();
+  check_identity(tool, file, identity, frame);
+  return map;
+}
+
+void write_points(Tool& tool, const GatherPoints& points, const SceneFrame& frame, Output& output,
+                  std::optional<std::array<int, 2>> frames) {
+  formats::IrradpointsHeader header;
+  header.history = points.history + tool.history_line(frame.frame);
+  header.identity = identity_of(frame);
+  if (frames) header.identity.first_frame = (*frames)[0], header.identity.last_frame = (*frames)[1];
+  header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  header.spacing = double(points.spacing);
+  header.emitted_count = points.emitted_count;
+  header.kinds = points.kinds;
+  formats::IrradpointsWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, header);
+  writer.write(to_file(points.points, frame));
+  writer.finish();
+  output.commit();
+}
+
+std::string add_records(Tool& tool, const std::string& name, const formats::IrradcacheFile& file, const SceneFrame& frame,
+                        RecordStore& store) {
+  if (file.header.columns & (formats::column_influence | formats::column_update))
+    throw InputError(name + ": holds records that stand beside those of a frame (--update); give one without these columns");
+  check_identity(tool, name, file.header.identity, frame);
+  store.narrow(float(file.header.least_cosine));
+  store.add(from_file(file.records, shift_of(file.header.origin, frame)));
+  return file.header.history;
+}
+
+std::string read_records(Tool& tool, const std::string& file, InputRole role, const SceneFrame& frame,
+                         RecordStore& store) {
+  tool.depends_on(file, role);
+  return add_records(tool, file, formats::load_irradcache(file), frame, store);
+}
+
+}  // namespace tempolux::tools

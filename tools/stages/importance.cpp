@@ -1,0 +1,29 @@
+#include "tools/stages/importance.h"
+
+#include "lib/plan/decide.h"
+
+namespace tempolux::tools {
+
+Importance::Importance(Tool& tool, SceneInput& input, const std::string& option) : tool_(tool), input_(input), own_(option.empty()) {
+  if (own_ || option == "none") return;
+  tool.depends_on(option);
+  given_ = formats::read_view(option);
+}
+
+const std::vector<formats::ViewSphere>& Importance::at(int frame) {
+  if (!own_) return given_;
+  const int inside = frame_in_animation(input_.scene(), frame, input_.time());
+  const Segment segment = segment_of(input_.scene(), inside, input_.time());
+  const auto [found, is_new] = found_.try_emplace(segment.first);
+  if (!is_new) return found->second;
+  const int camera = input_.scene().camera_node(tool_.common().camera);
+  const int asked[] = {inside};
+  const Plan plan = make_plan(input_.scene(), asked, camera, input_.time());
+  const SceneSource source{[&](int f, bool with_media) { return input_.at(f, with_media); }, [&](int f) { return input_.emission(f); }, camera};
+  const Wish usual;   // its size: the ratio of width to height counts
+  const std::string text = view_of(plan.segments.front(), usual.width, usual.height, source);
+  if (!text.empty()) found->second = formats::parse_view(text, "what the camera sees");
+  return found->second;
+}
+
+}  // namespace tempolux::tools

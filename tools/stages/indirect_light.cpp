@@ -1,0 +1,118 @@
+#include "tools/stages/indirect_light.h"
+
+#include <algorithm>
+
+#include "lib/gather/lamp_light.h"
+#include "lib/gather/localised_file.h"
+#include "lib/gather/whole_photons.h"
+#include "lib/scene/standing.h"
+
+namespace tempolux::tools {
+
+IndirectLight::IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed,
+                             int number) {
+  const SceneFrame& frame = tracer.frame();
+  known_.lights_are_met = lights.has_environment() || std::ranges::any_of(frame.materials, [](const Material& material) { return material.emissive(); });
+  if (!options.photons.empty()) read_maps(tool, options, tracer, number);
+  if (!options.points.empty()) read_points(tool, options, tracer, lights, seed, number);
+  if (!options.meshirrad.empty()) {
+    tool.stats().phase("read light texture");
+    read_mesh(tool, frame_name(options.meshirrad, number), frame);
+  }
+  if (!options.irradcache.empty()) {
+    tool.stats().phase("read cache");
+    read_cache(tool, frame_name(options.irradcache, number), frame, options.influence);
+  }
+}
+
+void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed,
+                                int number) {
+  tool.stats().phase("read points");
+  const std::string name = frame_name(options.points, number);
+  std::vector<float> high_shares;
+  if (options.high.empty()) {
+    points_ = tools::read_points(tool, name, tracer.frame());
+  } else {
+    DividedGatherPoints divided = read_divided_points(tool, name, frame_name(options.high, number), tracer.frame());
+    points_ = std::move(divided.whole);
+    high_shares = std::move(divided.high_shares);
+  }
+  history_ = points_.history;
+  lookup_ = std::make_unique<PointLookup>(points_.points, points_.spacing, point_clearance(tracer));
+  note_lamps_beside(tracer, lights, *lookup_);
+  known_.points = lookup_.get();
+  if (std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
+  tool.stats().phase("bright points", true);
+  bright_ = std::make_unique<BrightPoints>(tracer, lights, *lookup_, std::move(high_shares), BrightOptions{.seed = seed, .near_factor = KnownLight::kNear});
+  known_.bright = bright_.get();
+  known_.bright_samples = options.high_samples;
+  tool.stats().count("bright_points", double(bright_->spot_count()));
+}
+
+void IndirectLight::read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number) {
+  const SceneFrame& frame = tracer.frame();
+  const std::string name = frame_name(options.photons, number);
+  // Do photons tell indirect light, too? Beside a map of caustic photons paths find it.
+  const bool alone = options.irradcache.empty() && options.points.empty() && options.meshirrad.empty() &&
+                     (options.photons_alone || formats::PhotonReader(name, {.digest = false}).header().kinds != "caustic");
+  const LightNeeded needed = alone ? LightNeeded::all : LightNeeded::caustic;
+  const auto shift = [&](const formats::PhotonMap& map) {
+    return Vec3d{map.header.origin[0], map.header.origin[1], map.header.origin[2]} - frame.origin;
+  };
+  tool.stats().phase("read photons");
+  formats::PhotonMap map;
+  Vec3d moved{};
+  if (!options.high.empty() && options.points.empty()) {
+    map = read_divided_photons(tool, name, frame_name(options.high, number), frame, needed).whole;
+    moved = shift(map);
+  } else if (options.dynamic.empty()) {
+    map = read_photons(tool, name, frame, needed);
+    moved = shift(map);
+  } else {
+    const auto wanted = [alone](Vec3, const formats::Photon& photon) { return alone || photon.kind == formats::PathKind::caustic; };
+    map = read_photons(tool, name, standing_scene(frame), needed, "static", wanted);
+    const formats::PhotonMap dynamic = read_photons(tool, frame_name(options.dynamic, number), frame, needed, "dynamic", wanted);
+    formats::PhotonBlock whole = whole_photons({map, dynamic, shift(map), shift(dynamic)}, wanted);
+    map.photons = std::move(whole.photons);
+    map.directions = std::move(whole.directions);
+    map.header.history += dynamic.header.history;
+  }
+  history_ = map.header.history;
+  tool.stats().phase("index photons", true);
+  PhotonLightOptions photon_light = options.photon_light;
+  photon_light.caustic_only = !alone;
+  photons_ = std::make_unique<PhotonLight>(tracer, map, moved, photon_light);
+  known_.photons = photons_.get();
+}
+
+void IndirectLight::read_mesh(Tool& tool, const std::string& name, const SceneFrame& frame) {
+  tool.depends_on(name);
+  const formats::MeshirradFile file = formats::load_meshirrad(name);
+  check_identity(tool, name, file.header.identity, frame);
+  if (file.header.holds == formats::MeshHolds::counts) throw InputError(name + ": holds counts, not light; make light of them with gather-temporal density");
+  if (file.header.kinds != "indirect" && (file.header.kinds != "caustic,indirect" || photons_))
+    throw InputError(name + ": holds light of kinds " + file.header.kinds + ", of which frames sample or look up some by themselves; make it with --kinds indirect, or caustic,indirect and no --photons");
+  history_ = file.header.history;
+  mesh_ = std::make_unique<MeshLight>(file, frame);
+  known_.mesh = mesh_.get();
+  known_.mesh_has_caustic = file.header.kinds == "caustic,indirect";
+}
+
+void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds) {
+  tool.depends_on(name);
+  const formats::IrradcacheFile file = formats::load_irradcache(name);
+  if (is_localised(file)) {
+    check_identity(tool, name, file.header.identity, frame);
+    LocalisedRecords records = localised_records(file, frame);
+    history_ = records.history;
+    localised_ = std::make_unique<LocalisedLight>(records.standing, records.changes, records.gathered, records.least_cosine, thresholds,
+                                                  moving_objects(frame));
+    known_.localised = localised_.get();
+    return;
+  }
+  records_ = std::make_unique<RecordStore>(InterpolationOptions{.least_cosine = 0, .only_read = true});
+  history_ = add_records(tool, name, file, frame, *records_);
+  known_.records = records_.get();
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,50 @@
+// tools/stages/indirect_light.h -- where a frame's caustic and indirect light comes from: photons, or a cache.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "lib/gather/mesh_light.h"
+#include "lib/render/known_light.h"
+#include "lib/render/localised_light.h"
+#include "tools/stages/gather_input.h"
+
+namespace tempolux::tools {
+
+struct IndirectLightOptions {
+  std::string photons, irradcache, points, meshirrad;   ///< files, or patterns; "": none
+  std::string dynamic;                       ///< the same: photons is then the segment's static map
+  std::string high;                          ///< the same: points, or without points photons, is then the low part of photonmap-split
+  int high_samples = 4;                      ///< of an eye path
+  bool photons_alone = false;                ///< photons must tell indirect light
+  PhotonLightOptions photon_light;
+  InfluenceThresholds influence;             ///< of a localised cache
+};
+
+/// Opens what the options name, checked against the frame's identity, and owns it while the frame is rendered.
+class IndirectLight {
+ public:
+  IndirectLight(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed, int number);
+
+  /// Empty if none was named: paths alone.
+  const KnownLight& get() const { return known_; }
+  const std::string& history() const { return history_; }
+
+ private:
+  void read_points(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, const Lights& lights, std::uint64_t seed, int number);
+  void read_maps(Tool& tool, const IndirectLightOptions& options, const Tracer& tracer, int number);
+  void read_mesh(Tool& tool, const std::string& name, const SceneFrame& frame);
+  void read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds);
+
+  std::string history_;
+  std::unique_ptr<PhotonLight> photons_;
+  std::unique_ptr<RecordStore> records_;
+  GatherPoints points_;
+  std::unique_ptr<PointLookup> lookup_;
+  std::unique_ptr<BrightPoints> bright_;
+  std::unique_ptr<LocalisedLight> localised_;
+  std::unique_ptr<MeshLight> mesh_;
+  KnownLight known_;
+};
+
+}  // namespace tempolux::tools

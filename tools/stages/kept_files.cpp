@@ -1,0 +1,194 @@
+#include "tools/stages/kept_files.h"
+
+#include <filesystem>
+
+#include "formats/base_file.h"
+#include "formats/error.h"
+#include "formats/hash.h"
+
+namespace tempolux::tools {
+namespace {
+
+Vec3d vec_of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
+
+bool same_segment(const formats::RadsamplesHeader& header, const SceneFrame& frame) {
+  return header.segment[0] == frame.segment.first && header.segment[1] == frame.segment.last &&
+         float(header.diagonal) == sample_unit(frame);
+}
+
+/// Hash of a record's cells, samples and anchors.
+std::string hash_of(const formats::RadsamplesRecord& record, const SeenSamples& of) {
+  Hasher hasher;
+  hasher.add(record.rings);
+  hasher.add(record.sectors);
+  hasher.add_array(of.samples);
+  hasher.add_array(of.anchors);
+  return hasher.hex();
+}
+
+/// What of the records is not of the scene; "" if all is.
+std::string fault_of(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points) {
+  if (kept.point_light.size() != points.anchored) return "it has the light of " + std::to_string(kept.point_light.size()) + " points, of " + std::to_string(points.anchored);
+  for (std::size_t i = 0; i < kept.records.size(); ++i) {
+    const formats::RadsamplesRecord& r = kept.records[i].record;
+    const bool there = r.surface < frame.surfaces.size() && r.triangle < frame.surfaces[r.surface].primitive->triangles.size();
+    if (!there || (r.set == formats::SurfaceSet::dynamic_set) != (r.surface >= frame.static_count))
+      return "record " + std::to_string(i) + " lies on triangle " + std::to_string(r.triangle) + " of surface " + std::to_string(r.surface) + ", which the scene does not have";
+  }
+  return "";
+}
+
+bool same_folder(const std::filesystem::path& a, const std::filesystem::path& b) {
+  return a.parent_path() == b.parent_path() && a.filename() != b.filename();
+}
+
+}  // namespace
+
+float sample_unit(const SceneFrame& frame) {
+  const double unit = frame.segment.world_bounds.diagonal();
+  return unit > 0 ? float(unit) : 1.0f;
+}
+
+FramePoints read_frame_points(Tool& tool, const std::string& file, const std::string& high, const SceneFrame& frame) {
+  FramePoints points;
+  if (high.empty()) {
+    points.read = read_points(tool, file, frame);
+  } else {
+    DividedGatherPoints divided = read_divided_points(tool, file, high, frame);
+    points.read = std::move(divided.whole);
+    points.high_shares = std::move(divided.high_shares);
+    points.high_hash = hash_hex({reinterpret_cast<const char*>(points.high_shares.data()), points.high_shares.size() * sizeof(float)});
+  }
+  points.anchored = anchored_points(frame, points.read.points);
+  Hasher hasher;
+  for (std::size_t i = 0; i < points.anchored; ++i) {
+    hasher.add(points.read.points[i].position);
+    hasher.add(points.read.points[i].normal);
+  }
+  points.places_hash = hasher.hex();
+  return points;
+}
+
+KeptHemispheres nothing_kept(const Tool& tool, const std::string& output) {
+  KeptHemispheres kept;
+  const std::string folder = std::filesystem::path(output).parent_path();
+  if (const std::uint64_t limit = tool.common().max_memory_bytes; limit > 0)
+    kept.shelf = std::make_shared<SampleShelf>(output == "-" ? std::filesystem::temp_directory_path().string() : folder.empty() ? "." : folder, limit / 8);
+  return kept;
+}
+
+void KeptFiles::make_base(const std::string& path, const formats::RadsamplesHeader& header, const std::string& digest, const std::vector<std::string>& hashes) {
+  path_ = path;
+  digest_ = digest;
+  points_hash_ = header.points_hash;
+  divided_ = !header.high_hash.empty();
+  segment_ = header.segment;
+  records_.clear();
+  for (std::uint32_t i = 0; i < hashes.size(); ++i) records_.emplace(hashes[i], i);
+}
+
+/// False, and nothing done, if less than half of the samples are the base's.
+bool KeptFiles::lay_over_base(const std::string& path, const std::vector<std::string>& hashes, formats::RadsamplesFile& file) const {
+  if (path_.empty() || !same_folder(path, path_) || segment_ != file.header.segment || points_hash_ != file.header.points_hash ||
+      divided_ == file.header.high_hash.empty())
+    return false;
+  std::vector<std::uint32_t> kept_from(file.records.size(), 0);
+  std::size_t kept = 0, all = 0;
+  for (std::size_t i = 0; i < kept_from.size(); ++i) {
+    all += file.records[i].samples();
+    if (const auto there = records_.find(hashes[i]); there != records_.end()) {
+      kept_from[i] = there->second + 1;
+      kept += file.records[i].samples();
+    }
+  }
+  if (kept == 0 || 2 * kept < all) return false;
+  file.kept_from = std::move(kept_from);
+  file.header.base_name = std::filesystem::path(path_).filename();
+  file.header.base_digest = digest_;
+  return true;
+}
+
+void KeptFiles::write(const KeptHemispheres& kept, const SceneFrame& frame, const FramePoints& points, const std::string& history, Output& output) {
+  formats::RadsamplesFile file = head_of(kept);
+  file.header.history = history;
+  file.header.identity = identity_of(frame);
+  file.header.origin = {frame.origin.x, frame.origin.y, frame.origin.z};
+  file.header.diagonal = double(sample_unit(frame));
+  file.header.segment = {frame.segment.first, frame.segment.last};
+  file.header.anchors = true;
+  file.header.points_hash = points.places_hash;
+  std::vector<std::string> hashes;
+  KeptHemisphere room;
+  for (const KeptHemisphere& k : kept.records) hashes.push_back(hash_of(k.record, see(kept, k, room)));
+  const bool whole = output.is_stdout() || !lay_over_base(output.path(), hashes, file);
+  formats::RadsamplesWriter writer([&](const void* data, std::size_t size) { output.write(data, size); }, file);
+  formats::RadsamplesDigest digest;
+  for (const KeptHemisphere& k : kept.records) {
+    const SeenSamples of = see(kept, k, room);
+    writer.write(of.samples, of.anchors);
+    if (whole) digest.add(of.samples, of.anchors);
+  }
+  writer.finish();
+  output.commit();
+  if (whole && !output.is_stdout()) make_base(output.path(), file.header, digest.of(file), hashes);
+}
+
+void read_kept(Tool& tool, SceneInput& input, const std::string& file, const SceneFrame& now, const FramePoints& points,
+               KeptHemispheres& kept, std::optional<SceneFrame>& before) {
+  tool.depends_on(file, InputRole::replaceable);
+  const formats::RadsamplesFile in = formats::read_radsamples(
+      file, [&](const formats::RadsamplesFile& head, std::size_t record, std::span<const formats::RadianceSample> samples,
+                std::span<const std::uint32_t> anchors) { take_samples(head, record, {samples, anchors}, vec_of(head.header.origin) - now.origin, kept); });
+  take_head(in, kept);
+  if (!in.header.base_name.empty()) tool.depends_on(formats::path_of_base(file, in.header.base_name));
+  const formats::Identity& identity = in.header.identity;
+  if (!identity.known()) throw InputError(file + ": does not say of which frame it is; give a file that gather-temporal wrote");
+  const int frame = identity.first_frame;
+  if (!same_segment(in.header, now) && in.header.segment[0] == now.segment.first && in.header.segment[1] == now.segment.last)
+    throw InputError(file + ": of a scene of another size, " + std::to_string(in.header.diagonal) + " m across in this segment, not " + std::to_string(sample_unit(now)) +
+                     " m: another one, or edited since; leave out --previous");
+  if (!same_segment(in.header, now))
+    throw InputError(file + ": of frame " + std::to_string(frame) + ", in another segment than frame " + std::to_string(now.frame) +
+                     "; nothing is kept from one segment to the next: leave out --previous");
+  before.emplace(input.at(frame, false));
+  check_identity(tool, file, identity, *before);
+  if (!in.header.anchors || in.header.points_hash != points.places_hash)
+    throw InputError(file + ": its points lay elsewhere than those of frame " + std::to_string(now.frame) +
+                     "; make the points of both frames with the same options");
+  if (in.header.high_hash.empty() != points.high_hash.empty())
+    throw InputError(file + (points.high_hash.empty() ? ": its samples hold the low part of the light alone; give --high, too, or leave out --previous"
+                                                      : ": its samples hold all of the light, not the low part alone; leave out --high or --previous"));
+  if (const std::string fault = fault_of(kept, now, points); !fault.empty()) throw InputError(file + ": " + fault + "; leave out --previous");
+}
+
+std::optional<KeptHemispheres> KeptFiles::find(const std::string& file, const SceneFrame& frame, const FramePoints& points, const std::string& history,
+                                               KeptHemispheres kept) {
+  if (!std::filesystem::is_regular_file(file)) return std::nullopt;
+  try {
+    std::vector<std::string> hashes;
+    formats::RadsamplesDigest digest;
+    const formats::RadsamplesFile in = formats::read_radsamples(
+        file, [&](const formats::RadsamplesFile& head, std::size_t record, std::span<const formats::RadianceSample> samples,
+                  std::span<const std::uint32_t> anchors) {
+          take_samples(head, record, {samples, anchors}, vec_of(head.header.origin) - frame.origin, kept);
+          hashes.push_back(hash_of(head.records[record], {samples, anchors}));
+          digest.add(samples, anchors);
+        });
+    take_head(in, kept);
+    if (!same_segment(in.header, frame) || in.header.history != history || !(in.header.identity == identity_of(frame)) ||
+        in.header.points_hash != points.places_hash || in.header.high_hash != points.high_hash)
+      return std::nullopt;
+    const bool whole = in.header.base_name.empty();
+    if (!whole && (!same_folder(file, path_) || in.header.base_name != std::filesystem::path(path_).filename() || in.header.base_digest != digest_))
+      return std::nullopt;
+    if (!fault_of(kept, frame, points).empty()) return std::nullopt;
+    for (std::size_t i = 0; i < kept.point_light.size(); ++i)
+      if (!(kept.point_light[i] == points.read.points[i].total())) return std::nullopt;
+    if (whole) make_base(file, in.header, digest.of(in), hashes);
+    return kept;
+  } catch (const InputError&) {
+    return std::nullopt;   // cut off or damaged: made again
+  }
+}
+
+}  // namespace tempolux::tools

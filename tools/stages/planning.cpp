@@ -1,0 +1,175 @@
+#include "tools/stages/planning.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+
+#include "formats/error.h"
+#include "formats/hash.h"
+#include "lib/core/module_folders.h"
+#include "lib/plan/decide.h"
+#include "lib/plan/plan_files.h"
+#include "lib/volume/majorants_file.h"
+
+namespace tempolux::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kPlansKept = 2;   ///< earlier plans whose files are kept, so that going back to a mode makes nothing again
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw ResourceError(folder + ": cannot create this folder: " + error.message());
+}
+
+std::string content_of(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(stream), {});
+}
+
+void write_whole(const std::string& path, const std::string& content) {
+  Output output(path, false, Output::Kind::text);
+  output.write(content.data(), content.size());
+  output.commit_unsynced();
+}
+
+void write_if_changed(const std::string& path, const std::string& content) {
+  if (!fs::exists(path) || content_of(path) != content) write_whole(path, content);
+}
+
+/// Names of the files of a plan, a line each, without extensions: what is beside a file goes with it.
+std::string stems(const Graph& graph, const std::vector<std::string>& others) {
+  std::set<std::string> names(others.begin(), others.end());
+  for (const GraphFile& file : graph.files) names.insert(stem_of(file.name));
+  for (const PlanFile& state : graph.states) names.insert(stem_of(state.name));
+  std::string text;
+  for (const std::string& name : names) text += name + "\n";
+  return text;
+}
+
+/// "0012-3fa94c21d0": does a name look like those that make_graph gives?
+bool has_key(const std::string& stem) {
+  const std::size_t dash = stem.rfind('-');
+  if (dash == std::string::npos || stem.size() - dash != 11 || dash < 4) return false;
+  const auto all_in = [](const std::string& text, const char* allowed) { return text.find_first_not_of(allowed) == std::string::npos; };
+  return all_in(stem.substr(0, dash), "0123456789+") && all_in(stem.substr(dash + 1), "0123456789abcdef");
+}
+
+/// Removes what no plan names any more from the folders of stages. Names that are not ours stay.
+void remove_expired(const std::string& folder, const std::set<std::string>& named) {
+  std::set<std::string> folders{"state"};
+  for (const StageInfo& stage : kStages) folders.insert(std::string(stage.folder));
+  for (const std::string& sub : folders) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder + "/" + sub, error)) {
+      const std::string name = entry.path().filename().string(), stem = name.substr(0, name.find_first_of("._"));
+      if (has_key(stem) && !named.contains(sub + "/" + stem)) fs::remove(entry.path(), error);
+    }
+  }
+}
+
+void add_lines(const std::string& text, std::set<std::string>& lines) {
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.insert(line);
+}
+
+/// Hashes of the programs beside this one, with all modules and with `recipes`.
+ToolHash tool_hashes(Inputs& inputs, const std::vector<std::string>& recipes) {
+  const std::string programs = fs::read_symlink("/proc/self/exe").parent_path().string();
+  Hasher shared;
+  for (const std::string& recipe : recipes) shared.add(std::string_view(inputs.hash_of(recipe)));
+  for (const std::string& folder : default_module_folders()) {
+    std::set<std::string> modules;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error))
+      if (entry.path().filename().string().starts_with("tempolux-")) modules.insert(entry.path().string());
+    for (const std::string& module : modules) shared.add(std::string_view(inputs.hash_of(module)));
+  }
+  inputs.hash_of(programs + "/scene-plan");
+  return [&inputs, programs, common = shared.hex()](const std::string& tool) { return inputs.hash_of(programs + "/" + tool) + common; };
+}
+
+}  // namespace
+
+PlanFolder::PlanFolder(std::string path) : path_(std::move(path)), inputs_(path_ + "/state/inputs") { make_folder(path_ + "/state"); }
+
+bool PlanFolder::up_to_date(const std::string& wish) {
+  return fs::exists(path_ + "/plan.mk") && fs::exists(path_ + "/plan.json") && inputs_.unchanged(wish);
+}
+
+Decisions PlanFolder::decisions(const PlannedSegment& segment, const std::string& key, const std::function<Decisions()>& decide) {
+  const std::string name = "state/" + frame_digits(segment.first) + "-" + key_of(key);
+  decided_.push_back(name);
+  const std::string kept = content_of(path_ + "/" + name + ".decided");
+  if (!kept.empty()) return read_decisions(kept);
+  const Decisions decided = decide();
+  write_whole(path_ + "/" + name + ".decided", decisions_text(decided));
+  return decided;
+}
+
+void PlanFolder::write(const Planned& planned, const ToolHash& tool_hash, const std::string& wish, const std::string& history) {
+  for (const char* sub : {"frames", "shown", "report"}) make_folder(path_ + "/" + sub);
+  for (const GraphFile& file : planned.graph.files) make_folder(path_ + "/" + file.name.substr(0, file.name.find('/')));
+  for (const PlanFile& state : planned.graph.states) write_if_changed(path_ + "/" + state.name, state.content);
+  const std::string list = path_ + "/state/files", names = stems(planned.graph, decided_);
+  std::set<std::string> named;
+  add_lines(names, named);
+  if (content_of(list) != names) {
+    for (int age = kPlansKept; age > 0; --age) {
+      const std::string from = age == 1 ? list : list + "." + std::to_string(age - 1);
+      if (fs::exists(from)) write_whole(list + "." + std::to_string(age), content_of(from));
+    }
+    write_whole(list, names);
+  }
+  for (int age = 1; age <= kPlansKept; ++age) add_lines(content_of(list + "." + std::to_string(age)), named);
+  remove_expired(path_, named);
+  std::string warnings;
+  for (const std::string& warning : planned.warnings) warnings += warning.substr(0, warning.find('\n')) + "\n";
+  write_if_changed(path_ + "/state/warnings", warnings);
+  write_if_changed(path_ + "/plan.json", plan_json(planned.plan, planned.graph, planned.scene_name, history));
+  write_if_changed(path_ + "/plan.mk", plan_makefile(planned.plan, planned.graph, tool_hash));
+  write_whole(path_ + "/state/inputs", inputs_.text(wish));   // last: from here on the plan is up to date
+}
+
+Planner::Planner(Tool& tool, const std::string& scene, const Wish& wish, const std::vector<std::string>& recipes, PlanFolder* folder)
+    : tool_hash_(tool_hashes(folder ? folder->inputs() : none_, recipes)), input_(tool, scene, SceneInput::light | SceneInput::a_camera) {
+  const int camera = input_.scene().camera_node(tool.common().camera);
+  tool.stats().phase("plan");
+  Plan& plan = planned_.plan;
+  planned_.scene_name = fs::path(scene).filename().string();
+  plan = make_plan(input_.scene(), tool.common().frames, camera, input_.time(),
+                   input_.has_media() ? MediaHash([&](int frame) { return input_.media_hash(frame); }) : MediaHash{}, helper_frames(tool.common().frames, wish));
+  const SceneSource source{[&](int frame, bool with_media) { return input_.at(frame, with_media); }, [&](int frame) { return input_.emission(frame); }, camera};
+  tool.stats().phase("pilots", true);
+  for (PlannedSegment& segment : plan.segments) {
+    tool.progress(double(&segment - plan.segments.data()) / double(plan.segments.size()));
+    const auto make = [&] { return decide(segment, wish, plan.media, source); };
+    segment.decisions = folder ? folder->decisions(segment, hash_hex(decision_key(segment, wish, plan.media) + tool_hash_("scene-plan")), make) : make();
+  }
+  tool.stats().phase("graph");
+  planned_.graph = graph(plan, wish);
+  for (const std::string& warning : plan.warnings) tool.warn(scene + ": " + warning);
+  planned_.warnings = tool.warnings();
+  if (!folder) return;
+  for (const std::string& file : input_.scene().files) folder->inputs().hash_of(file);
+  for (const std::string& file : input_.media_files()) {
+    folder->inputs().hash_of(file);
+    folder->inputs().hash_of(fs::absolute(file).parent_path().string());   // a file that comes or goes is a change as well
+  }
+}
+
+Graph Planner::graph(const Plan& plan, const Wish& wish) {
+  return make_graph(plan, wish, tool_hash_, [&](int first, int last) { return majorants_text(input_.frozen_majorants(first, last)); });
+}
+
+void check_words(const std::string& option, const std::string& words) {
+  const bool fine = std::ranges::all_of(words, [](unsigned char c) { return std::isalnum(c) || std::string_view(" .,:+-_%/").find(char(c)) != std::string_view::npos; });
+  if (!fine) throw InputError(option + ": '" + words + "': only letters, digits, blanks and . , : + - _ % / can stand there");
+}
+
+}  // namespace tempolux::tools

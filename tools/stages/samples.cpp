@@ -1,0 +1,157 @@
+#include "tools/stages/samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "formats/error.h"
+
+namespace tempolux::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kWidth = 160;        ///< pixels of the larger sample, at most half of the picture
+constexpr int kFewerRays = 4;         ///< of a record
+constexpr std::array kSamples{"small", "large"};
+
+/// How often a stage runs for the frames asked for, and how much more its files take than those of a sample, but for the size of the picture: mean
+/// factors of work and of bytes.
+struct Runs {
+  double count = 0, work = 0, bytes = 0;
+};
+
+bool makes_photons(const GraphFile& file) { return file.name.ends_with(".photons"); }
+bool makes_records(const GraphFile& file) { return file.name.ends_with(".irradcache"); }
+
+/// The value of --rays among words; 0: it is not there.
+double rays_of(const std::string& words) {
+  const std::size_t at = words.find("--rays ");
+  return at == std::string::npos ? 0 : std::stod(words.substr(at + 7));
+}
+
+/// Cameras for which records are placed: frames of --frames.
+double cameras_of(const std::string& words) {
+  const std::size_t at = words.find("--frames ");
+  return at == std::string::npos ? 1 : 1 + double(std::ranges::count(words.substr(at, words.find(' ', at + 9) - at), ','));
+}
+
+std::map<std::string, Runs> runs_by_stage(const Planned& whole, const Graph& sample, double photons) {
+  std::map<std::string, double> sample_rays;
+  for (const GraphFile& file : sample.files) sample_rays[file.stage] = rays_of(file.words);
+  const Decisions& d = whole.plan.segment_of(whole.plan.shows.at(whole.plan.frames.front())).decisions;
+  std::set<const GraphFile*> needed;
+  std::map<std::string, Runs> runs;
+  const std::function<void(const std::string&)> need = [&](const std::string& name) {
+    const GraphFile* file = whole.graph.find(name);
+    if (!file || !needed.insert(file).second) return;
+    const double cameras = makes_records(*file) ? d.records_of(cameras_of(file->words)) : 1, bytes = makes_photons(*file) ? photons : cameras;
+    const double rays = makes_records(*file) && sample_rays[file->stage] > 0 ? rays_of(file->words) / sample_rays[file->stage] : 1;
+    Runs& stage = runs[file->stage];
+    stage.count += 1;
+    stage.work += bytes * rays;
+    stage.bytes += bytes;
+    for (const std::string& input : file->inputs) need(input);
+  };
+  for (const auto& [frame, picture] : whole.graph.pictures) need(picture);
+  return runs;
+}
+
+/// The first frame asked for, and the first that is warped.
+std::vector<int> sampled_frames(const Planned& planned) {
+  std::vector<int> frames{planned.plan.frames.front()};
+  const auto warped = std::ranges::find_if(planned.graph.pictures, [](const auto& shown) { return shown.second.starts_with(stage::walked.folder); });
+  if (warped != planned.graph.pictures.end() && warped->first != frames.front()) frames.push_back(warped->first);
+  return frames;
+}
+
+/// Of one file of a stage, the mean over those in a sample.
+struct Cost {
+  double fixed_cpu_s = 0, work_cpu_s = 0, bytes = 0;
+};
+
+std::set<std::string> work_phases(const StageInfo& stage) {
+  std::set<std::string> work;
+  std::istringstream names{std::string(stage.work)};
+  for (std::string name; std::getline(names, name, ',');) work.insert(name);
+  return work;
+}
+
+/// `stems`: of the files, in `folder`. None: they have no statistics.
+std::optional<Cost> cost_of(const std::string& folder, const StageInfo& stage, const std::vector<std::string>& stems) {
+  const std::set<std::string> work = work_phases(stage);
+  Cost mean;
+  for (const std::string& stem : stems) {
+    std::ifstream stream(folder + "/" + stem + ".json");
+    if (!stream) return std::nullopt;
+    const nlohmann::json json = nlohmann::json::parse(stream);
+    double in_work = 0;
+    for (const auto& phase : json.at("phases"))
+      if (work.contains(phase.at("name"))) in_work += phase.at("cpu_s").get<double>();
+    mean.work_cpu_s += in_work / double(stems.size());
+    mean.fixed_cpu_s += std::max(0.0, json.at("cpu_s").get<double>() - in_work) / double(stems.size());
+  }
+  for (const auto& entry : fs::directory_iterator(folder + "/" + std::string(stage.folder)))
+    if (entry.path().extension() != ".json" && std::ranges::find(stems, std::string(stage.folder) + "/" + stem_of(entry.path().filename())) != stems.end())
+      mean.bytes += double(entry.file_size()) / double(stems.size());
+  return stems.empty() ? std::nullopt : std::optional(mean);
+}
+
+}  // namespace
+
+void write_samples(const std::string& folder, Planner& planner, const Wish& wish) {
+  const Planned& whole = planner.planned();
+  const double large = std::min(0.5, kWidth / wish.width);
+  nlohmann::json json = {{"scales", {large / 2, large}}};
+  PlanFolder out(folder);
+  for (std::size_t i = 0; i < kSamples.size(); ++i) {
+    const double scale = json["scales"][i];
+    Wish less = wish;
+    less.width = std::max(8, int(wish.width * scale));
+    less.height = std::max(8, int(wish.height * scale));
+    less.report.clear();
+    Planned planned = whole;
+    planned.plan.frames = sampled_frames(whole);
+    for (PlannedSegment& segment : planned.plan.segments) {
+      Decisions& d = segment.decisions;
+      d.photon_paths = std::max<std::uint64_t>(100, std::uint64_t(double(d.photon_paths) * large * large));
+      d.record_rays = std::max(1, d.record_rays / kFewerRays);
+      d.together = 1;
+    }
+    planned.graph = planner.graph(planned.plan, less);
+    out.write(planned, planner.tool_hash(), "", "");
+    fs::rename(folder + "/plan.mk", folder + "/" + kSamples[i] + ".mk");
+    for (const GraphFile& file : planned.graph.files) json[kSamples[i]][file.stage].push_back(stem_of(file.name));
+    if (i > 0)
+      for (const auto& [stage, runs] : runs_by_stage(whole, planned.graph, 1 / (large * large)))
+        json["runs"][stage] = {runs.count, runs.work / runs.count, runs.bytes / runs.count};
+  }
+  std::ofstream(folder + "/samples.json") << json;
+}
+
+std::vector<StageEstimate> estimate_from(const std::string& folder) {
+  std::ifstream stream(folder + "/samples.json");
+  if (!stream) throw InputError(folder + ": holds no samples; `make -f Makefile.example estimate` makes them");
+  const nlohmann::json json = nlohmann::json::parse(stream);
+  std::vector<StageEstimate> estimates;
+  for (const StageInfo& stage : kStages) {
+    const std::string name(stage.name);
+    if (!json.at("runs").contains(name)) continue;
+    const auto cost = [&](const char* sample) { return cost_of(folder, stage, json.at(sample).value(name, std::vector<std::string>{})); };
+    const std::optional<Cost> a = cost(kSamples[0]), b = cost(kSamples[1]);
+    if (!a || !b) continue;
+    const std::array<double, 3> runs = json.at("runs").at(name);
+    const auto whole = [&](double in_small, double in_large) { return power_law(json.at("scales")[0], in_small, json.at("scales")[1], in_large, 1); };
+    estimates.push_back({name, runs[0], b->fixed_cpu_s + runs[1] * whole(a->work_cpu_s, b->work_cpu_s), runs[2] * whole(a->bytes, b->bytes)});
+  }
+  return estimates;
+}
+
+}  // namespace tempolux::tools

@@ -1,0 +1,195 @@
+#include "tools/stages/update_photons.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "formats/error.h"
+#include "formats/photons/layout.h"
+#include "lib/photon/photon_ledger.h"
+#include "lib/photon/photon_refine.h"
+#include "tools/common/arguments.h"
+#include "tools/common/option_words.h"
+
+namespace tempolux::tools {
+namespace {
+
+const std::map<std::string, UpdateStrategy> kStrategies{
+    {"oldest", UpdateStrategy::oldest}, {"random", UpdateStrategy::random}, {"census", UpdateStrategy::census}, {"fde", UpdateStrategy::fde},
+    {"dip", UpdateStrategy::dip},       {"hybrid", UpdateStrategy::hybrid}, {"path", UpdateStrategy::path},     {"all", UpdateStrategy::all}};
+
+/// "10%" or "10" as .1.
+double share_of(const std::string& text, const char* option) {
+  std::size_t read = 0;
+  double percent = -1;
+  try {
+    percent = std::stod(text, &read);
+  } catch (const std::exception&) {
+  }
+  if (!(percent >= 0 && percent <= 100) || (text.substr(read) != "%" && read != text.size()))
+    throw InputError(std::string(option) + ": '" + text + "' is not a share; write 10% or 2.5%");
+  return percent / 100;
+}
+
+/// Are all states of the scene that light depends on those of the map?
+bool is_still(const formats::Identity& a, const formats::Identity& b) {
+  return a.known() && a.static_geometry == b.static_geometry && a.moving_geometry == b.moving_geometry && a.materials == b.materials &&
+         a.lights == b.lights && a.media == b.media;
+}
+
+/// --refine works on the map of the frame itself, an update on that of the frame before.
+std::string previous_name(const UpdateArguments& arguments, int frame) {
+  return frame_name(arguments.update, parse_count(arguments.refine) > 0 ? frame : frame - 1);
+}
+
+/// Groups that the share has room for beside `spent` paths of pilots; with corrective photons a group counts twice.
+std::uint64_t most_groups(const UpdateArguments& arguments, const PhotonTracer& photons, std::uint64_t spent) {
+  if (arguments.share.empty()) return arguments.max_groups;
+  const double paths = share_of(arguments.share, "--share") * double(photons.photon_count()) - double(spent);
+  const double groups = paths / double(photons.members()) / (arguments.corrective ? 2 : 1);
+  return std::uint64_t(std::max(0.0, spent > 0 || arguments.corrective ? std::floor(groups) : std::ceil(groups)));
+}
+
+/// A quarter of the memory at most, as other parts need some.
+bool may_keep(const Tool& tool, std::uint64_t photons) {
+  constexpr std::uint64_t bytes_of_photon = sizeof(formats::Photon) + sizeof(std::array<std::uint16_t, 2>);
+  auto memory = std::uint64_t(::sysconf(_SC_PHYS_PAGES)) * std::uint64_t(::sysconf(_SC_PAGE_SIZE));
+  if (const std::uint64_t limit = tool.common().max_memory_bytes; limit > 0) memory = std::min(memory, limit);
+  return photons <= memory / 4 / bytes_of_photon;
+}
+
+void check_updatable(const std::string& name, const MapToUpdate& map, const formats::PhotonHeader& previous, bool any_count) {
+  formats::PhotonHeader wanted = map.header;
+  describe_map(map.photons, map.options, wanted);
+  if (any_count) wanted.emitted_count = previous.emitted_count;
+  if (const std::string why = why_not_updatable(previous, wanted); !why.empty())
+    throw InputError(name + ": cannot be " + (any_count ? "refined" : "updated") + ": " + why + "; trace this frame anew, without --update");
+}
+
+PhotonMapResult refine_map(Tool& tool, const std::string& name, std::uint64_t extra, const MapToUpdate& map,
+                           const std::function<void(const void*, std::size_t)>& sink) {
+  const formats::PhotonHeader previous = formats::PhotonReader(name, {.digest = false}).header();
+  check_updatable(name, map, previous, true);
+  if (!is_still(previous.identity, map.header.identity))
+    throw InputError(name + ": is the map of another state of the scene; --refine takes that of frame " + std::to_string(map.frame.frame));
+  const GroupMoments groups = read_moments(name, map.photons);
+  formats::PhotonHeader header = map.header;
+  header.history = previous.history + map.header.history;
+  const PhotonMapResult result = write_refined_map(map.photons, map.options, header, name, groups, extra, sink);
+  tool.stats().count("paths_added", double(extra));
+  return result;
+}
+
+}  // namespace
+
+void add_update_options(CLI::App& app, UpdateArguments& arguments) {
+  app.add_option("--update", arguments.update,
+                 "map of the frame before, or a pattern: keep its groups but for those that are traced again; needs photons in media and "
+                 "--majorants")
+      ->type_name("FILE");
+  app.add_option("--share", arguments.share, "of --update: share of the paths that are traced again, as 10%, those of pilots counted")->type_name("PERCENT");
+  app.add_option("--max-groups", arguments.max_groups, "of --update: instead of a share, the number of groups; pilots are not counted")->type_name("N");
+  std::vector<std::string> names;
+  for (const auto& [name, strategy] : kStrategies) names.push_back(name);
+  app.add_option("--strategy", arguments.strategy,
+                 "which groups go first: oldest; random; census: where the stored photons saw most change of the smoke; of pilots: fde: that look "
+                 "at smoke that has changed; dip: that smoke scatters elsewhere; hybrid: by how much the smoke has changed; path: that take "
+                 "another path; all. All but the first two times age")
+      ->capture_default_str()
+      ->check(CLI::IsMember(names));
+  app.add_option("--pilots", arguments.pilots, "of a map that will be updated by pilots: share of each group's paths that are pilots, as 3%; at least one, at most 256")
+      ->type_name("PERCENT")
+      ->capture_default_str();
+  app.add_option("--age-floor", arguments.how.age_floor, "of --update: groups as many frames old go before all others; 0: none")
+      ->type_name("FRAMES")
+      ->capture_default_str()
+      ->check(number_between(0, 1e6));
+  app.add_option("--age-power", arguments.how.age_power, "of --update: priorities are times age to this power; 0: as in the papers")
+      ->type_name("X")
+      ->capture_default_str()
+      ->check(number_between(0, 16));
+  app.add_flag("--corrective", arguments.corrective,
+               "of --update: take groups back by negative photons through the smoke of their frame, instead of leaving them out; for comparison: "
+               "the same map for twice the paths");
+  app.add_option("--refine", arguments.refine,
+                 "instead of tracing groups of --update again: add this many paths to them (10k, 1M), where they make light in smoke less noisy; "
+                 "--update is the map of the frame itself")
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void check_update_arguments(const Tool& tool, bool static_or_dynamic, UpdateArguments& arguments) {
+  const bool refines = parse_count(arguments.refine) > 0;
+  arguments.how.strategy = kStrategies.at(arguments.strategy);
+  if (static_or_dynamic && arguments.updates()) throw InputError("--update: only with --map global");
+  if (!arguments.updates() && refines) throw InputError("--refine: name the map that gets further paths, --update FILE");
+  if (!arguments.updates() && arguments.corrective) throw InputError("--corrective: only with --update");
+  if (refines && (arguments.corrective || !arguments.share.empty() || arguments.max_groups > 0))
+    throw InputError("--refine: adds paths; --share, --max-groups and --corrective trace some again: use one or the other");
+  if (arguments.updates() && share_of(arguments.pilots, "--pilots") > 0) throw InputError("--pilots: of an update the map before has them");
+  if (!arguments.updates()) return;
+  if (!refines && arguments.share.empty() && arguments.max_groups == 0 && arguments.strategy != "all")
+    throw InputError("--update: say how many groups to trace again, --share 10% or --max-groups N");
+  if (tool.common().volume.majorants.empty())
+    throw InputError("--update: needs the --majorants of the segment (scene-plan writes state/majorants.FFFF): without them photons look at "
+                     "other places in each frame");
+}
+
+std::uint32_t pilots_of(const UpdateArguments& arguments, const PhotonOptions& photons, int frame) {
+  if (arguments.updates()) return formats::PhotonReader(previous_name(arguments, frame), {.digest = false}).header().pilots;
+  const double share = share_of(arguments.pilots, "--pilots");
+  if (!(share > 0)) return 0;
+  const std::uint32_t groups = photons.group_count ? photons.group_count : automatic_group_count(photons.photon_count, true);
+  return std::uint32_t(std::clamp(std::ceil(share * double(photons.photon_count) / groups), 1.0, double(formats::photons::kMostPilots)));
+}
+
+PhotonMapResult update_map(Tool& tool, const UpdateArguments& arguments, const MapToUpdate& map,
+                           const std::function<void(const void*, std::size_t)>& sink, KeptMap& kept) {
+  const int frame = map.frame.frame;
+  const std::string name = previous_name(arguments, frame);
+  tool.depends_on(name, InputRole::replaceable);
+  if (const std::uint64_t extra = parse_count(arguments.refine); extra > 0) return refine_map(tool, name, extra, map, sink);
+  // Where nothing has changed no group is traced: nobody need look.
+  const bool is_here = kept.name == name && kept.map.is_kept();
+  const formats::PhotonHeader before = is_here ? kept.map.header : formats::PhotonReader(name, {.digest = false}).header();
+  check_updatable(name, map, before, false);
+  const bool still = is_still(before.identity, map.header.identity);
+  const UpdateStrategy strategy = still && arguments.how.strategy != UpdateStrategy::all ? UpdateStrategy::oldest : arguments.how.strategy;
+  PreviousMap& previous = kept.map;
+  if (!is_here) {
+    tool.stats().phase("read map");
+    const bool keep = kept.wanted && !arguments.corrective && may_keep(tool, formats::PhotonReader(name, {.digest = false}).photon_count_bound());
+    previous = read_previous(name, map.photons, strategy, map.frame.origin, keep);
+  }
+  if (previous.is_kept()) {
+    tool.stats().phase(sends_pilots(strategy) ? "pilots" : "census", true);
+    find_change(name, previous, map.photons, strategy, map.frame.origin);
+  }
+  kept.name.clear();
+  tool.stats().phase("choose");
+  UpdateOptions how = arguments.how;
+  how.most_groups = most_groups(arguments, map.photons, previous.pilot_paths);
+  const std::vector<std::uint32_t> groups = choose_groups(previous, frame, still, how);
+  tool.stats().count("groups_updated", double(groups.size()));
+  if (previous.pilot_paths > 0) tool.stats().count("pilot_paths", double(previous.pilot_paths));
+
+  tool.stats().phase("trace", true);
+  formats::PhotonHeader header = map.header;
+  header.history = before.history + map.header.history;
+  const auto folder = [](const std::string& path) { return path.substr(0, path.rfind('/') + 1); };
+  MapUpdate update{name, previous, groups, map.output != "-" && folder(map.output) == folder(name), {}};
+  std::map<int, std::shared_ptr<const PhotonTracer>> tracers;
+  if (arguments.corrective) {
+    for (const std::uint32_t g : groups)
+      if (auto& tracer = tracers[previous.ledger[g].frame]; !tracer) tracer = map.tracer_at(previous.ledger[g].frame);
+    update.corrective = [&](int at) -> const PhotonTracer& { return *tracers.at(at); };
+  }
+  const PhotonMapResult result = write_updated_map(map.photons, map.options, header, update, sink);
+  if (previous.is_kept()) kept.name = map.output;
+  return result;
+}
+
+}  // namespace tempolux::tools
