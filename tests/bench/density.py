@@ -202,12 +202,13 @@ def equal():
         folder = f"equal-{name}"
         photons(folder, file, "0-47", "25k", "p.####.photons", *words)
         run(folder, "gather-temporal", "density", file, "--frames", "0-47", "--photons", "p.####.photons", *words, "-o", "windows.####.meshirrad")
-        for count, kind in (("845k", "many"), ("25k", "few"), ("6M", "true")):
+        for count, kind in (("845k", "many"), ("25k", "few"), ("8M", "true")):
             own = "p.####.photons"
             if kind != "few":
                 own = f"{kind}.####.photons"
                 run(folder, "photon-trace", file, "--frames", span if kind == "many" else f"0-{min(2, frames - 1)}", "--photons", count, "--seed", 7, "--kinds", "indirect", "-o", own, *words)
-            run(folder, "st-filter", "mesh", file, "--frames", span if kind != "true" else f"0-{min(2, frames - 1)}", "--photons", own, *words, "-o", f"{kind}.####.meshirrad")
+            width = mesh.read_meshirrad(options.work / folder / "windows.0000.meshirrad").header["filter"].split()[1]   # the same blur for all
+            run(folder, "st-filter", "mesh", file, "--filter-width", width, "--cell", 2 * float(width), "--frames", span if kind != "true" else f"0-{min(2, frames - 1)}", "--photons", own, *words, "-o", f"{kind}.####.meshirrad")
         shown = {}
         for kind in ("windows", "many", "few", "true"):
             run(folder, "frame-render", file, "--frames", span if kind != "true" else f"0-{min(2, frames - 1)}", "--size", options.size, "--meshirrad", f"{kind}.####.meshirrad", *words,
