@@ -122,6 +122,7 @@ class FilterRun {
     else if (image.find("forward.u") || image.find("backward.u"))
       loaded.flow = to_filter ? FlowFrame(image, image.width, image.height, names.frame)
                               : FlowFrame(std::move(image), image.width, image.height, names.frame);
+    naming(names.frame, [&] { check_noise(image); });
     if (windowed_) naming(names.frame, [&] { loaded.light = std::make_unique<WindowLight>(image, false); });
     explain(names, loaded);
     if (!to_filter) image = {};

@@ -9,7 +9,7 @@
 namespace tempolux {
 namespace {
 
-constexpr int kAround = 4;  ///< pixels
+constexpr int kAround = 3;  ///< pixels
 constexpr int kWindow = (2 * kAround + 1) * (2 * kAround + 1);
 constexpr float kDark = 0.02f;      ///< of the layer's mean
 constexpr float kOwnNoise = 0.25f;  ///< share of a pixel's own noise in its scale

@@ -17,7 +17,7 @@ struct Halves {
   Colours a, b;
 };
 
-/// What counts as around a pixel: pixels of the same kind within 9 x 9, and theirs again, so that near ones count more.
+/// What counts as around a pixel: pixels of the same kind within 7 x 7, and theirs again, so that near ones count more.
 class Neighbourhood {
  public:
   /// kinds: by pixel 1 inside surfaces, 0 at edges.
@@ -34,7 +34,7 @@ class Neighbourhood {
 
   std::vector<std::uint8_t> kinds_;
   int width_, height_;
-  Plane share_;  ///< 1 / number of pixels of the kind within 9 x 9
+  Plane share_;  ///< 1 / number of pixels of the kind within 7 x 7
 };
 
 /// The mixture of a raw layer and its filtered candidates that has the least squared error, by pixel.

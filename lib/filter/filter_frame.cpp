@@ -17,13 +17,14 @@
 namespace tempolux {
 namespace {
 
-/// Frames of a window that differ in size or layers.
-void check_frame(const LightGroup& frame, const LightGroup& other) {
-  if (other.surfaces.width != frame.surfaces.width || other.surfaces.height != frame.surfaces.height)
-    throw InputError("frames of " + std::to_string(frame.surfaces.width) + "x" + std::to_string(frame.surfaces.height) + " and of " +
-                     std::to_string(other.surfaces.width) + "x" + std::to_string(other.surfaces.height) +
-                     " pixels; all frames of a window have one size");
-  if (other.layers != frame.layers || other.surfaces.albedo[0].empty() != frame.surfaces.albedo[0].empty())
+/// InputError if two frames of a window differ in size or layers.
+void check_frame(const WindowLight& frame, const WindowLight& other) {
+  if (other.width != frame.width || other.height != frame.height)
+    throw InputError("frames of " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + " and of " +
+                     std::to_string(other.width) + "x" + std::to_string(other.height) + " pixels; all frames of a window have one size");
+  const auto &own = frame.light.group(0), &others = other.light.group(0);
+  if (own.has_value() != others.has_value() ||
+      (own && (own->layers != others->layers || own->surfaces.albedo[0].empty() != others->surfaces.albedo[0].empty())))
     throw InputError("frames of a window have different layers; write all with the same --channels");
 }
 
@@ -103,7 +104,7 @@ Halves raw_halves(const Image& image, const LightGroup& group, std::size_t l) {
 
 }  // namespace
 
-WindowLight::WindowLight(const Image& image, bool alone) : light(image) {
+WindowLight::WindowLight(const Image& image, bool alone) : width(image.width), height(image.height), light(image) {
   if (const auto& matte = light.group(0); matte && !alone)
     guides = fit(matte->surfaces, matte->raw, nullptr, kSmallAlike, smoothed(matte->surfaces, matte->variance));
 }
@@ -151,12 +152,10 @@ FrameFilter::~FrameFilter() = default;
 void FrameFilter::add(const WindowLight& frame, const FlowFrame& flow) {
   State& state = *state_;
   if (state.added >= state.before + state.after) throw std::invalid_argument("FrameFilter: more frames than the window has");
-  if (state.middle.guides.has_value() != frame.guides.has_value())
-    throw InputError("frames of a window have different layers; write all with the same --channels");
+  check_frame(state.middle, frame);
   const bool is_after = state.added >= state.before, first = state.added == (is_after ? state.before : 0);
   ++state.added;
   if (!frame.guides) return;
-  check_frame(*state.middle.light.group(0), *frame.light.group(0));
   for (std::optional<Collector>& collector : state.collectors) {
     if (first) collector->start(is_after ? 1 : -1);
     collector->add({&*frame.light.group(0), &*frame.guides, &flow});
@@ -178,7 +177,7 @@ namespace {
 
 /// Pixels around a tile that its own depend on: the fits' windows, two for what is smoothed and on one surface, the windows of unmix() and
 /// resolve(), those of choose() six times.
-constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 6 * 4; }
+constexpr int reach() { return kSmall.radius * kSmall.stride + kLarge.radius * kLarge.stride + 2 + 6 + 1 + 6 * 3; }
 
 Image cut_out(const Image& image, int left, int top, int width, int height) {
   Image out{width, height, {}, {}, {}, {}};

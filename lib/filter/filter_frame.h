@@ -24,6 +24,7 @@ struct FilterOptions {
 
 /// A frame of a window: its light, and the first fits of its matte light.
 struct WindowLight {
+  int width, height;
   FrameLight light;
   std::optional<BothHalves> guides;  ///< none without matte light, nor for a frame that is filtered alone
   WindowLight(const Image& image, bool alone);

@@ -40,10 +40,10 @@ class MadeUpNoise {
       for (std::size_t c = 0; c < 3; ++c) {
         Plane& noise = noise_.emplace_back(on.width, on.height);
         if (group.raw[0].layers[l][c].empty()) continue;
-        if (told.empty())
-          estimate(group.raw[0].layers[l][c], noise);
-        else
+        if (!told.empty())
           take(image.find(channel_name(told, c))->values, l, c, noise);
+        else if (!on.albedo[0].empty())
+          estimate(group.raw[0].layers[l][c], noise);
       }
   }
   const Plane& of(std::size_t layer, std::size_t c) const { return noise_[3 * layer + c]; }
@@ -151,15 +151,21 @@ bool knows_noise(const Image& image) {
          std::any_of(kMatte.begin(), kMatte.end(), [&](const std::string& layer) { return holds(image, layer + ".noise.R"); });
 }
 
+void check_noise(const Image& image) {
+  for (const char* layer : {"emission", "specular", "direct", "caustic", "indirect"})
+    if (const std::string noise = std::string(layer) + ".noise";
+        holds(image, noise + ".R") && !(has_colour(image, layer) && has_colour(image, noise)))
+      throw InputError("noise of layer " + std::string(layer) +
+                       " is not all there, or the layer is not; write it with --channels layers,halves");
+}
+
 FrameLight::FrameLight(const Image& image) {
+  check_noise(image);
   for (std::size_t g = 0; g < kGroups; ++g) {
     std::vector<std::string> layers;
-    bool noise = g == 0 && knows_noise(image);
+    bool noise = g == 0;
     for (const std::string layer : g == 0 ? std::span<const char* const>(kMatte) : std::span<const char* const>(kShown)) {
-      const bool has_noise = holds(image, layer + ".noise.R");
-      if (has_noise && !(has_colour(image, layer) && has_colour(image, layer + ".noise")))
-        throw InputError("noise of layer " + layer + " is not all there, or the layer is not; write it with --channels layers,halves");
-      noise = noise || has_noise;
+      noise = noise || holds(image, layer + ".noise.R");
       if (has_colour(image, layer)) layers.push_back(layer);
     }
     if (g == 0 && layers.empty() && has_colour(image, "")) layers.push_back("");

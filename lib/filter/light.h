@@ -40,21 +40,24 @@ struct LightGroup {
 /// Half h of a layer is LAYER + LAYER.noise (0) or LAYER - LAYER.noise (1); the two are uncorrelated (formats/frames/frames.md). A frame
 /// without such channels has noise of a made-up sign whose square is the variance: that of the channels diffuse.variance or variance,
 /// shared out among the layers as their light is; or, in frames that say nothing of noise but have albedo, half the mean squared difference
-/// to the four pixels beside, over the surface. Values plus and less such a number are uncorrelated, too [Oliveira, Lei, Tibshirani:
-/// Unbiased risk estimation in the normal means problem via coupled bootstrap techniques, 2021].
+/// to the four pixels beside, over the surface; else none: then no more is done than to fill what is no number. Values plus and less such a
+/// number are uncorrelated, too [Oliveira, Lei, Tibshirani: Unbiased risk estimation in the normal means problem via coupled bootstrap
+/// techniques, 2021].
 class FrameLight {
  public:
   /// Matte light by what the pixel sees; emission and specular by what mirrors and glass show. R G B alone where a frame has no layers.
   static constexpr std::size_t kGroups = 2;
-  /// InputError if a layer's noise is not all there, or the layer is not.
+  /// InputError as check_noise().
   explicit FrameLight(const Image& image);
-  /// Nothing to be filtered in the group, or nothing is known of its noise: empty.
+  /// Nothing to be filtered in the group: empty.
   const std::optional<LightGroup>& group(std::size_t g) const { return groups_[g]; }
 
  private:
   std::array<std::optional<LightGroup>, kGroups> groups_;
 };
 
+/// InputError if a layer's noise is not all there, or the layer is not.
+void check_noise(const Image& image);
 /// Does a frame say anything by which its matte light's noise is known?
 bool knows_noise(const Image& image);
 /// Does the filter read a channel of this name?

@@ -28,7 +28,7 @@ Wish with_preset(Wish wish) {
   if (wish.points.empty()) wish.points = preset.points;
   if (wish.records.empty()) wish.records = preset.records;
   // Options of pixels that the user gives replace the preset's, its filter among them. Halves of all
-  // layers take 1.5 kB a pixel: 3 GB at 1920x1080, which is the largest picture that is filtered unasked.
+  // layers take 1 kB a pixel: 2 GB at 1920x1080, which is the largest picture that is filtered unasked.
   if (wish.filter == Wish::kAutoFilter)
     wish.filter = wish.pixels.empty() && wish.width * wish.height <= 1920 * 1080 ? 1 : 0;
   if (wish.pixels.empty()) {

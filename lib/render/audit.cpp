@@ -15,7 +15,7 @@ namespace {
 constexpr int kTilesAcross = 4;
 constexpr std::array<Layer, 3> kAudited{Layer::direct, Layer::caustic, Layer::indirect};
 constexpr std::size_t kFewestPaths = 64;     ///< that found light: of fewer no standard error is said
-constexpr std::uint32_t kFewestSplats = 32;  ///< likewise
+constexpr double kFewestSplats = 32;         ///< likewise; equal photons that those in view are worth
 constexpr double kMostOfOne = 0.5;           ///< of the sum of squares: beyond that one map or path decides, and the error is not known
 constexpr double kRaysOfPhoton = 3, kRaysOfPath = 7;   ///< rays of a frame that take as long as a path of light with what it leaves in view; as two paths from the eye
 constexpr std::uint64_t kPhotonKey = 0x6175646974ull << 8, kEyeKey = 0x657965ull;
@@ -26,12 +26,15 @@ double light_of(const Layers& pixel) {
   return sum;
 }
 
-/// Both estimates joined by inverse variance; the one that is known if there is one only.
+/// Both estimates joined by inverse variance; the one that is known if there is one only. Two that differ by more than kAuditErrors of their difference's
+/// standard errors are not both right (rare light that one way has not met), and nothing shows which is: no estimate.
 Estimate joined(const Estimate& a, const Estimate& b) {
   if (!a.known()) return b;
   if (!b.known()) return a;
   const double va = a.error * a.error, vb = b.error * b.error;
   if (!(va + vb > 0)) return a;
+  const double apart = a.value - b.value;
+  if (apart * apart > kAuditErrors * kAuditErrors * (va + vb)) return {};
   return {(a.value * vb + b.value * va) / (va + vb), std::sqrt(va * vb / (va + vb))};
 }
 
@@ -101,9 +104,10 @@ void FrameAudit::add_photons(const Tracer& tracer, const Lights& lights, const A
     for (const Splat& splat : seen[k]) {
       if (!mask_.empty() && !mask_[splat.pixel]) continue;
       const auto layer = std::size_t(splat.layer);
+      const double radiance = channel_mean(Rgbd(splat.radiance)), square = radiance * radiance;
       for_parts_of(splat.pixel, [&](std::size_t part) {
-        sums_[part].splats[layer][k] += float(channel_mean(Rgbd(splat.radiance)));
-        ++sums_[part].splat_count[layer];
+        sums_[part].splats[layer][k] += float(radiance);
+        sums_[part].splats_square[layer] += square;
       });
     }
 }
@@ -160,9 +164,10 @@ AuditEntry FrameAudit::entry(std::size_t part, std::size_t layer) const {
   AuditEntry entry{.layer = Layer(layer), .part = parts_[part].name, .object = parts_[part].object, .pixels = parts_[part].pixels, .shown = sums.shown[layer] / n,
                    .splats = {}, .paths = {}, .bias = {}, .picture = picture_ / n};
   Estimate by_splats;
-  if (sums.splat_count[layer] >= kFewestSplats) {
-    double sum = 0, square = 0, largest = 0;
-    for (const float map : sums.splats[layer]) sum += double(map);
+  double sum = 0;
+  for (const float map : sums.splats[layer]) sum += double(map);
+  if (sum > 0 && sum * sum >= kFewestSplats * sums.splats_square[layer]) {
+    double square = 0, largest = 0;
     for (const float map : sums.splats[layer]) {
       const double off = double(map) - sum / kMaps, off2 = off * off;
       square += off2;

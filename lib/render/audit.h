@@ -50,7 +50,8 @@ AuditEffort audit_effort(double share, const RayCounts& rays, std::uint64_t seed
 ///
 /// The standard error of what photons say is that of the mean of kMaps photon maps. Each map has a seed of its own, so the maps
 /// are independent and of one distribution, however the starts of one map are stratified. An estimate one map (or path) of
-/// which holds more than half of the sum of squares has no known error and is not given.
+/// which holds more than half of the sum of squares has no known error and is not given; nor is one of photons that are worth fewer than 32 equal ones,
+/// (sum)^2 / sum of squares.
 class FrameAudit {
  public:
   static constexpr std::size_t kMaps = 32;
@@ -75,7 +76,7 @@ class FrameAudit {
   struct Sums {
     std::array<double, kLayerCount> shown{};
     std::array<std::array<float, kMaps>, kLayerCount> splats{};   ///< by map
-    std::array<std::uint32_t, kLayerCount> splat_count{};
+    std::array<double, kLayerCount> splats_square{};              ///< sum over photons of what each adds, squared
     std::array<double, kLayerCount> paths{}, paths_square{}, paths_largest{};
     std::size_t path_count = 0;
     std::array<std::size_t, kLayerCount> met{};        ///< paths that found light

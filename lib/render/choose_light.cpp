@@ -10,11 +10,11 @@ namespace tempolux {
 namespace {
 
 constexpr double kPointsOfBothSides = 2.0 * PointOptions{}.count;
-constexpr double kFewestRays = 64;   ///< of a record: by so many lit_share() says how many it needs
+constexpr double kFewestRays = 64;   ///< of a record: with fewer its distances say too little of how far it holds
 constexpr double kLeastError = 1e-12;
 
-/// Of light that photons show and paths do not meet: what n samples leave of it, at most all.
-double left_of(double square, double variance, double samples) { return std::min(square, variance / std::max(1.0, samples)); }
+/// What n samples leave of light that photons show and paths do not meet: at most all.
+double left_of(const MissedLight& missed, double samples) { return std::min(missed.square, missed.variance / samples); }
 
 Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, bool map) {
   const bool records = method == IndirectMethod::records;
@@ -27,8 +27,8 @@ Way way_of(const RoughFrame& rough, const Order& order, IndirectMethod method, b
   if (method != IndirectMethod::paths) fixed += kPointsOfBothSides * Work::kPoint;
   Way way{method, map, 0, fixed + order.pixels * sample * samples, wanted};
   if (map) way.error += rough.map_error;
-  else way.error += left_of(rough.missed_caustic_square, rough.missed_caustic_variance, samples);
-  if (method == IndirectMethod::paths) way.error += left_of(rough.missed_square, rough.missed_variance, samples);
+  else way.error += left_of(rough.missed_caustic, samples);
+  if (method == IndirectMethod::paths) way.error += left_of(rough.missed, samples);
   if (records) {
     const double ray = rough.records * rough.record_ray;
     const double best = ray > 0 ? std::sqrt(rough.record_error * way.work / (ray * way.error)) : 0;
@@ -72,9 +72,9 @@ std::string because(const std::vector<Way>& ways) {
   std::string words;
   const double least = ways.front().score();
   for (const Way& way : ways) {
-    std::snprintf(text, sizeof text, "%s%s%s %.3g", words.empty() ? "work x squared error: " : ", ", kIndirectMethods[std::size_t(way.method)],
-                  way.map ? " beside caustics of photons" : "", least > 0 ? way.score() / least : 1.0);
-    words += text;
+    std::snprintf(text, sizeof text, "%s%s %.3g", kIndirectMethods[std::size_t(way.method)], way.map ? " beside caustics of photons" : "",
+                  least > 0 ? way.score() / least : 1.0);
+    words += (words.empty() ? "work x squared error: " : ", ") + std::string(text);
   }
   return words;
 }

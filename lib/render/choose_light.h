@@ -31,14 +31,14 @@ struct Way {
   double score() const { return work * error; }
 };
 
-/// All ways, the best one first: the least work x squared error. With n samples a pixel, c work for each, V their variance, and M records of k rays,
-/// e / k their squared error, g the work for a ray:
+/// All ways, the best one first: the least work x squared error. With n samples a pixel, c work for each, V their variance, and M
+/// records of k rays, e / k their squared error, g the work for a ray:
 ///
 ///     work = fixed + P c n + M g k,   error = E + e / k + what stays wrong,   n = V / E
 ///
-/// E is what the wish leaves of light that all ways find alike. Least for k = sqrt(e (fixed + P c n) / (M g (E + what stays wrong))): so work goes to
-/// records in proportion to the root of error x cost, as to samples. Wrong stay caustics by a density of photons, and light that photons
-/// show and paths do not meet.
+/// E is what the wish leaves of light that all ways find alike. Least for k = sqrt(e (fixed + P c n) / (M g (E + what stays wrong))):
+/// so work goes to records in proportion to the root of error x cost, as to samples. Wrong stay caustics by a density of photons, and
+/// light that photons show and paths do not meet.
 std::vector<Way> ways_to_light(const RoughFrame& rough, const Order& order, bool caustics);
 
 /// The same for several frames together: of each way the work and the error of all, and the most rays.

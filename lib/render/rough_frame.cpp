@@ -27,8 +27,8 @@ constexpr int kColumns = 16, kRows = 9;            ///< of the picture, in whose
 constexpr std::uint64_t kPaths = 1 << 15;          ///< of light
 constexpr std::uint32_t kPoints = 500;   ///< of a side
 constexpr int kRays = 62;                          ///< of a rough record
-/// Records of a picture over those whose discs of validity would cover it without overlap: weights fall to 0 at a disc's border, and later records
-/// narrow earlier ones. Of five scenes: docs/pixels.md.
+/// Records of a picture over those whose discs of validity would cover it without overlap: weights fall to 0 at a disc's border. Of five
+/// scenes: docs/pixels.md.
 constexpr double kOverlap = 20;
 constexpr double kTell = 7;                        ///< records that tell the light of a pixel, likewise
 constexpr double kSure = 3;                        ///< standard errors
@@ -71,7 +71,8 @@ Samples take_samples(const RenderScene& scene, const CameraView& view, const Kno
       for (std::uint32_t s = 0; s < kSamples; ++s) {
         const PixelRandom random(seed ^ 0x70696c6f74ull, i, s);
         const Vec2 in_pixel = random.get2(0, Purpose::pixel);
-        samples[i][s] = sample_of(trace_eye_path(scene, view.ray(at.x + in_pixel.x, at.y + in_pixel.y), random, known, by_place[i], view.cone()));
+        const Ray ray = view.ray(at.x + in_pixel.x, at.y + in_pixel.y);
+        samples[i][s] = sample_of(trace_eye_path(scene, ray, random, known, by_place[i], view.cone()));
       }
     }
   });
@@ -105,8 +106,11 @@ struct Levels {
   }
 };
 
-/// By part of the picture the variance of some of the light, over what a pixel may err by, squared. Of samples of which `times` make a pixel.
-std::vector<double> variances(const Samples& samples, const Levels& levels, double times, const std::function<double(const Sample&)>& light) {
+using PartOfLight = std::function<double(const Sample&)>;
+
+/// By part of the picture the variance of some of the light, over what a pixel may err by, squared. Of samples of which `times` make a
+/// pixel.
+std::vector<double> variances(const Samples& samples, const Levels& levels, double times, const PartOfLight& light) {
   std::vector<double> sum(kColumns * kRows, 0.0), count(kColumns * kRows, 0.0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     double first = 0, square = 0;
@@ -130,7 +134,7 @@ double adaptive(const std::vector<double>& variances) {
 }
 
 SampleEffort effort_of(const Samples& samples, const Levels& levels, double times, double work) {
-  const auto of = [&](const std::function<double(const Sample&)>& part) { return adaptive(variances(samples, levels, times, part)); };
+  const auto of = [&](const PartOfLight& part) { return adaptive(variances(samples, levels, times, part)); };
   return {work, of([](const Sample& s) { return s.sum(); }), of([](const Sample& s) { return s.other + s.indirect; }),
           of([](const Sample& s) { return s.other + s.caustic; }), of([](const Sample& s) { return s.other; })};
 }
@@ -158,7 +162,8 @@ class RoughLight {
     estimate_points(scene.tracer, scene.lights, photons_, {}, placing, placed_.points);
     lookup_.emplace(placed_.points, placed_.spacing, point_clearance(scene.tracer));
     lamps_ = note_lamps_beside(scene.tracer, scene.lights, *lookup_);
-    if (!lamps_.empty()) bright_.emplace(scene.tracer, scene.lights, *lookup_, std::vector<float>{}, BrightOptions{.seed = options.seed, .beside_lamps = lamps_});
+    const BrightOptions bright{.seed = options.seed, .beside_lamps = lamps_};
+    if (!lamps_.empty()) bright_.emplace(scene.tracer, scene.lights, *lookup_, std::vector<float>{}, bright);
   }
   PhotonView photons() const { return photons_; }
   KnownLight known() const {
@@ -187,67 +192,109 @@ class RoughLight {
   std::optional<BrightPoints> bright_;
 };
 
-/// Two records at each of some places, of random numbers of their own: half of their squared difference is their variance.
-void measure_records(const RenderScene& scene, const CameraView& view, const RoughLight& light, const Levels& levels, const RoughOptions& options, RoughFrame& rough) {
-  const FinalGather one(scene.tracer, scene.lights, light.lookup(), light.gathering(options.photons, options.seed)),
-      two(scene.tracer, scene.lights, light.lookup(), light.gathering(options.photons, ~options.seed));
-  std::vector<std::array<double, 2>> found(kRecords);   // records for a pixel, squared error
-  std::vector<GatherCounts> counts(kRecords);
-  parallel_chunks(kRecords, 1, [&](std::size_t i, std::size_t) {
-    const int place = int(i) * (kPlaces / kRecords);
-    const Where at = where(place, view, options.seed);
-    const Look look{at.x + 0.5f, at.y + 0.5f, {}};
-    std::optional<SeenPoint> seen = seen_through(scene.tracer, view, look);
-    if (!seen) return;
-    const PlacementOptions placement;
-    std::array<IrradianceRecord, 2> records{one.gather(seen->surface, seen->normal, counts[i]), two.gather(seen->surface, seen->normal, counts[i])};
-    const SurfaceMaterial material(scene.frame(), seen->surface, seen->footprint);
-    const Rgb reflected = Bsdf(material, dot(seen->surface.normal_geometric, seen->normal) > 0).diffuse_albedo() * kInvPi;
-    const double difference = double(channel_mean(reflected * records[0].irradiance)) - double(channel_mean(reflected * records[1].irradiance));
-    const double allowed = levels.allowed[at.part];
-    if (allowed > 0) found[i][1] = difference * difference / 2 / (allowed * allowed);
-    for (IrradianceRecord& record : records) {
-      limit_radius(record, seen->footprint, placement);
-      const double radius = double(record.radius) / double(seen->footprint);
-      found[i][0] += 0.5 * kOverlap / (double(kPi) * radius * radius);
-    }
-  });
+/// What is looked at.
+struct Picture {
+  const RenderScene& scene;
+  const CameraView& view;
+  const RoughOptions& options;
+  const Levels levels;
+};
+
+/// Two records at one place.
+struct Pair {
+  double for_a_pixel = 0;   ///< records
+  double error2 = 0;        ///< squared error of one
+  GatherCounts counts;
+};
+
+/// The two have random numbers of their own: half of their squared difference is the variance of one.
+Pair gather_pair(const Picture& picture, const std::array<FinalGather, 2>& gathers, int place) {
+  Pair pair;
+  const Where at = where(place, picture.view, picture.options.seed);
+  std::optional<SeenPoint> seen = seen_through(picture.scene.tracer, picture.view, {at.x + 0.5f, at.y + 0.5f, {}});
+  if (!seen) return pair;
+  const SurfaceMaterial material(picture.scene.frame(), seen->surface, seen->footprint);
+  const Rgb reflected = Bsdf(material, dot(seen->surface.normal_geometric, seen->normal) > 0).diffuse_albedo() * kInvPi;
+  double difference = 0;
+  for (const FinalGather& gather : gathers) {
+    IrradianceRecord record = gather.gather(seen->surface, seen->normal, pair.counts);
+    difference = double(channel_mean(reflected * record.irradiance)) - difference;
+    limit_radius(record, seen->footprint, {});
+    const double radius = double(record.radius) / double(seen->footprint);
+    pair.for_a_pixel += 0.5 * kOverlap / (double(kPi) * radius * radius);
+  }
+  const double allowed = picture.levels.allowed[at.part];
+  if (allowed > 0) pair.error2 = difference * difference / 2 / (allowed * allowed);
+  return pair;
+}
+
+void measure_records(const Picture& picture, const RoughLight& light, RoughFrame& rough) {
+  const auto gather = [&](std::uint64_t seed) {
+    return FinalGather(picture.scene.tracer, picture.scene.lights, light.lookup(), light.gathering(picture.options.photons, seed));
+  };
+  const std::array<FinalGather, 2> gathers{gather(picture.options.seed), gather(~picture.options.seed)};
+  std::vector<Pair> pairs(kRecords);
+  constexpr int kApart = kPlaces / kRecords;
+  parallel_chunks(kRecords, 1, [&](std::size_t i, std::size_t) { pairs[i] = gather_pair(picture, gathers, int(i) * kApart); });
   GatherCounts all;
   double gathered = 0;
-  for (std::size_t i = 0; i < kRecords; ++i) {
-    rough.records += found[i][0] / kRecords * view.width() * view.height();
-    rough.record_error += found[i][1] / kRecords * kRays / kTell;
-    gathered += found[i][0] > 0 ? 2 : 0;
-    all += counts[i];
+  for (const Pair& pair : pairs) {
+    rough.records += pair.for_a_pixel / kRecords * picture.view.width() * picture.view.height();
+    rough.record_error += pair.error2 / kRecords * kRays / kTell;
+    gathered += pair.for_a_pixel > 0 ? 2 : 0;
+    all += pair.counts;
   }
   if (gathered > 0) rough.record_ray = (Work::kGatherRay * double(all.rays) + double(all.shadow_rays)) / (gathered * kRays);
 }
 
-/// What paths surely miss of the light that photons show. n paths that miss light of radiance c have the variance n c^2 at least (docs/methods/caustics.md).
-void compare(const SeenPhotons& photons, double found, double allowed2, double& square, double& variance) {
-  const double missed = photons.mean - found, sure = missed > 0 ? std::max(0.0, missed * missed - kSure * kSure * photons.mean_error * photons.mean_error) : 0;
-  if (!(sure > 0) || !(photons.mean > 0)) return;
-  variance = kPlaces * kSamples * sure / allowed2;
-  square = photons.square * sure / (photons.mean * photons.mean) / allowed2;
+/// What paths surely miss of the light that photons show. n paths that miss light of radiance c have the variance n c^2 at least
+/// (docs/methods/caustics.md).
+MissedLight missed_light(const SeenPhotons& photons, double found, double allowed2) {
+  const double missed = std::max(0.0, photons.mean - found), error = kSure * photons.mean_error;
+  const double sure = std::max(0.0, missed * missed - error * error);
+  if (!(sure > 0)) return {};
+  return {photons.square * sure / (photons.mean * photons.mean) / allowed2, kPlaces * kSamples * sure / allowed2};
+}
+
+/// Places that are seen, and how many of their rays leave the scene.
+void look_at_places(const RenderScene& scene, const CameraView& view, std::uint64_t seed, RoughFrame& rough) {
+  int open = 0;
+  for (const SeenPlace& place : places_seen(scene, view, kPlaces, seed ^ 0x70696c6f74ull).places) {
+    rough.places += place.exists();
+    open += place.exists() && place.open;
+  }
+  rough.open_share = rough.places > 0 ? double(open) / rough.places : 0;
+}
+
+double mean_of(const Samples& samples, const PartOfLight& light) {
+  double sum = 0;
+  for (const auto& some : samples)
+    for (const Sample& sample : some) sum += light(sample);
+  return sum / (kPlaces * kSamples);
+}
+
+/// By photons: what paths miss, and what a map of caustics would err by.
+void compare(const Picture& picture, const RoughLight& light, const Samples& paths, RoughFrame& rough) {
+  const double allowed2 = picture.levels.picture * picture.levels.picture;
+  if (!(allowed2 > 0)) return;
+  const auto seen = [&](formats::PathKind kind) { return see_photons(picture.scene, picture.view, light.photons(), kind); };
+  const SeenPhotons caustics = seen(formats::PathKind::caustic);
+  rough.missed_caustic = missed_light(caustics, mean_of(paths, [](const Sample& s) { return s.caustic; }), allowed2);
+  rough.missed = missed_light(seen(formats::PathKind::indirect), mean_of(paths, [](const Sample& s) { return s.indirect; }), allowed2);
+  rough.map_error = kMapError2 * caustics.square / allowed2;
 }
 
 }  // namespace
 
 RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const CameraView& view, const RoughOptions& options) {
   RoughFrame rough;
+  look_at_places(scene, view, options.seed, rough);
   RayCounts counts;
   const Samples paths = take_samples(scene, view, nullptr, options.seed, counts);
-  const Levels levels(paths, view, options.seed);
-  const SeenPlaces seen = places_seen(scene, view, kPlaces, options.seed ^ 0x70696c6f74ull);
-  int open = 0;
-  for (const SeenPlace& place : seen.places) rough.places += place.exists(), open += place.exists() && place.open;
-  rough.open_share = rough.places > 0 ? double(open) / rough.places : 0;
-  double caustic = 0, indirect = 0;
-  for (const auto& some : paths)
-    for (const Sample& sample : some) caustic += sample.caustic / (kPlaces * kSamples), indirect += sample.indirect / (kPlaces * kSamples);
-  rough.radiance = levels.picture;
-  ask(paths, levels, options.pixel_error, rough);
-  rough.path = effort_of(paths, levels, rough.samples, work_of(counts));
+  const Picture picture{scene, view, options, Levels(paths, view, options.seed)};
+  rough.radiance = picture.levels.picture;
+  ask(paths, picture.levels, options.pixel_error, rough);
+  rough.path = effort_of(paths, picture.levels, rough.samples, work_of(counts));
   if (rough.places == 0) return rough;
 
   const RoughLight light(scene, aimed, options);
@@ -255,17 +302,12 @@ RoughFrame rough_frame(const RenderScene& scene, const Lights& aimed, const Came
   const KnownLight known = light.known();
   counts = {};
   const Samples gathered = take_samples(scene, view, &known, options.seed, counts);
-  rough.gather = effort_of(gathered, levels, rough.samples, work_of(counts));
+  rough.gather = effort_of(gathered, picture.levels, rough.samples, work_of(counts));
   // Where a record is a ray still goes on from the Lambert lobe: it joins light sampling. It ends at the first thing that it meets.
-  rough.record_sample = rough.gather.work + (Work::kRay * double(counts.gathered) - double(counts.onward) + Work::kRecordLookUp * double(counts.gathered)) / (kPlaces * kSamples);
-  measure_records(scene, view, light, levels, options, rough);
-  const double allowed2 = levels.picture * levels.picture;
-  const SeenPhotons caustics = see_photons(scene, view, light.photons(), formats::PathKind::caustic), others = see_photons(scene, view, light.photons(), formats::PathKind::indirect);
-  if (allowed2 > 0) {
-    compare(caustics, caustic, allowed2, rough.missed_caustic_square, rough.missed_caustic_variance);
-    compare(others, indirect, allowed2, rough.missed_square, rough.missed_variance);
-    rough.map_error = kMapError2 * caustics.square / allowed2;
-  }
+  const double at_records = (Work::kRay + Work::kRecordLookUp) * double(counts.gathered) - double(counts.onward);
+  rough.record_sample = rough.gather.work + at_records / (kPlaces * kSamples);
+  measure_records(picture, light, rough);
+  compare(picture, light, paths, rough);
   return rough;
 }
 

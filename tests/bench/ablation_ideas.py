@@ -74,8 +74,6 @@ IDEAS = (
            "return 1 - std::clamp(100 * error_bound, 0.00375f, 1 - kWideCosine);"),)),
     Idea("looks at edges", "four more places in pixels at edges and behind glass get records", "cache",
          (("lib/gather/place_records.cpp", "for (std::uint32_t k = 0; k < 4; ++k) {\n    const auto look", "for (std::uint32_t k = 4; k < 4; ++k) {\n    const auto look"),)),
-    Idea("four times the radius", "where the camera ray meets a place without a record, one four radii away answers", "cache",
-         (("lib/render/known_light.cpp", "return records->irradiance(surface.position, shading, direct_view);", "return records->irradiance(surface.position, shading, direct_view && !direct_view);"),)),
     Idea("clearance", "records know how far they see along their surface, so that none answers across a wall", "cache",
          (("lib/gather/final_gather.cpp", "  record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);",
            "  if (!(length2(lit) > 0)) record.clearance = reach_.clearance(from.position, lit, record.normal, record.radius * Clearance::kPerRadius);"),)),

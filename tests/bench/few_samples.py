@@ -37,7 +37,7 @@ def frames_of_window(bench, name, samples, filtered):
                            "-q", "--keep-points", light["irradpoints"], "-o", light["irradcache"], "--stats", f"{light['irradcache']}.json"])
             bench.run([bench.bin / "frame-render", scene, f"--frame={f}", "--size", bench.size, "--spp", samples, "--pixel-error", 0,
                        "--seed-mode", "frame", "--photons", light["photons"], "--irradcache", light["irradcache"], "--points", light["irradpoints"],
-                       "--channels", READ, "--compression", "none", "-q", "-o", f"{files}.{f}.exr", "--stats", f"{files}.{f}.json"])
+                       "--channels", READ + (",halves,seen" if samples > 1 else ""), "--compression", "none", "-q", "-o", f"{files}.{f}.exr", "--stats", f"{files}.{f}.json"])
         if filtered:
             bench.run([bench.bin / "st-filter", *(f"{files}.{f}.exr" for f in wanted), "-q", "-o", f"{files}.filtered.exr",
                        "--stats", f"{files}.filtered.json"])

@@ -237,21 +237,23 @@ TEST(Filter, EdgesStayAsTheyAreWhereNothingIsKnownOfThem) {
 
 /// Nothing that is not a number comes out, whatever goes in; values beyond squares in float32 stay.
 TEST(Filter, StrangePixelsAreLeftOutAndFilled) {
-  Image frame = wall(16, 16);
-  grey(frame, "", [](int x, int y) {
-    if (y == 3) return x == 3 ? NAN : x == 8 ? INFINITY : x == 12 ? -INFINITY : 1.0f;
-    return x == 3 && y == 12 ? 1e30f : 1.0f;
-  });
-  tell_variance(frame, 0.01f);
-  moves(frame, 1e4f, -1e4f);
-  frame.find("forward.u")->values[5] = NAN;
-  frame.find("Z")->values[7] = NAN;
-  frame.find("Z")->values[9] = 0;
-  const Image out = filtered({frame, frame, frame});
-  for (const int x : {3, 8, 12}) EXPECT_NEAR(at(out, "G", x, 3), 1, 0.05f) << x;  // made-up halves have noise of .1
-  EXPECT_EQ(at(out, "G", 3, 12), 1e30f);
-  for (const Channel& channel : out.channels)
-    for (const float v : channel.values) EXPECT_TRUE(std::isfinite(v) || (channel.name == "Z" && v > 0)) << channel.name;
+  for (const bool told : {false, true}) {
+    Image frame = wall(16, 16);
+    grey(frame, "", [](int x, int y) {
+      if (y == 3) return x == 3 ? NAN : x == 8 ? INFINITY : x == 12 ? -INFINITY : 1.0f;
+      return x == 3 && y == 12 ? 1e30f : 1.0f;
+    });
+    if (told) tell_variance(frame, 0.01f);
+    moves(frame, 1e4f, -1e4f);
+    frame.find("forward.u")->values[5] = NAN;
+    frame.find("Z")->values[7] = NAN;
+    frame.find("Z")->values[9] = 0;
+    const Image out = filtered({frame, frame, frame});
+    for (const int x : {3, 8, 12}) EXPECT_NEAR(at(out, "G", x, 3), 1, 0.05f) << x;  // made-up halves have noise of .1
+    EXPECT_EQ(at(out, "G", 3, 12), 1e30f);
+    for (const Channel& channel : out.channels)
+      for (const float v : channel.values) EXPECT_TRUE(std::isfinite(v) || (channel.name == "Z" && v > 0)) << channel.name;
+  }
   Image one = wall(1, 1);
   grey(one, "", everywhere(0));
   EXPECT_EQ(at(filtered({one, one}), "G", 0, 0), 0);

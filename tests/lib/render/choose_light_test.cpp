@@ -85,8 +85,8 @@ TEST(WaysToLight, AMapOfCausticsPaysWhereTheyAreNoisyOrNotMet) {
   EXPECT_FALSE(ways_to_light(rough, kOrder, true).front().map);
   rough = example();
   EXPECT_FALSE(ways_to_light(rough, kOrder, true).front().map);
-  rough.missed_caustic_square = 1;
-  rough.missed_caustic_variance = 1e9;
+  rough.missed_caustic.square = 1;
+  rough.missed_caustic.variance = 1e9;
   EXPECT_TRUE(ways_to_light(rough, kOrder, true).front().map);
 }
 
@@ -94,8 +94,8 @@ TEST(WaysToLight, AMapOfCausticsPaysWhereTheyAreNoisyOrNotMet) {
 TEST(WaysToLight, RecordsFindWhatPathsMiss) {
   RoughFrame rough = example();
   rough.path = {10, 1, 1, 1, 1};
-  rough.missed_square = 5;
-  rough.missed_variance = 1e9;
+  rough.missed.square = 5;
+  rough.missed.variance = 1e9;
   EXPECT_NE(ways_to_light(rough, kOrder, false).front().method, IndirectMethod::paths);
 }
 

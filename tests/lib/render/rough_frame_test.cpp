@@ -41,7 +41,7 @@ TEST(RoughFrame, OfAClosedRoom) {
   EXPECT_GT(rough.wanted, 0);
   EXPECT_GE(rough.samples, 4);
   EXPECT_EQ(rough.map_error, 0) << "nothing is caustic";
-  EXPECT_EQ(rough.missed_caustic_square, 0);
+  EXPECT_EQ(rough.missed_caustic.square, 0);
 }
 
 /// Records do not get more when pixels do, as long as radii are not limited by pixels: 20 cm and more here, as what is seen is 1 m away and more, and a pixel of
@@ -74,7 +74,7 @@ TEST(RoughFrame, OfABoardAloneHasNoIndirectLight) {
   const RoughFrame rough = rough_of(scene.frame());
   EXPECT_EQ(rough.path.all, rough.path.other);
   EXPECT_EQ(rough.record_error, 0);
-  EXPECT_EQ(rough.missed_square, 0);
+  EXPECT_EQ(rough.missed.square, 0);
 }
 
 }  // namespace

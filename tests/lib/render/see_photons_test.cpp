@@ -56,7 +56,7 @@ TEST(SeePhotons, APointLampInAMirrorNeedsAMap) {
     }
   EXPECT_NEAR(photons.mean / expected, 1, 0.1);
   EXPECT_NEAR(photons.mean_error / expected, 0.05, 0.02);
-  EXPECT_GT(rough.missed_caustic_square, 0.5 * photons.square / (rough.radiance * rough.radiance)) << "no path finds it";
+  EXPECT_GT(rough.missed_caustic.square, 0.5 * photons.square / (rough.radiance * rough.radiance)) << "no path finds it";
   EXPECT_TRUE(ways.front().map);
   EXPECT_EQ(indirect.mean, 0) << "a single wall lights nothing";
   EXPECT_EQ(ways.front().method, IndirectMethod::paths);
@@ -68,7 +68,7 @@ TEST(SeePhotons, AWideLampInGlossIsNotMissed) {
   scene.add_quad({-4, 6, 0}, {8, 6, 0}, {8, 6, 8}, {-4, 6, 8}, test::matte(Rgb(0.0f), Rgb(1.0f)));
   const auto [photons, indirect, rough, ways] = pilots_of(scene, mirror(0.6f));
   EXPECT_GT(photons.mean, 0);
-  EXPECT_EQ(rough.missed_caustic_square, 0) << "both find the same light";
+  EXPECT_EQ(rough.missed_caustic.square, 0) << "both find the same light";
 }
 
 TEST(SeePhotons, WithoutMirrorsThereIsNoneToFind) {
@@ -76,7 +76,7 @@ TEST(SeePhotons, WithoutMirrorsThereIsNoneToFind) {
   scene.add_point_light({2, 2, 2}, Rgb(1.0f));
   const auto [photons, indirect, rough, ways] = pilots_of(scene, test::matte(Rgb(0.5f)));
   EXPECT_EQ(photons.mean, 0);
-  EXPECT_EQ(rough.missed_caustic_square, 0);
+  EXPECT_EQ(rough.missed_caustic.square, 0);
   EXPECT_FALSE(ways.front().map);
 }
 
