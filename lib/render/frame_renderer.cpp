@@ -135,17 +135,6 @@ RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, con
   return frame;
 }
 
-namespace {
-
-/// "direct.a.R" -> "direct.R"; other names as they are.
-std::string layer_of_half(std::string name) {
-  for (const char* half : {".a.", ".b."})
-    if (const std::size_t at = name.find(half); at != std::string::npos) name.erase(at, 2);
-  return name;
-}
-
-}  // namespace
-
 void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, std::size_t data_channels, Image& image) {
   if (base.width != image.width || base.height != image.height)
     throw InputError("--base: " + std::to_string(base.width) + "x" + std::to_string(base.height) + " pixels, but --size is " +
@@ -154,12 +143,12 @@ void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, 
     Channel& channel = image.channels[i];
     const Channel* from = base.find(channel.name);
     if (!from && i < data_channels) continue;
-    if (!from) from = base.find(layer_of_half(channel.name));
-    if (!from || from->values.size() != channel.values.size())
+    const bool known = !from && channel.name.find(".noise.") != std::string::npos;
+    if (!known && (!from || from->values.size() != channel.values.size()))
       throw InputError("--base: has no channel " + channel.name + "; ask for fewer with --channels, or render the base with it");
     for (std::size_t p = 0; p < mask.size(); ++p) {
       if (mask[p]) continue;
-      if (channel.ids.empty()) channel.values[p] = from->values[p];
+      if (channel.ids.empty()) channel.values[p] = known ? 0 : from->values[p];
       else channel.ids[p] = from->ids[p];
     }
   }

@@ -65,7 +65,7 @@ struct RenderedFrame {
 RenderedFrame render_frame(const RenderScene& scene, const CameraView& view, const FrameOptions& options);
 
 /// Puts pixels that the mask leaves out (0) back to those of `base`, bit for bit, in every channel of `image`. The first `data_channels` of them hold
-/// for every pixel and stay where `base` lacks them. Where it lacks halves of a layer both are the layer: nothing is known of its noise.
+/// for every pixel and stay where `base` lacks them. Where it lacks LAYER.noise its light is known: no noise.
 /// Throws InputError naming what differs if sizes or channels do not fit.
 void keep_base_pixels(const std::vector<std::uint8_t>& mask, const Image& base, std::size_t data_channels, Image& image);
 

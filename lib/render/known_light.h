@@ -20,6 +20,7 @@ class KnownLight {
  public:
   const RecordStore* records = nullptr;   ///< kind indirect where the eye looks
   const MeshLight* mesh = nullptr;        ///< in place of records: a light texture of kind indirect
+  bool mesh_has_caustic = false;          ///< and of kind caustic: all of it counts as indirect then
   const LocalisedLight* localised = nullptr;   ///< in place of records: of what stands, and of what movers change
   const PointLookup* points = nullptr;    ///< all kinds where a ray from a matte surface ends
   const PhotonLight* photons = nullptr;   ///< kind caustic; indirect, too, if it has it and there are no records
@@ -36,9 +37,9 @@ class KnownLight {
   /// Irradiance of kind indirect at the first Lambert lobe of an eye path; both normals are unit and on the side seen. None where no
   /// record counts: a ray of the hemisphere is to find it.
   std::optional<Rgb> indirect(const SurfacePoint& surface, Vec3 geometric, Vec3 shading) const;
-  bool has_caustic() const { return photons != nullptr; }
-  /// Irradiance of kind caustic; only if has_caustic().
-  Rgb caustic(Vec3 position, const LitSurface& surface) const { return photons->caustic(position, surface); }
+  bool has_caustic() const { return photons || (mesh && mesh_has_caustic); }
+  /// Irradiance of kind caustic; only if has_caustic(). 0 where indirect() has it.
+  Rgb caustic(Vec3 position, const LitSurface& surface) const { return photons ? photons->caustic(position, surface) : Rgb(0.0f); }
   /// What a point tells of the light at a hit.
   struct Told {
     Rgb irradiance{0.0f};

@@ -207,7 +207,7 @@ class Warping {
     }
     for (std::size_t k = 0; k < keys_.size(); ++k) {
       if (!light_[k].empty()) light_[k][p] = given[k] ? masking_.luminance_of(given[k]) : -1;
-      if (options_.separate && !given[k]) pixel.of_key[k] = pixel.colour;
+      if (options_.separate && (!given[k] || !pixel.resampled)) pixel.of_key[k] = pixel.colour;
     }
   }
 

@@ -48,7 +48,7 @@ struct WarpOptions {
   /// Light by mirror, glass and gloss that one key alone gives is believed up to this share of a pixel's light. A pixel counts as no darker than a
   /// tenth of the picture's mean, as in relMSE. Of what two keys give WarpTarget::see_gloss decides.
   double specular_share = 0.02;
-  double seen_probability = 0.75;                ///< above which an error is seen (algorithms.md 1.2)
+  double seen_probability = 0.75;                ///< above which an error is seen (docs/methods/vision.md)
   /// A pixel composed of several surfaces is believed if both keys give it alike, to this share of its light; a key shows what lies at an edge,
   /// a contact's shadow above all, only from a pixel's distance.
   double edge_share = 0.05;
@@ -63,8 +63,8 @@ struct WarpedFrame {
   std::vector<std::string> names;                ///< of the colour channels, ascending
   std::vector<std::vector<float>> colour;        ///< by name, then by pixel; 0 where nothing was found
   std::vector<std::uint32_t> why;                ///< sums of formats::Why
-  /// With WarpOptions::separate: what each key alone gives, laid out as `colour`. Where it does not give the whole pixel it is what
-  /// was composed: comparing two candidates finds no difference there.
+  /// With WarpOptions::separate: what each key alone gives, laid out as `colour`. Where it does not give the whole pixel, or the pixel stands still, it is
+  /// what was composed: comparing two candidates finds no difference there. What stands is exact, and the keys' noise is no error of warping.
   std::vector<std::vector<std::vector<float>>> candidates;
 };
 

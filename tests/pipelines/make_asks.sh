@@ -9,7 +9,7 @@ bad() { echo "FAILED: $*"; cat "$work/said"; failed=1; }
 make_() { make --no-print-directory -f "$top/Makefile.example" "$@" > "$work/said" 2>&1; }
 says() { grep -q -e "$1" "$work/said"; }
 demo() { goal=$1; shift; make_ "$goal" BIN="$bin" OUT="$work/out" FRAMES=0,30 SIZE=32x18 PHOTONS=2k REFERENCE_SAMPLES=2 \
-  POINTS='--point-count 1k' CACHE='--rays 20 --error-bound 1' PIXELS='--spp 1' "$@"; }
+  INDIRECT=records POINTS='--point-count 1k' CACHE='--rays 20 --error-bound 1' PIXELS='--spp 1' "$@"; }
 
 # Before anything is built: -n lists what comes first, and leaves no trace.
 for goal in all demo report; do

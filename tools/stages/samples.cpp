@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kWidth = 160;        ///< pixels of the larger sample, at most half of the picture
+constexpr double kWidth = 128;        ///< pixels of the larger sample, at most half of the picture
 constexpr int kFewerRays = 4;         ///< of a record
 constexpr std::array kSamples{"small", "large"};
 

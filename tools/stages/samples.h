@@ -8,7 +8,7 @@
 
 namespace tempolux::tools {
 
-/// Writes two plans into the folder, small.mk and large.mk, which make the first picture of the plan, and the first that is warped, 80 and 160 pixels wide, with
+/// Writes two plans into the folder, small.mk and large.mk, which make the first picture of the plan, and the first that is warped, 64 and 128 pixels wide, with
 /// fewer photons, gather rays and cameras that share records; and samples.json: their files, and how often each stage runs in the plan itself.
 void write_samples(const std::string& folder, Planner& planner, const Wish& wish);
 

@@ -103,17 +103,17 @@ void add_update_options(CLI::App& app, UpdateArguments& arguments) {
   app.add_option("--pilots", arguments.pilots, "of a map that will be updated by pilots: share of each group's paths that are pilots, as 3%; at least one, at most 256")
       ->type_name("PERCENT")
       ->capture_default_str();
+  // For comparisons with the papers: no part of the help. docs/methods/volume_photons.md has what they do.
   app.add_option("--age-floor", arguments.how.age_floor, "of --update: groups as many frames old go before all others; 0: none")
-      ->type_name("FRAMES")
-      ->capture_default_str()
+      ->group("")
       ->check(number_between(0, 1e6));
   app.add_option("--age-power", arguments.how.age_power, "of --update: priorities are times age to this power; 0: as in the papers")
-      ->type_name("X")
-      ->capture_default_str()
+      ->group("")
       ->check(number_between(0, 16));
   app.add_flag("--corrective", arguments.corrective,
-               "of --update: take groups back by negative photons through the smoke of their frame, instead of leaving them out; for comparison: "
-               "the same map for twice the paths");
+               "of --update: take groups back by negative photons through the smoke of their frame, instead of leaving them out: "
+               "the same map for twice the paths")
+      ->group("");
   app.add_option("--refine", arguments.refine,
                  "instead of tracing groups of --update again: add this many paths to them (10k, 1M), where they make light in smoke less noisy; "
                  "--update is the map of the frame itself")

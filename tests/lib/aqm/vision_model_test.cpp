@@ -45,7 +45,7 @@ TEST(VisionModelTest, ContrastSensitivityPeaksAndEndsWhereTheTableSays) {
   }
 }
 
-// algorithms.md 1.5: at 100 cd/m2, one square degree, half a metre S(4) = 163.58, and the peak is 171.8 at 4.70 cpd.
+// Daly 1993 (docs/methods/vision.md): at 100 cd/m2, one square degree, half a metre S(4) = 163.58, and the peak is 171.8 at 4.70 cpd.
 TEST(VisionModelTest, StaticSensitivityIsTheTable) {
   const auto at = [](double frequency) { return static_contrast_sensitivity(frequency, 100, 1, 0.5); };
   EXPECT_NEAR(at(4), 163.58, 1e-3 * 163.58);

@@ -177,9 +177,8 @@ TEST(FrameAudit, PathsSayWhatIsMissing) {
   EXPECT_NEAR(missing->bias.value, -indirect, 4 * missing->bias.error + 0.005 * indirect);
   EXPECT_LT(missing->bias.error, 0.03 * indirect);
   EXPECT_TRUE(is_biased(*missing));
-  const AuditEntry* const sampled = find(entries, Layer::direct, "picture");
-  ASSERT_TRUE(sampled);
-  EXPECT_FALSE(is_biased(*sampled));
+  // Direct light is sampled by the same random numbers both ways: that they agree says nothing of it.
+  EXPECT_FALSE(find(entries, Layer::direct, "picture"));
 }
 
 }  // namespace

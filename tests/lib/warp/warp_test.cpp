@@ -50,6 +50,17 @@ TEST(Warp, KeysThatKnowNoObjectsAreOfUse) {
 }
 
 /// Two equal keys, the camera standing: the weights of the blend leave their bits alone. Where the box moved the key is of no use.
+TEST(Warp, NoiseOfWhatStandsIsNoDifferenceOfTheKeys) {
+  const Cornell room;
+  const View view(room, kMiddle);
+  const Image one = painted(view, [](Vec3d, std::uint32_t) { return Rgb(1.0f); }), other = painted(view, [](Vec3d, std::uint32_t) { return Rgb(1.5f); });
+  const Warped warped(view, {{view, one}, {view, other}}, {.slow_deg_per_s = 0, .separate = true});
+  for (std::size_t p = 0; p < one.pixel_count(); ++p) {
+    ASSERT_EQ(warped.colour(p).r, 1.25f);
+    ASSERT_EQ(warped.frame.candidates[0][0][p], warped.frame.candidates[1][0][p]);
+  }
+}
+
 TEST(Warp, WhatStandsKeepsItsBitsBetweenTwoKeys) {
   const Cornell before(9), now(10), after(11);
   const View a(before, kMiddle), view(now, kMiddle), b(after, kMiddle);
