@@ -55,19 +55,23 @@ begin() { echo "$(count frames) frames of $SIZE, $QUALITY: $TOTAL commands to ru
 
 # Statistics of all commands that led to the frames, those of earlier makes too; what compares them with path tracing is not among them.
 end() {
-  sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk | grep -v '^path/\|^error/' | while read -r file; do
-    [ ! -f "$file" ] || echo "$file"
-  done | xargs awk -v frames="$(count frames)" -v size="$SIZE" -v out="$OUT" '
-    # The first cpu_s of a file is that of the whole command.
-    FNR == 1 { folder = FILENAME; sub("/.*", "", folder); seen = 0 }
-    /"cpu_s":/ && !seen { split($0, word, ": *"); cpu += word[2]; seen = 1 }
-    /"noise.codes":/ { split($0, word, ": *"); noise[folder] += word[2]; counted[folder]++ }
-    END {
-      printf "%d frames of %s: %.*f CPU s in all, %.1f a frame", frames, size, cpu < 10, cpu, cpu / frames
-      last = counted["filtered"] ? "filtered" : counted["pictures"] ? "pictures" : counted["raw"] ? "raw" : "keys"
-      if (counted[last]) printf "; noise %.1f codes%s", noise[last] / counted[last], last == "raw" ? " before the filter" : ""
-      printf "; %s/sheet.png\n", out
-    }'
+  sed -n 's|^\([a-z_]*/[^.: ]*\)[^:]*: words :=.*|\1.json|p' plan.mk | grep -v '^path/\|^error/' |
+    awk -v frames="$(count frames)" -v size="$SIZE" -v out="$OUT" '
+      function value(line) { sub(/.*: */, "", line); return line + 0 }
+      {
+        folder = $0; sub("/.*", "", folder); whole = 1
+        while ((getline line < $0) > 0) {
+          if (whole && line ~ /"cpu_s":/) { cpu += value(line); whole = 0 }   # the first of a file is that of the whole command
+          if (line ~ /"noise.codes":/) { noise[folder] += value(line); counted[folder]++ }
+        }
+        close($0)
+      }
+      END {
+        printf "%d frames of %s: %.*f CPU s in all, %.1f a frame", frames, size, cpu < 10, cpu, cpu / frames
+        last = counted["filtered"] ? "filtered" : counted["pictures"] ? "pictures" : counted["raw"] ? "raw" : "keys"
+        if (counted[last]) printf "; noise %.1f codes%s", noise[last] / counted[last], last == "raw" ? " before the filter" : ""
+        printf "; %s/sheet.png\n", out
+      }'
 }
 
 case $1 in

@@ -69,6 +69,7 @@ if [ -n "$dry" ]; then makes "$goal" -C "$folder"; exit; fi
 # Which commands will run: those that make -n shows. progress.sh counts them.
 PROGRESS=$(mktemp) BEGAN=$(date +%s)
 trap 'rm -f "$PROGRESS"' EXIT
+trap 'exit 130' INT TERM
 MAKEFLAGS='' V='' makes "$goal" -C "$folder" -n 2> /dev/null | sed -n 's|.*/progress[.]sh" say \([^ ]*\) .*|\1|p' > "$PROGRESS"
 TOTAL=$(wc -l < "$PROGRESS") WEIGHT=$(sh "$PIPELINES/progress.sh" weigh < "$PROGRESS")
 : > "$PROGRESS"

@@ -22,20 +22,21 @@ may scene    'core image volume'
 may trace    'core image scene'
 may material 'core image scene'
 may light    'core volume image scene'
+may transport 'core volume scene trace material light'
 may photon   'core volume scene trace material light'
 may density  'core'
 may irradcache 'core density'
-may gather   'core volume scene trace material light density irradcache'
+may gather   'core volume scene trace material light transport density irradcache'
 may temporal 'core scene trace light irradcache gather'
-may render   'core volume image scene trace material light photon density irradcache gather'
-may compose  'core volume image scene trace light gather render'
+may render   'core volume image scene trace material light transport photon density irradcache gather'
+may compose  'core volume image scene trace light transport gather render'
 may warp     'core image volume scene trace material render'
 may aqm      'core image'
 may filter   'core image'
 may plan     'core scene trace material light render'
 may report   'core image aqm'
 for folder in lib/*/; do
-  case " lib/core/ lib/image/ lib/volume/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/photon/ lib/density/ lib/irradcache/ lib/gather/ lib/temporal/ lib/render/ lib/compose/ lib/warp/ lib/aqm/ lib/filter/ lib/plan/ lib/report/ " in
+  case " lib/core/ lib/image/ lib/volume/ lib/scene/ lib/trace/ lib/material/ lib/light/ lib/transport/ lib/photon/ lib/density/ lib/irradcache/ lib/gather/ lib/temporal/ lib/render/ lib/compose/ lib/warp/ lib/aqm/ lib/filter/ lib/plan/ lib/report/ " in
     *" $folder "*) ;; *) echo "$folder: has no line in tests/layering.sh"; bad=1;; esac
 done
 # each third-party header in one file of the tree (tests and benchmarks apart; JSON and CLI: one layer)

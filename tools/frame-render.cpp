@@ -165,7 +165,7 @@ void render(tools::Tool& tool, tools::SceneInput& input, const Options& options,
   outputs.write(rendered, image, options.channels, description, exr, base.mask, base.base);
   tool.stats().end_phase();
   count_work(tool, rendered, tracer);
-  tools::say_account(tool, rendered, audited, frame_options);
+  tools::say_account(tool, rendered, audited, frame_options, input.scene().object_names);
 }
 
 constexpr std::size_t kMostViews = 8;

@@ -198,7 +198,7 @@ void add_options(tools::Tool& tool, Options& options) {
                                            ".radsamples file of an earlier frame of the same segment, from which this frame follows; "
                                            "without it the frame is gathered anew")->type_name("FILE"));
   app.add_option("--rays", options.gather.rays,
-                 "gather rays per record, one a cell; up to 72 times as many cells where neighbours found light uneven or small")
+                 "gather rays per record, one a cell; up to 9 times as many cells where neighbours found light uneven")
       ->capture_default_str()->check(tools::number_between(1, 1 << 20));
   app.add_option("--refresh", options.temporal.refresh, "share of the cells of records whose light changed that get a ray in a frame: what moves comes first, the others are drawn by age, "
                  "a quarter of this share at least (--refresh-rule)")

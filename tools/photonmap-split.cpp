@@ -27,10 +27,10 @@ namespace {
 
 struct Options {
   std::string input, low, high, kinds, output, rest, cell = "auto", limit;
-  double energy = EnergyLimit{}.energy;
+  double energy = EnergyLimit{}.times_mean;
 
   EnergyLimit energy_limit() const {
-    return {energy, limit.empty() ? EnergyLimit{}.records : double(tools::parse_count(limit))};
+    return {energy, limit.empty() ? std::nullopt : std::optional(double(tools::parse_count(limit)))};
   }
   /// m; nothing: automatic.
   std::optional<double> cell_edge() const {

@@ -161,7 +161,7 @@ void compose(tools::Tool& tool, tools::SceneInput& input, const Options& options
     GatherPoints points;
     if (light.has_rays()) points = tools::read_points(tool, tools::frame_name(options.points, number), frame);
     const PointLookup lookup(points.points, points.spacing, point_clearance(tracer));
-    const IncomingRadiance incoming(tracer, lights, lookup, GatherOptions{}.near_factor);
+    const IncomingRadiance incoming(tracer, lights, lookup);
     compose_options.incoming = &incoming;
     const Channel* const depth = base.image.find("Z");
     const std::vector<SmokePixel> smoke =

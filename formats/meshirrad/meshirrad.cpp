@@ -204,9 +204,11 @@ MeshirradFile load_meshirrad(const std::string& path) {
 std::string digest_of(const MeshirradFile& file) {
   Hasher elements;
   elements.add_bytes(file.elements.data(), file.elements.size() * sizeof(MeshElement));
-  const std::string holds = file.header.holds == MeshHolds::frame ? "" : "holds: " + std::string(kHolds[std::size_t(file.header.holds)]) + "\n";
+  const bool is_frame = file.header.holds == MeshHolds::frame;
+  const std::string holds = is_frame ? "" : "holds: " + std::string(kHolds[std::size_t(file.header.holds)]) + "\n";
   const std::string jump = file.header.jump ? "jump: yes\n" : "";
-  return hash_hex("meshirrad: 1\n" + holds + jump + "origin: " + hex_of(file.header.origin) + "\nunit: " + hex_of(std::span(&file.header.unit, 1)) +
+  return hash_hex("meshirrad: 1\n" + holds + jump +
+                  "origin: " + hex_of(file.header.origin) + "\nunit: " + hex_of(std::span(&file.header.unit, 1)) +
                   "\nelements: " + std::to_string(file.elements.size()) + " #" + elements.hex() + "\n");
 }
 

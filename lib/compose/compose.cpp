@@ -8,7 +8,7 @@
 #include "formats/octahedral.h"
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
-#include "lib/gather/medium_event.h"
+#include "lib/transport/media.h"
 #include "lib/volume/phase.h"
 
 namespace tempolux {
@@ -117,7 +117,7 @@ Rgb sampled_light(const RenderScene& scene, const Media& media, const MediaLight
     const auto bounce = std::uint32_t(k);
     const MediumOptions& medium = media.collided(position, random.hashed().get1(bounce, Purpose::medium)).options();
     const MediumPoint point{position, ray.direction, medium.albedo, medium.g};
-    sum += medium.albedo * weight * tempolux::sampled_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
+    sum += medium.albedo * weight * scattered_lamp_light(scene.tracer, scene.lights, point, random.get2(bounce, Purpose::light_point), false,
                                          {random.hashed(), bounce, way_shadow_of_medium}, counts.shadow);
     send_on(light, point, bounce, weight, random, sent_on);
   }

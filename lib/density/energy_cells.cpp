@@ -88,9 +88,9 @@ void EnergyCells::close(const EnergyLimit& limit) {
 
   bright_ = 0;
   for (const Figures& f : all) {
-    const double kept = limit.records >= 0 ? limit.records * energy_ / double(records)
-                                           : limit.energy * mean_irradiance() * f.area;
-    const bool unknown = limit.records < 0 && limit.energy > 0 && area_of_record_ <= 0 && f.cell->count < kFewest;
+    const double kept = limit.records ? *limit.records * energy_ / double(records)
+                                           : limit.times_mean * mean_irradiance() * f.area;
+    const bool unknown = !limit.records && limit.times_mean > 0 && area_of_record_ <= 0 && f.cell->count < kFewest;
     // Where limit or mean are without bound, inf - inf and 0 * inf are no verdict: the cell keeps all.
     f.cell->low_share = unknown || !(kept < f.energy) ? 1 : kept / f.energy;
     bright_ += f.cell->low_share < 1;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -22,8 +23,8 @@ struct CellPlace {
 
 /// What makes a cell bright.
 struct EnergyLimit {
-  double energy = 4;      ///< >= 0: a cell keeps at most this multiple of the mean irradiance
-  double records = -1;    ///< if >= 0, instead: at most the energy of so many records of mean energy
+  double times_mean = 4;                    ///< >= 0: a cell keeps at most this multiple of the mean irradiance
+  std::optional<double> records = {};       ///< if given, instead: at most the energy of so many records of mean energy
 };
 
 /// Cells of one edge: records whose positions lie in the same cube of a grid, on the same object, and whose normals are

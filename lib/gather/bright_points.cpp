@@ -8,7 +8,7 @@
 #include "lib/core/parallel.h"
 #include "lib/core/sampling.h"
 #include "lib/gather/irradiance_points.h"
-#include "lib/gather/medium_event.h"
+#include "lib/transport/media.h"
 #include "lib/gather/reachable_area.h"
 #include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
@@ -66,12 +66,11 @@ BrightPoints::BrightPoints(const Tracer& tracer, const Lights& lights, const Poi
     : tracer_(tracer),
       points_(points),
       high_(std::move(high_shares)),
-      near_factor_(options.near_factor),
       radius_(points.spacing() * std::sqrt(kInvPi)),
       lamp_reach_(kBesideLamp * points.spacing()) {
   high_.resize(points.size(), 0.0f);
-  // Rays go on from where a point's indirect light is not that of the hit: what they find there is not the point's light, so that no share of it
-  // may be sampled explicitly. Beside a lamp direct light has a division of its own.
+  // Rays go on from where a point's indirect light is not that of the hit: what they find there is not the point's light, so that no share
+  // of it may be sampled explicitly. Beside a lamp direct light has a division of its own.
   for (std::uint32_t i = 0; i < high_.size(); ++i)
     if (high_[i] > 0 && (points.light(i).beside_lamp || !points.is_even_indirect(points.light(i)))) high_[i] = 0;
   if (std::ranges::any_of(high_, [](float share) { return share > 0; })) place_high(lights, options);
@@ -195,14 +194,7 @@ float BrightPoints::lamp_share(float distance, float lamp_distance) {
 /// Of a site's light at `distance` m.
 float BrightPoints::share(const Site& site, float distance, bool reads_near) const {
   if (site.lamp_distance > 0) return lamp_share(distance, site.lamp_distance);
-  return explicit_share(distance) * (reads_near ? 1 : share_of_far(site, distance));
-}
-
-/// Probability that a ray which meets the site reads its point (IncomingRadiance: nearer than near_factor radii x a number from 1/2
-/// to 3/2 it goes on).
-float BrightPoints::share_of_far(const Site& site, float distance) const {
-  const float reach = near_factor_ * site.radius;
-  return reach > 0 ? std::clamp(distance / reach - 0.5f, 0.0f, 1.0f) : 1.0f;
+  return explicit_share(distance) * (reads_near ? 1 : PointLookup::share_of_far(site.radius, distance));
 }
 
 Rgb BrightPoints::radiance(const Site& site, Vec3 wo) const {

@@ -21,7 +21,6 @@ namespace tempolux {
 
 struct BrightOptions {
   std::uint64_t seed = 0;
-  float near_factor = 2;     ///< GatherOptions::near_factor
   int light_samples = 16;    ///< shadow rays of a site where a point's direct light is not that of the places near it
   std::span<const LampPhoton> beside_lamps = {};   ///< of lamps beside surfaces; their points are noted (PointLookup::note_lamp)
 };
@@ -45,14 +44,14 @@ struct BrightLight {
 /// The explicit part is an integral over surfaces, of h w L cos cos / l^2. It is sampled at sites: places uniform by area, 16 for each
 /// point, each with the light of the point that stands for it. The sites of a point are a spot; spots are drawn as lamps are (LightTree).
 ///
-/// So is direct light of lamps beside surfaces, which light spots smaller than points can hold (lamp_light.h). Of the light of a place z on a lamp that
-/// reaches y, d = |z - y| below kBesideLamp spacings, the share w is explicit with d for R: from 4 d on. Where a point beside a lamp stands for y rays
-/// sample direct light, as they do where none stands for it, and bring 1 - w of such samples. Sites are photons from the lamps: as dense as the light, however small its spot.
-/// Thread-safe.
+/// So is direct light of lamps beside surfaces, which light spots smaller than points can hold (lamp_light.h). Of the light of a place z on
+/// a lamp that reaches y, d = |z - y| below kBesideLamp spacings, the share w is explicit with d for R: from 4 d on. Where a point beside a
+/// lamp stands for y rays sample direct light, as they do where none stands for it, and bring 1 - w of such samples. Sites are photons from
+/// the lamps: as dense as the light, however small its spot. Thread-safe.
 class BrightPoints {
  public:
-  /// high_shares: h_p by point of `points`, in [0, 1]; points whose indirect light is not that of their neighbours (PointLookup::is_even_indirect)
-  /// get none. All must outlive it.
+  /// high_shares: h_p by point of `points`, in [0, 1]; points whose indirect light is not that of their neighbours
+  /// (PointLookup::is_even_indirect) get none. All must outlive it.
   BrightPoints(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::vector<float> high_shares, const BrightOptions& options);
 
   std::size_t spot_count() const { return sites_of_.size(); }
@@ -65,8 +64,8 @@ class BrightPoints {
   }
   /// w.
   float explicit_share(float distance) const;
-  /// Share of the direct light of a lamp `lamp_distance` m from a place y that rays bring which meet y at `distance` m. 1 where the point that stands for
-  /// y is not beside a lamp; nullptr: none stands for y.
+  /// Share of the direct light of a lamp `lamp_distance` m from a place y that rays bring which meet y at `distance` m. 1 where the point
+  /// that stands for y is not beside a lamp; nullptr: none stands for y.
   float left_of_lamp(const PointLookup::Light* point, float distance, float lamp_distance) const {
     return (!point || point->beside_lamp) && lamp_distance < lamp_reach_ ? 1 - lamp_share(distance, lamp_distance) : 1.0f;
   }
@@ -97,7 +96,6 @@ class BrightPoints {
   };
   std::optional<Site> site_at(const IrradiancePoint& place, float area) const;
   void sample_uneven(const Lights& lights, const std::vector<std::uint32_t>& uneven, const BrightOptions& options);
-  float share_of_far(const Site& site, float distance) const;
   float share(const Site& site, float distance, bool reads_near) const;
   static float lamp_share(float distance, float lamp_distance);
   void place_high(const Lights& lights, const BrightOptions& options);
@@ -108,7 +106,7 @@ class BrightPoints {
   const Tracer& tracer_;
   const PointLookup& points_;
   std::vector<float> high_;
-  float near_factor_, radius_, lamp_reach_;
+  float radius_, lamp_reach_;
   std::vector<Site> sites_;          ///< those of one spot side by side
   std::vector<Sites> sites_of_;      ///< by spot
   std::optional<LightTree> tree_;    ///< spots

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "formats/octahedral.h"
+#include "lib/scene/moving_objects.h"
 
 namespace tempolux {
 namespace {
@@ -17,19 +18,8 @@ Vec3 moved(const std::array<float, 3>& p, Vec3d shift) {
   return Vec3(Vec3d{double(p[0]) + shift.x, double(p[1]) + shift.y, double(p[2]) + shift.z});
 }
 
-/// By object: does one of its surfaces move in the segment?
-std::vector<bool> moving_objects(const SceneFrame& frame) {
-  std::vector<bool> moves;
-  for (std::size_t s = 0; s < frame.surfaces.size(); ++s) {
-    const std::size_t object = frame.surfaces[s].object;
-    if (object >= moves.size()) moves.resize(object + 1);
-    if (s >= frame.static_count) moves[object] = true;
-  }
-  return moves;
-}
-
-formats::SurfaceSet set_of(const std::vector<bool>& moves, std::uint32_t object) {
-  return object < moves.size() && moves[object] ? formats::SurfaceSet::dynamic_set : formats::SurfaceSet::static_set;
+formats::SurfaceSet set_of(const MovingObjects& moving, std::uint32_t object) {
+  return moving.contains(object) ? formats::SurfaceSet::dynamic_set : formats::SurfaceSet::static_set;
 }
 
 template <class In, class Convert>
@@ -43,12 +33,12 @@ auto converted(std::span<const In> values, Convert convert) {
 }  // namespace
 
 std::vector<formats::IrradiancePointRecord> to_file(std::span<const IrradiancePoint> points, const SceneFrame& frame) {
-  return converted(points, [moves = moving_objects(frame)](const IrradiancePoint& p) {
+  return converted(points, [moving = MovingObjects(frame)](const IrradiancePoint& p) {
     formats::IrradiancePointRecord r;
     r.position = array_of(p.position);
     r.normal = formats::encode_normal(array_of(p.normal));
     r.object = std::uint16_t(p.object);
-    r.set = set_of(moves, p.object);
+    r.set = set_of(moving, p.object);
     r.radius = p.radius;
     r.direct = array_of(p.direct);
     r.caustic = array_of(p.caustic);
@@ -72,12 +62,12 @@ std::vector<IrradiancePoint> from_file(std::span<const formats::IrradiancePointR
 }
 
 std::vector<formats::IrradianceCacheRecord> to_file(std::span<const IrradianceRecord> records, const SceneFrame& frame) {
-  return converted(records, [moves = moving_objects(frame)](const IrradianceRecord& record) {
+  return converted(records, [moving = MovingObjects(frame)](const IrradianceRecord& record) {
     formats::IrradianceCacheRecord r;
     r.position = array_of(record.position);
     r.normal = array_of(record.normal);
     r.object = std::uint16_t(record.object);
-    r.set = set_of(moves, record.object);
+    r.set = set_of(moving, record.object);
     r.irradiance = array_of(record.irradiance);
     for (std::size_t c = 0; c < 3; ++c) {
       r.rotational[c] = array_of(record.rotational[c]);

@@ -16,7 +16,7 @@ namespace tempolux {
 struct GatherOptions {
   std::uint64_t seed = 0;
   int rays = 500;                   ///< wanted where light is even; rounded to M rings x N_phi sectors, N_phi about pi M
-  float near_factor = 2;            ///< hits nearer than about this many estimate radii continue one bounce
+  float near_factor = PointLookup::kNear;   ///< radii below which a hit is near
   const BrightPoints* bright = nullptr;   ///< points that are sampled explicitly, if any (bright_points.h)
   int bright_samples = 100;         ///< explicit samples of a record
 };
@@ -35,8 +35,8 @@ class FinalGather {
   IrradianceRecord gather(const SurfacePoint& from, Vec3 normal, GatherCounts& counts, float ray_share = 1) const;
   /// Sets the clearance of a record gathered there, as far as its radius: once that is limited.
   void look_around(const SurfacePoint& from, IrradianceRecord& record) const;
-  /// Adds to a record of rays alone what GatherOptions::bright_samples explicit samples bring, if there are bright points. Random numbers are those of `key`,
-  /// which gather_key() of the record's place and normal is.
+  /// Adds to a record of rays alone what GatherOptions::bright_samples explicit samples bring, if there are bright points. Random numbers
+  /// are those of `key`, which gather_key() of the record's place and normal is.
   void add_explicit(const SurfacePoint& from, std::uint64_t key, IrradianceRecord& record, GatherCounts& counts) const;
 
   /// What rays bring.

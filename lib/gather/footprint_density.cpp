@@ -162,7 +162,7 @@ Vec3 FootprintDensity::normal_of(std::uint32_t photon) const {
 FootprintDensity::Extent FootprintDensity::extent_of(std::uint32_t photon) const {
   std::atomic<Extent>& known = extents_[photon];
   Extent extent = known.load(std::memory_order_relaxed);
-  if (extent.radius == 0) {
+  if (!extent.known()) {
     extent = measure(photon);
     known.store(extent, std::memory_order_relaxed);
   }
@@ -207,16 +207,15 @@ FootprintDensity::Extent FootprintDensity::measure(std::uint32_t photon) const {
   const Vec3 position = index_.position(photon), normal = normal_of(photon);
   const PathRandom random(0x666f6f74ull, index_.source(photon));
   float radius = outer_radius(photon);
-  const auto disc = [](float r) { return 1 / (kPi * r * r); };
   if (radius < kThin * area_.offset() || leaf_whole(photon / kLeaf) ||
       area_.whole(position, normal, radius, random.get1(2, Purpose::points), kLift * radius))
-    return {radius, -disc(radius)};
+    return Extent::of_whole_disc(radius);
   for (int i = 0; i <= kMostHalvings; ++i, radius /= 2) {
     const PathRandom draws(random.bits(std::uint32_t(i), Purpose::points, 1), 0);
     const double inverse = area_.inverse(position, normal, radius, kAreaProbes, ReachableArea::Kernel::round, draws);
-    if (inverse > 0) return {radius, float(inverse)};
+    if (inverse > 0) return Extent::of_area(radius, float(inverse));
   }
-  return {2 * radius, disc(2 * radius)};
+  return Extent::of_area(2 * radius, 1 / (kPi * 4 * radius * radius));
 }
 
 /// A photon whose light falls on the place if it reaches it.
@@ -226,7 +225,8 @@ struct FootprintDensity::Candidate {
   double importance;    ///< >= 0: its channels' sum
 };
 
-/// Light of those of the candidates that reach a place, by options_.asked of them: drawn by importance, evenly spaced along their sum `whole`.
+/// Light of those of the candidates that reach a place, by options_.asked of them: drawn by importance, evenly spaced along their sum
+/// `whole`.
 Rgbd FootprintDensity::of_asked(Vec3 position, Vec3 normal, std::span<const Candidate> candidates, double whole) const {
   const auto reaches = [&](std::uint32_t photon) { return area_.reach()(index_.position(photon), normal_of(photon), position, normal); };
   Rgbd sum{0.0};
@@ -276,7 +276,8 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, Extents
   Rgbd sum{0.0};
   double whole = 0;
   for (const auto [photon, distance2] : covering) {
-    const auto [radius, inverse_area] = extent_of(photon);
+    const Extent extent = extent_of(photon);
+    const float radius = extent.radius();
     extents.widest = extents.widest && radius > kAlmost * options_.max_radius;
     extents.inside = std::max(extents.inside, radius - std::sqrt(distance2));
     double weight = 2 * (1 - double(distance2) / (double(radius) * double(radius)));
@@ -285,8 +286,8 @@ Rgb FootprintDensity::estimate(Vec3 position, const LitSurface& surface, Extents
     if (!(weight > 0)) continue;
     const Vec3 from = index_.position(photon), from_normal = normal_of(photon);
     const bool in_plane =
-        inverse_area < 0 && std::abs(dot(position - from, from_normal)) < 4 * area_.offset() + kLift * radius;
-    const Rgbd irradiance = Rgbd(index_.flux(photon)) * (weight * double(std::abs(inverse_area)));
+        extent.whole_disc() && std::abs(dot(position - from, from_normal)) < 4 * area_.offset() + kLift * radius;
+    const Rgbd irradiance = Rgbd(index_.flux(photon)) * (weight * double(extent.inverse_area()));
     if (in_plane) {
       sum += irradiance;
       continue;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "lib/core/sampling.h"
 #include "lib/density/box_tree.h"
 #include "lib/density/photon_index.h"
 #include "lib/density/photon_view.h"
@@ -19,8 +21,8 @@ namespace tempolux {
 struct FootprintOptions {
   int neighbours = 25;    ///< k, below kMaxNeighbours
   float max_radius = 0;   ///< m; 0: the photons' own (photon_reach): one in twenty is so far from others
-  /// Of the photons whose footprints cover a place so many are asked whether they reach it, drawn by what they would give; 0: all. No bias, and no noise
-  /// where all reach it or none: for estimates of which a pixel averages several.
+  /// Of the photons whose footprints cover a place so many are asked whether they reach it, drawn by what they would give; 0: all. No bias,
+  /// and no noise where all reach it or none: for estimates of which a pixel averages several.
   int asked = 0;
   float margin = 0;       ///< of max_radius: light counts as smooth only if no footprint narrower than that is as near as this
 };
@@ -77,9 +79,9 @@ class FootprintDensity {
   /// Irradiance [W/m^2] of a place above a surface's lit side. Below 0 only by photons of negative flux.
   /// `smooth_over`: max_radius where footprints cover the place and all that come within `margin` are as wide as that; else 0.
   Rgb estimate(Vec3 position, const LitSurface& surface, float& smooth_over) const;
-  /// The same. `alike_within`: so far from here [m] no footprint lies that is narrower than four times that, so that light changes by a few per cent; 0
-  /// where none covers the place. A photon's radius differs from a near one's by their distance at most (both reach to a k-th neighbour): with
-  /// m = max over covering photons (r_i - d_i) what reaches to m / 9 from here is wider than m 4 / 9.
+  /// The same. `alike_within`: so far from here [m] no footprint lies that is narrower than four times that, so that light changes by a few
+  /// per cent; 0 where none covers the place. A photon's radius differs from a near one's by their distance at most (both reach to a k-th
+  /// neighbour): with m = max over covering photons (r_i - d_i) what reaches to m / 9 from here is wider than m 4 / 9.
   Rgb estimate_around(Vec3 position, const LitSurface& surface, float& alike_within) const;
   /// Of a surface without bent normals or a coat.
   Rgb estimate(Vec3 position, Vec3 normal, float& smooth_over) const { return estimate(position, LitSurface(normal), smooth_over); }
@@ -93,9 +95,20 @@ class FootprintDensity {
     float narrow2[kLeaf];      ///< m^2: (radius + margin)^2 of those narrower than max_radius, else -1
   };
   /// Found when a footprint is first asked for: most of a map's are never seen.
-  struct Extent {
-    float radius = 0;         ///< m; 0: not known yet
-    float inverse_area = 0;   ///< 1/m^2; below 0: of a whole disc, where all of its plane can be reached
+  class Extent {
+   public:
+    Extent() = default;
+    static Extent of_area(float radius, float inverse_area) { return {radius, inverse_area}; }
+    /// All of the plane within the radius can be reached.
+    static Extent of_whole_disc(float radius) { return {radius, -1 / (kPi * radius * radius)}; }
+    bool known() const { return radius_ > 0; }
+    float radius() const { return radius_; }                           ///< m
+    float inverse_area() const { return std::abs(signed_inverse_); }   ///< 1/m^2, of what can be reached
+    bool whole_disc() const { return signed_inverse_ < 0; }
+
+   private:
+    Extent(float radius, float signed_inverse) : radius_(radius), signed_inverse_(signed_inverse) {}
+    float radius_ = 0, signed_inverse_ = 0;   ///< eight bytes, so that an atomic one needs no lock; the sign says whole_disc()
   };
   struct Covering {
     std::uint32_t photon;

@@ -6,6 +6,7 @@
 #include "lib/gather/high_shares.h"
 #include "lib/gather/whole_photons.h"
 #include "lib/material/surface_material.h"
+#include "lib/scene/moving_objects.h"
 #include "lib/scene/standing.h"
 
 namespace tempolux {
@@ -33,10 +34,9 @@ DividedGatherPoints make_points(const DividedPhotonMap& map, const Tracer& trace
 PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, const Tracer& standing, const Lights& lights,
                                 const PointOptions& options, GatherPoints& points) {
   const SceneFrame& frame = whole.frame();
-  const std::vector<bool> moves = moving_objects(frame);
-  const auto on_mover = [&moves](std::uint32_t object) { return object < moves.size() && moves[object]; };
+  const MovingObjects moving(frame);
   const PlacedPoints placed = place_points(frame, options);
-  const auto own_points = std::ranges::find_if(placed.points, [&](const auto& p) { return on_mover(p.object); });
+  const auto own_points = std::ranges::find_if(placed.points, [&](const auto& p) { return moving.contains(p.object); });
   const auto standing_count = std::size_t(own_points - placed.points.begin());
   if (standing_count != points.points.size() || placed.spacing != points.spacing)
     throw InputError("--update: its points are not those of --point-count " + std::to_string(options.count) + " (" +
@@ -53,7 +53,7 @@ PointUpdateCounts update_points(const MovedPhotons& light, const Tracer& whole, 
   // What moves has its photons in the dynamic map alone.
   formats::PhotonBlock on_movers;
   for (std::size_t i = 0; i < light.moved.photons.size(); ++i)
-    if (on_mover(light.moved.photons[i].object)) append(light.moved, i, light.moved.photons[i], on_movers);
+    if (moving.contains(light.moved.photons[i].object)) append(light.moved, i, light.moved.photons[i], on_movers);
   points.points.insert(points.points.end(), own_points, placed.points.end());
   std::vector<std::uint32_t> own;
   for (std::size_t i = standing_count; i < points.points.size(); ++i) own.push_back(std::uint32_t(i));

@@ -6,10 +6,13 @@
 #include "lib/core/frame.h"
 #include "lib/core/sampling.h"
 #include "lib/gather/bright_points.h"
-#include "lib/gather/medium_event.h"
 #include "lib/material/inside.h"
 #include "lib/material/seen_side.h"
 #include "lib/material/surface_material.h"
+#include "lib/transport/direct_light.h"
+#include "lib/transport/emission.h"
+#include "lib/transport/media.h"
+#include "lib/transport/roulette.h"
 
 namespace tempolux {
 namespace {
@@ -40,6 +43,8 @@ struct IncomingRadiance::Further {
   bool sees_lamps = false;   ///< beyond events S: light of kind caustic where it started, which no point has told
   float phase = 0;           ///< a medium sent the ray on with this density [1/sr]; 0: a surface did
   bool low = false;          ///< what it meets at its end brings the low part: the high one is sampled where it started
+
+  LastScatter scattering() const { return {true, ray.origin, {}, phase, 1, Lights::From::all}; }
 };
 
 /// Where what is found along the way goes.
@@ -142,28 +147,23 @@ void IncomingRadiance::operator()(std::span<const Ray> rays, std::span<const std
     follow(further_rays, false, counts, [&](std::size_t i, const Met& met, const PointLookup::Light* point) {
       const Further from = now[i];
       radiance[from.of] += from.weight * reflected(met, point, from, depth, to);
-      if (from.phase > 0) radiance[from.of] += from.weight * lamp_met(met, from.ray.origin, from.phase);
+      if (from.phase > 0) radiance[from.of] += from.weight * weighed_emission(lights_, met.hit, met.wo, from.scattering(), 0);
     }, [&](std::size_t i) { return now[i].key; }, [&](std::size_t i, const MediumPoint& collision, float) {
       const Further from = now[i];
       radiance[from.of] += from.weight * scattered_in_media(collision, from, to);
-    }, [&](std::size_t i) { radiance[now[i].of] += now[i].weight * environment_met(now[i].ray, now[i].phase); });
+    }, [&](std::size_t i) {   // a surface has sampled the environment where it sent the ray
+      const Further& from = now[i];
+      if (from.phase > 0 && lights_.has_environment()) radiance[from.of] += from.weight * weighed_environment(lights_, from.ray.direction, from.scattering());
+    });
   }
 }
 
 /// From 1/2 to 1 1/2, for all that depends on how near a hit is: no seam where that begins.
 inline float IncomingRadiance::threshold(const PathRandom& random) { return 0.5f + random.get1(0, Purpose::gather); }
 
-/// Is the hit too near for its point to be read: within about near_factor radii of the estimate behind it?
-inline bool IncomingRadiance::is_near(const Met& met, const PointLookup::Light& point, const PathRandom& random) const {
-  // Most hits are far from the seam: they need no random number.
-  const float reach = near_factor_ * point.radius;
-  if (!(met.distance < 1.5f * reach)) return false;
-  return met.distance < 0.5f * reach || met.distance < reach * threshold(random);
-}
-
 /// What the surface at a ray's end sends back along it, emission left out: its Lambert lobe by the point to read there, or by
-/// going on where none stands for the hit, its indirect light is not that of the hit, or a first hit is near; its other lobes by following one of them. to.further
-/// receives the ray that goes on from a Lambert lobe, if any.
+/// going on where none stands for the hit, its indirect light is not that of the hit, or a first hit is near; its other lobes by following
+/// one of them. to.further receives the ray that goes on from a Lambert lobe, if any.
 Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth,
                                 const Gathered& to) const {
   const Bsdf& bsdf = *met.bsdf;
@@ -180,7 +180,9 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   Rgb result{0.0f};
   if (bsdf.has_diffuse()) {
     const Rgb scale = bsdf.diffuse_reflectance(side ? side->wo_local.z : 1) * kInvPi;
-    const bool near = point && depth == 0 && is_near(met, *point, random);
+    // Most hits are far from the seam: they need no random number.
+    const bool near = point && depth == 0 && met.distance < 1.5f * near_factor_ * point->radius &&
+                      PointLookup::is_near(*point, met.distance, random.get1(0, Purpose::gather), near_factor_);
     if (point && !near && points_.is_even_indirect(*point)) {
       ++to.counts.points_read;
       const bool even = lights_.empty() || points_.is_even(*point);
@@ -201,9 +203,8 @@ Rgb IncomingRadiance::reflected(const Met& met, const PointLookup::Light* point,
   if (next.diffuse || is_black(next.weight)) return result;
   const Vec3 travel = side->frame.to_world(next.wi);
   if ((next.transmitted ? -1.0f : 1.0f) * dot(travel, met.geometric) <= 0) return result;
-  const float survival = std::min(0.95f, max_component(next.weight));
-  if (!(random.get1(2, Purpose::roulette) < survival)) return result;
-  const Rgb weight = next.weight * (1 / survival);
+  Rgb weight = next.weight;
+  if (!survives(weight, kLargestSurvival, random.get1(2, Purpose::roulette))) return result;
   Further beyond = from;
   beyond.key = mix64(from.key + 2);
   beyond.weight *= weight;
@@ -242,20 +243,6 @@ Rgb IncomingRadiance::reflected_beyond(const SurfacePoint& start, Vec3 travel, f
   return left * (emitted + reflected(met, point, from, depth, to));
 }
 
-/// Light of a lamp at the end of a ray that a medium sent on from `start` with density `phase`, weighed against sampling it there.
-Rgb IncomingRadiance::lamp_met(const Met& met, Vec3 start, float phase) const {
-  const Rgb emitted = lights_.emitted(met.hit, met.wo, 0);
-  if (is_black(emitted)) return emitted;
-  return emitted * mis_power(phase, lights_.pdf_solid_angle(start, {}, met.hit.surface, met.hit.triangle, met.hit.position, met.hit.normal_geometric));
-}
-
-/// The same of the environment; black for rays that a surface sent: it was sampled there.
-Rgb IncomingRadiance::environment_met(const Ray& ray, float phase) const {
-  if (!(phase > 0) || !lights_.has_environment()) return Rgb(0.0f);
-  const EnvironmentLight::Place place = lights_.environment_place(ray.direction);
-  return lights_.environment_at(place) * mis_power(phase, lights_.pdf_environment(ray.origin, {}, place, ray.direction, Lights::From::all));
-}
-
 /// Light of a lamp that a medium sends back along a ray from its collision; to.further receives the ray that goes on, which counts
 /// lamps too: those it meets, weighed, and those it sees by way of events S, as no point tells of them here.
 Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const {
@@ -263,12 +250,10 @@ Rgb IncomingRadiance::scattered_in_media(const MediumPoint& at, const Further& f
   const PathRandom random(from.key, kMediaNumbers + 1);
   Rgb light{0.0f};
   if (!lights_.empty())
-    light = at.albedo * tempolux::sampled_light(tracer_, lights_, at, random.get2(1, Purpose::light_point), true,
+    light = at.albedo * scattered_lamp_light(tracer_, lights_, at, random.get2(1, Purpose::light_point), true,
                                                 {random, 1, way_shadow_of_medium}, to.counts.shadow_rays);
   Rgb weight = from.weight * at.albedo;
-  const float survival = std::min(kLargestSurvivalInMedia, max_component(weight));
-  if (!(random.get1(1, Purpose::roulette) < survival)) return light;
-  weight *= 1 / survival;
+  if (!survives(weight, kLargestSurvivalInMedia, random.get1(1, Purpose::roulette))) return light;
   const Vec3 travel = sample_hg(at.g, at.travel, random.get2(1, Purpose::phase));
   to.further.push_back({{at.position, travel, 0, INFINITY}, mix64(from.key + 1), weight, from.of, true, pdf_hg(at.g, at.travel, travel), false});
   return light;
@@ -294,32 +279,23 @@ Rgb IncomingRadiance::scattered(const Met& met, const PointLookup::Light* point,
   const Vec3 drawn = sample_hemisphere_cos(random.get2(1, Purpose::scatter)), travel = side.frame.to_world(drawn);
   if (!(dot(travel, met.geometric) > 0)) return irradiance;
   Rgb weight = from.weight * scale * (kPi * met.bsdf->arrival_weight(drawn.z));
-  if (depth > 0) {
-    const float survival = std::min(kLargestSurvival, max_component(weight));
-    if (!(random.get1(1, Purpose::roulette) < survival)) return irradiance;
-    weight *= 1 / survival;
-  }
+  if (depth > 0 && !survives(weight, kLargestSurvival, random.get1(1, Purpose::roulette))) return irradiance;
   to.further.push_back({spawn_ray(met.hit, travel), mix64(from.key + 1), weight, from.of, !point, 0, bright_ != nullptr});
   return irradiance;
 }
 
-/// Direct irradiance at a hit by one light sample; point: that stands for it, if any. low: light of lamps beside it is sampled explicitly where the ray
-/// comes from (BrightPoints::left_of_lamp).
+/// Direct irradiance at a hit by one light sample; point: that stands for it, if any. low: light of lamps beside it is sampled explicitly
+/// where the ray comes from (BrightPoints::left_of_lamp).
 Rgb IncomingRadiance::sampled_light(const Met& met, const SeenSide& side, const PointLookup::Light* point, bool low,
                                     const PathRandom& random, GatherCounts& counts) const {
-  LightSample light;
-  if (lights_.empty() || !lights_.sample(met.hit.position, side.normal, random.get1(1, Purpose::light_choice),
-                                         random.get2(1, Purpose::light_point), light) || !side.sees(light.wi))
-    return Rgb(0.0f);
-  const float left = low && !light.distant ? bright_->left_of_lamp(point, met.distance, length(light.position - met.hit.position)) : 1.0f;
+  DirectSample direct;
+  const Receiver at{met.hit, side.normal_geometric, side.normal, met.bsdf->has_specular() ? met.bsdf : nullptr};
+  if (lights_.empty() || !sample_direct(lights_, at, random.get1(1, Purpose::light_choice), random.get2(1, Purpose::light_point), direct)) return Rgb(0.0f);
+  const float left =
+      low && !direct.light.distant ? bright_->left_of_lamp(point, met.distance, length(direct.light.position - met.hit.position)) : 1.0f;
   if (!(left > 0)) return Rgb(0.0f);
   ++counts.shadow_rays;
-  const Ray shadow = spawn_shadow_ray(met.hit, light.position, light.position_offset);
-  if (tracer_.occluded(shadow)) return Rgb(0.0f);
-  if (const Media* const media = tracer_.frame().media.get()) [[unlikely]]
-    light.radiance *= media_transmittance(*media, shadow, {random, 1, way_shadow});
-  const float cosine = dot(light.wi, side.normal);
-  return light.radiance * (left * cosine * met.bsdf->arrival_weight(cosine));
+  return direct.irradiance * (left * transmittance(tracer_, direct.shadow, {random, 1, way_shadow}));
 }
 
 /// Irradiance at a hit where the point's direct light is not its own.

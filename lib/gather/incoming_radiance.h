@@ -15,7 +15,8 @@
 
 namespace tempolux {
 
-/// near_hits: went on though a point stood for them, as it was near or its indirect light not that of the hit; unanswered: went on as none did.
+/// near_hits: went on though a point stood for them, as it was near or its indirect light not that of the hit; unanswered: went on as none
+/// did.
 struct GatherCounts {
   std::uint64_t rays = 0, near_hits = 0, shadow_rays = 0, points_read = 0, unanswered = 0;
   GatherCounts& operator+=(const GatherCounts& o) {
@@ -33,7 +34,7 @@ struct RadianceSource {
   bool mover = false;            ///< a surface on the way moves in the segment
 };
 
-struct MediumPoint;    // lib/gather/medium_event.h
+struct MediumPoint;    // lib/transport/media.h
 class BrightPoints;    // lib/gather/bright_points.h
 
 /// Follows rays from places to what they meet. Emission counts nowhere on the way; events S are passed; at the first Lambert lobe
@@ -41,9 +42,9 @@ class BrightPoints;    // lib/gather/bright_points.h
 /// out and scatter. Thread-safe.
 class IncomingRadiance {
  public:
-  /// near_factor: hits nearer than about this many radii of the estimate behind their point go on by one bounce.
   /// bright: points of which rays bring the low part alone, where they are read first (BrightPoints::left); may be null.
-  IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor, const BrightPoints* bright = nullptr);
+  IncomingRadiance(const Tracer& tracer, const Lights& lights, const PointLookup& points, float near_factor = PointLookup::kNear,
+                   const BrightPoints* bright = nullptr);
 
   /// Radiance [W/m^2/sr] arriving along rays that counts as indirect at their starts, and the distance to what each meets
   /// first, m (infinity: nothing). keys: random numbers, one for each ray. Fastest if rays that follow one another
@@ -63,8 +64,6 @@ class IncomingRadiance {
   template <class Take, class Key, class TakeMedium, class Miss>
   void follow(std::span<const Ray> rays, bool alike, GatherCounts& counts, const Take& take, const Key& key, const TakeMedium& take_medium,
               const Miss& miss) const;
-  Rgb lamp_met(const Met& met, Vec3 start, float phase) const;
-  Rgb environment_met(const Ray& ray, float phase) const;
   Rgb scattered_in_media(const MediumPoint& at, const Further& from, const Gathered& to) const;
   Rgb reflected(const Met& met, const PointLookup::Light* point, const Further& from, int depth, const Gathered& to) const;
   Rgb reflected_beyond(const SurfacePoint& start, Vec3 travel, float distance, Further from, int depth, const Gathered& to,
@@ -72,7 +71,6 @@ class IncomingRadiance {
   Rgb scattered(const Met& met, const PointLookup::Light* point, const Further& from, Rgb scale, const PathRandom& random,
                 int depth, const Gathered& to) const;
   static float threshold(const PathRandom& random);
-  bool is_near(const Met& met, const PointLookup::Light& point, const PathRandom& random) const;
   Rgb beside_edge(const Met& met, const PointLookup::Light& light, bool low, const PathRandom& random, GatherCounts& counts) const;
   Rgb sampled_light(const Met& met, const struct SeenSide& side, const PointLookup::Light* point, bool low, const PathRandom& random, GatherCounts& counts) const;
 

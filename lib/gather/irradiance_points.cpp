@@ -1,4 +1,3 @@
-#include "lib/gather/medium_event.h"
 #include "lib/gather/irradiance_points.h"
 
 #include <algorithm>
@@ -17,6 +16,8 @@
 #include "lib/density/morton.h"
 #include "lib/material/bsdf.h"
 #include "lib/material/surface_material.h"
+#include "lib/transport/direct_light.h"
+#include "lib/transport/media.h"
 
 namespace tempolux {
 namespace {
@@ -162,9 +163,7 @@ Scattering scattering_at(const Tracer& tracer, const IrradiancePoint& point, flo
   return found;
 }
 
-/// Calls each(sample, share, shadow ray, random bits of its way through media) for the stratified light samples of a point that can give it light; share: cosine to the
-/// shading normal, as where an eye looks at the place and where photons arrive (photon_trace.h), times arrival_weight
-/// under a coat. What comes from behind either normal does not count.
+/// Calls each(sample, random bits of its way through media) for the stratified light samples of a point that can give it light.
 template <class Each>
 void for_light_samples(const Lights& lights, const IrradiancePoint& point, float offset, int samples,
                        const Scattering& scattering, const PathRandom& random, const Each& each) {
@@ -172,26 +171,21 @@ void for_light_samples(const Lights& lights, const IrradiancePoint& point, float
   from.position = point.position;
   from.normal = from.normal_geometric = point.normal;
   from.offset = offset;
+  const Receiver at{from, point.normal, scattering.normal, scattering.coat ? &*scattering.coat : nullptr};
   for (int s = 0; s < samples; ++s) {
     const float u = (float(s) + random.get1(0, Purpose::light_choice, std::uint32_t(s))) / float(samples);
-    LightSample light;
-    if (!lights.sample(point.position, scattering.normal, std::min(u, kOneMinusEpsilon),
-                       random.get2(0, Purpose::light_point, std::uint32_t(s)), light))
-      continue;
-    const float cosine = dot(light.wi, scattering.normal);
-    if (!(cosine > 0 && dot(light.wi, point.normal) > 0)) continue;
-    each(light, scattering.coat ? cosine * scattering.coat->arrival_weight(cosine) : cosine,
-         spawn_shadow_ray(from, light.position, light.position_offset), WayBits{random, std::uint32_t(s), way_shadow});
+    DirectSample direct;
+    if (sample_direct(lights, at, std::min(u, kOneMinusEpsilon), random.get2(0, Purpose::light_point, std::uint32_t(s)), direct))
+      each(direct, WayBits{random, std::uint32_t(s), way_shadow});
   }
 }
 
-/// Direct light at a point: mean over light samples of radiance share / pdf where nothing is in between.
+/// Direct light at a point: mean over light samples of what arrives.
 Rgb direct_light(const Tracer& tracer, const Lights& lights, const IrradiancePoint& point, float offset,
                  int samples, const Scattering& scattering, const PathRandom& random) {
   Rgbd sum{0.0};
-  for_light_samples(lights, point, offset, samples, scattering, random,
-                    [&](const LightSample& light, float share, const Ray& ray, const WayBits& bits) {
-    sum += Rgbd(light.radiance * transmittance(tracer, ray, bits)) * double(share);
+  for_light_samples(lights, point, offset, samples, scattering, random, [&](const DirectSample& direct, const WayBits& bits) {
+    sum += Rgbd(direct.irradiance) * double(transmittance(tracer, direct.shadow, bits));
   });
   return Rgb(sum / double(samples));
 }
@@ -339,7 +333,7 @@ std::size_t update_direct(const Tracer& tracer, const Lights& lights, const Move
       bool touched = !watch;
       if (watch)
         for_light_samples(lights, point, offset, options.light_samples, scattering, random,
-                          [&](const LightSample&, float, const Ray& ray, const WayBits&) { touched = touched || watch->touching(ray, 1) != 0; });
+                          [&](const DirectSample& direct, const WayBits&) { touched = touched || watch->touching(direct.shadow, 1) != 0; });
       if (!touched) continue;
       point.direct = direct_light(tracer, lights, point, offset, options.light_samples, scattering, random);
       ++count;

@@ -55,8 +55,8 @@ std::vector<PlacedSite> place_sites(const SceneFrame& frame, std::span<const std
 
 /// Fills in the irradiance of all points:
 /// - direct by light sampling, stratified shadow rays, by the shading normal at the point, under a coat times Bsdf::arrival_weight;
-/// - caustic and indirect by the density of the photons of that kind (FootprintDensity, PointDensity), caustic likewise by the normal at the
-///   point if photons have directions.
+/// - caustic and indirect by the density of the photons of that kind (FootprintDensity, PointDensity), caustic likewise by the normal at
+///   the point if photons have directions.
 /// Normal maps count by their finest level: points stand for what rays of gathering meet (RayCone).
 /// photon_shift is added to the photons' positions: scene space minus theirs. Same results for any number of
 /// threads.

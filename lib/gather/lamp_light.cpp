@@ -5,7 +5,7 @@
 #include "lib/core/parallel.h"
 #include "lib/core/random.h"
 #include "lib/core/sobol.h"
-#include "lib/gather/medium_event.h"
+#include "lib/transport/media.h"
 #include "lib/material/surface_material.h"
 
 namespace tempolux {

@@ -26,9 +26,9 @@ struct LampPhoton {
 /// this many spacings they know the spot badly or, as a rule, not at all.
 inline constexpr float kBesideLamp = 2;
 
-/// Of 2^15 photons of kind direct from all lamps (up to 2^18 where fewer than 2^10 land, but some do: under a sun a lamp has few) those that land within kBesideLamp spacings of their lamp. The sum of their flux over a place is
-/// the direct light that comes from so near, in the mean over seeds. Costs
-/// a ray of that length for each.
+/// Of 2^15 photons of kind direct from all lamps (up to 2^18 where fewer than 2^10 land, but some do: under a sun a lamp has few) those
+/// that land within kBesideLamp spacings of their lamp. The sum of their flux over a place is the direct light that comes from so near, in
+/// the mean over seeds. Costs a ray of that length for each.
 /// Same result for any number of threads.
 std::vector<LampPhoton> photons_beside_lamps(const Tracer& tracer, const Lights& lights, const PointLookup& points, std::uint64_t seed = 0);
 

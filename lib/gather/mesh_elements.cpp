@@ -116,7 +116,8 @@ Joined join(const std::vector<Sample>& samples, float edge) {
   Joined joined;
   for (const Sample& s : samples) {
     const auto code = formats::encode_normal({s.normal.x, s.normal.y, s.normal.z});
-    std::uint64_t key = mix64(std::uint64_t(s.material) << 32 | std::uint64_t(code[0] >> kNormalBits) << 16 | std::uint64_t(code[1] >> kNormalBits));
+    std::uint64_t key = mix64(std::uint64_t(s.material) << 32 | std::uint64_t(code[0] >> kNormalBits) << 16 |
+                              std::uint64_t(code[1] >> kNormalBits));
     for (int c = 0; c < 3; ++c) key = mix64(key + std::uint64_t(std::int64_t(std::floor(double(s.position[c]) / double(edge)))));
     const auto [found, is_new] = numbers.try_emplace(key, std::uint32_t(joined.cubes.size()));
     if (is_new) joined.cubes.push_back({Vec3(0, 0, 0), Vec3(0, 0, 0), Rgbd{0.0}, 0, 0, s.material});
@@ -140,7 +141,8 @@ Joined join(const std::vector<Sample>& samples, float edge) {
 void smooth_all(const std::vector<Sample>& samples, const MeshFilter& filter, std::vector<Rgbd>& result) {
   std::map<int, std::vector<std::uint32_t>> levels;
   for (std::size_t i = 0; i < samples.size(); ++i)
-    if (samples[i].width > 0 && samples[i].area > 0) levels[std::max(0, std::ilogb(samples[i].width / float(filter.width) * 1.0001f))].push_back(std::uint32_t(i));
+    if (samples[i].width > 0 && samples[i].area > 0)
+      levels[std::max(0, std::ilogb(samples[i].width / float(filter.width) * 1.0001f))].push_back(std::uint32_t(i));
   for (const auto& [level, which] : levels) {
     Joined joined = join(samples, std::ldexp(float(filter.width), level - 1));
     float widest = 0;
@@ -181,7 +183,9 @@ std::uint32_t MeshCuts::operator()(std::uint32_t surface, std::uint32_t triangle
   return std::uint32_t(std::clamp(std::ceil(longest / cell_), 1.0, double(formats::kMostCuts)));
 }
 
-double kernel_width(double area, double photons, double in_kernel) { return std::sqrt(in_kernel * area / (4 * std::numbers::pi * photons)); }
+double kernel_width(double area, double photons, double in_kernel) {
+  return std::sqrt(in_kernel * area / (4 * std::numbers::pi * photons));
+}
 
 MeshOptions window_widths(double area, double photons) {
   const double width = kernel_width(area, std::max(1.0, photons), kPhotonsInWindow);
@@ -339,7 +343,8 @@ std::vector<formats::MeshElement> light_texture(const SceneFrame& frame, const M
   std::vector<formats::MeshElement> elements = all_elements(frame, sums.cuts());
   put_sums(sums, elements);
   std::vector<Rgbd> flux;
-  for (const formats::MeshElement& e : elements) flux.push_back(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2])) * sums.unit());
+  for (const formats::MeshElement& e : elements)
+    flux.push_back(Rgbd(double(e.sums[0]), double(e.sums[1]), double(e.sums[2])) * sums.unit());
   smooth_elements(frame, flux, filter, {}, elements);
   leave_out_dark(elements);
   return elements;

@@ -27,13 +27,6 @@ std::array<std::array<std::uint32_t, 2>, 3> corners_of(const formats::MeshPlace&
   return {{{p.column, p.row}, {p.column + 1, p.row}, {p.column, p.row + 1}}};
 }
 
-/// An element at one of its corners.
-struct Meeting {
-  std::uint64_t place = 0;                   ///< hash of where
-  std::uint32_t element = 0, corner = 0;     ///< corner: in MeshLight::corners_
-  bool operator<(const Meeting& o) const { return std::tie(place, element, corner) < std::tie(o.place, o.element, o.corner); }
-};
-
 std::uint64_t place_of(Vec3 p, float step) {
   std::uint64_t hash = 0;
   for (int c = 0; c < 3; ++c) hash = mix64(hash + std::uint64_t(std::int64_t(std::floor(double(p[c]) / double(step) + 0.5))));
@@ -57,13 +50,19 @@ MeshLight::MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame
       const auto [u, v] = formats::mesh_cell_centre(n, cell);
       for (const auto& [column, row] : corners_of(formats::mesh_place(n, u, v))) {
         const float x = float(column) / float(n), y = float(row) / float(n);
-        meetings.push_back({place_of(a * (1 - x - y) + b * x + c * y, kSamePlace * float(file.header.cell)), std::uint32_t(i), count + corner(n, column, row)});
+        const Vec3 place = a * (1 - x - y) + b * x + c * y;
+        meetings.push_back({place_of(place, kSamePlace * float(file.header.cell)), std::uint32_t(i), count + corner(n, column, row)});
       }
     }
     count += (n + 1) * (n + 2) / 2;
   }
   corners_.resize(count);
+  join(meetings, elements, frame);
+}
+
+void MeshLight::join(std::vector<Meeting>& meetings, const std::vector<formats::MeshElement>& elements, const SceneFrame& frame) {
   std::sort(meetings.begin(), meetings.end());
+  const auto material = [&](const Meeting& m) { return frame.surfaces[elements[m.element].surface].material; };
   const auto normal = [&](const Meeting& m) {
     const auto d = formats::decode_normal(elements[m.element].normal);
     return Vec3{float(d[0]), float(d[1]), float(d[2])};
@@ -75,8 +74,7 @@ MeshLight::MeshLight(const formats::MeshirradFile& file, const SceneFrame& frame
       double area = 0;
       for (std::size_t k = first; k < last; ++k) {
         const formats::MeshElement& e = elements[meetings[k].element];
-        if (frame.surfaces[e.surface].material != frame.surfaces[elements[meetings[m].element].surface].material || dot(normal(meetings[m]), normal(meetings[k])) < kSameWay)
-          continue;
+        if (material(meetings[m]) != material(meetings[k]) || dot(normal(meetings[m]), normal(meetings[k])) < kSameWay) continue;
         sum += Rgbd(double(e.irradiance[0]), double(e.irradiance[1]), double(e.irradiance[2])) * double(e.area);
         area += double(e.area);
       }
@@ -93,7 +91,10 @@ Rgb MeshLight::irradiance(const SurfacePoint& hit, Vec3 geometric) const {
   const std::array<float, 3> weights = p.tip ? std::array{1 - p.y, 1 - p.x, p.x + p.y - 1} : std::array{1 - p.x - p.y, p.x, p.y};
   const auto corners = corners_of(p);
   Rgb sum{0.0f};
-  for (std::size_t k = 0; k < 3; ++k) sum += corners_[side.first + corner(side.cuts, corners[k][0], corners[k][1])] * std::clamp(weights[k], 0.0f, 1.0f);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Rgb& there = corners_[side.first + corner(side.cuts, corners[k][0], corners[k][1])];
+    sum += there * std::clamp(weights[k], 0.0f, 1.0f);
+  }
   return sum;
 }
 

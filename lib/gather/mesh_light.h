@@ -1,6 +1,7 @@
 // lib/gather/mesh_light.h -- a light texture, read at hits.
 #pragma once
 
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -29,6 +30,14 @@ class MeshLight {
     std::uint32_t first = 0;                 ///< of its corners
     std::uint32_t cuts = 0;
   };
+  /// An element at one of its corners.
+  struct Meeting {
+    std::uint64_t place = 0;                 ///< hash of where
+    std::uint32_t element = 0, corner = 0;   ///< corner: in corners_
+    bool operator<(const Meeting& o) const { return std::tie(place, element, corner) < std::tie(o.place, o.element, o.corner); }
+  };
+  void join(std::vector<Meeting>& meetings, const std::vector<formats::MeshElement>& elements, const SceneFrame& frame);
+
   std::unordered_map<std::uint64_t, Side> sides_;   ///< by surface, triangle, side
   std::vector<Rgb> corners_;                 ///< of each side (n + 1) (n + 2) / 2, in rows of equal v
   std::size_t size_ = 0;                     ///< elements

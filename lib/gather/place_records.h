@@ -1,4 +1,4 @@
-// lib/gather/place_records.h -- put irradiance records where a camera needs them.
+// lib/gather/place_records.h -- put irradiance records where a camera needs them (docs/methods/records.md).
 #pragma once
 
 #include <cstdint>
@@ -59,13 +59,15 @@ std::size_t place_records(const FinalGather& gather, const PixelView& view, int 
 ///
 ///     1 / r = s / (error_bound R) + (1 - s) / (unseen_radius_px footprints)
 ///
-/// but r is at least min_radius_px footprints [Tabellion and Lamorlette 2004]. The radius follows from the distances of all rays alone: a small
-/// bright thing that few rays meet has little say. If it had more, records whose rays missed the thing would reach farther than
+/// but r is at least min_radius_px footprints [Tabellion and Lamorlette 2004]. The radius follows from the distances of all rays alone: a
+/// small bright thing that few rays meet has little say. If it had more, records whose rays missed the thing would reach farther than
 /// those that met it, and the mean would be dark.
 float radius_of(const IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
-/// Sets the radius of a gathered record, whose radius_unclamped is R; radius_unclamped keeps r before min_radius_px. The translational gradient is reduced
-/// - by how much the least radius is larger than what distances give: near a wall a gradient is large, noisy and holds over that part only [Jakob, Mitsuba 0.6];
+/// Sets the radius of a gathered record, whose radius_unclamped is R; radius_unclamped keeps r before min_radius_px. The translational
+/// gradient is reduced
+/// - by how much the least radius is larger than what distances give: near a wall a gradient is large, noisy and holds over that part only
+///   [Jakob, Mitsuba 0.6];
 /// - to what leaves the irradiance at or above zero within the radius.
 void limit_radius(IrradianceRecord& record, float footprint, const PlacementOptions& options);
 

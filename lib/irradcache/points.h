@@ -82,34 +82,45 @@ class PointLookup {
   const IrradiancePoint& point(const Light& read) const { return points_[read.point]; }
   std::span<const IrradiancePoint> points() const { return points_; }
   /// Is a point's light of a kind that of the places near it? Not where some of the points beside it (within 1.5 spacings)
-  /// get kContrast times as much of it as others, of indirect light surely kContrastOfIndirect times (apart()): there a shadow or a bright spot ends.
-  /// Nor where fewer than two points are beside it, for its direct light: what shows that one point in a wall's shadow is not all of the wall?
-  /// Direct light: a hit is to sample it itself. Read instead, light would reach a spacing into shadows and out of gaps, where much
-  /// of what sees it is: the ground in a chair's shadow is seen by the chair.
-  /// Indirect light (beside points of the same object alone): a ray is to go on from the hit. A lamp a finger below the ceiling lights the gap behind it a hundred times
-  /// as strongly as what is seen of the ceiling; read instead, that light would reach a spacing out of the gap.
-  /// A point's own light has no say in it: it is known by a few shadow rays or photons, and were those that came out bright
+  /// get kContrast times as much of it as others, of indirect light surely kContrastOfIndirect times (apart()): there a shadow or a bright
+  /// spot ends. Nor where fewer than two points are beside it, for its direct light: what shows that one point in a wall's shadow is not
+  /// all of the wall? Direct light: a hit is to sample it itself. Read instead, light would reach a spacing into shadows and out of gaps,
+  /// where much of what sees it is: the ground in a chair's shadow is seen by the chair.
+  /// Indirect light (beside points of the same object alone): a ray is to go on from the hit. A lamp a finger below the ceiling lights the
+  /// gap behind it a hundred times as strongly as what is seen of the ceiling; read instead, that light would reach a spacing out of the
+  /// gap. A point's own light has no say in it: it is known by a few shadow rays or photons, and were those that came out bright
   /// replaced, what is read would be dark in the mean.
   bool is_even(const Light& light) const { return !light.beside_lamp && !(unevenness(light) & kDirect); }
   bool is_even_indirect(const Light& light) const { return !(unevenness(light) & kIndirect); }
   static constexpr float kContrast = 8;
-  /// From now on the direct light of this point is not that of the places it stands for: a lamp so near lights a spot smaller than the spacing, which a point
-  /// misses as a rule and stands for all of it where it does not. Not to be called while others look up.
+  /// From now on the direct light of this point is not that of the places it stands for: a lamp so near lights a spot smaller than the
+  /// spacing, which a point misses as a rule and stands for all of it where it does not. Not to be called while others look up.
   void note_lamp(std::uint32_t point) { lights_[point].beside_lamp = true; }
-  /// A ray that goes on costs several that are read, and what leaks from a place of moderate contrast is little. With 8 instead of 32 S8's frame took 17 %
-  /// and S4's records 11 % more CPU at the same error; CornellBox's gap has 100.
+  /// A ray that goes on costs several that are read, and what leaks from a place of moderate contrast is little. With 8 instead of 32 S8's
+  /// frame took 17 % and S4's records 11 % more CPU at the same error; CornellBox's gap has 100.
   static constexpr float kContrastOfIndirect = 32;
-  /// Is indirect light at `bright` that many times what it is at `dark`, by three standard errors? An estimate of k = PointOptions::neighbours
-  /// photons errs by 1 / sqrt(k) of itself; one that found fewer has the widest radius of all, and does not say how many: as `bright` it
-  /// proves nothing. As `dark` it is taken for one of photons like those of `bright`: each adds e = E_bright r_bright^2 / (k r_dark^2), and the
-  /// variance of n of them is (n + 1) e^2 (one more, as none found does not prove that there is none):
+  /// Is indirect light at `bright` that many times what it is at `dark`, by three standard errors? An estimate of k =
+  /// PointOptions::neighbours photons errs by 1 / sqrt(k) of itself; one that found fewer has the widest radius of all, and does not say
+  /// how many: as `bright` it proves nothing. As `dark` it is taken for one of photons like those of `bright`: each adds e = E_bright
+  /// r_bright^2 / (k r_dark^2), and the variance of n of them is (n + 1) e^2 (one more, as none found does not prove that there is none):
   ///     E_bright - c E_dark > 3 sqrt(E_bright^2 / k + c^2 (E_dark e + e^2)),   c = kContrastOfIndirect
   bool apart(const IrradiancePoint& bright, const IrradiancePoint& dark) const;
+
+  /// Hits nearer than about this many radii of the estimate behind their point do not read the point: the blur of its light would be seen.
+  static constexpr float kNear = 2;
+  /// Is a hit at `distance` m along the way from the last Lambert lobe so near? u in [0, 1) moves the limit between half and one and a half
+  /// of it, so that it shows no seam.
+  static bool is_near(const Light& light, float distance, float u, float radii = kNear) { return distance < radii * light.radius * (0.5f + u); }
+  /// Share of the u for which a hit is not near; radius: Light::radius.
+  static float share_of_far(float radius, float distance) {
+    return radius > 0 ? std::clamp(distance / (kNear * radius) - 0.5f, 0.0f, 1.0f) : 1.0f;
+  }
 
   static constexpr float kReach = 2;   ///< spacings: farther off no point stands for a hit
 
  private:
-  static constexpr std::uint8_t kNotAsked = 0, kKnown = 1, kDirect = 2, kIndirect = 4;   ///< of Light::uneven: the last two are bits beside kKnown
+  static constexpr std::uint8_t kNotAsked = 0, kKnown = 1, kDirect = 2, kIndirect = 4;   ///< of Light::uneven: the last two are bits beside
+                                                                                         ///< kKnown
   static constexpr std::uint64_t kNotLooked = 0;   ///< eight spokes of no length are kept as one of 1/255
   struct Entry {
     std::atomic<std::uint64_t> cell{0};

@@ -45,8 +45,8 @@ float least_cosine_of(float error_bound);
 inline constexpr float kWideCosine = 0.94f;
 
 /// Records found by place: each is listed in the cells its validity sphere meets near its tangent plane, on the level of
-/// a hierarchy of hashed grids whose cells are a power of two, from one to two radii wide. What a look-up costs does not grow with the number
-/// of records, only with how many overlap there. Look-ups are thread-safe while nothing is added.
+/// a hierarchy of hashed grids whose cells are a power of two, from one to two radii wide. What a look-up costs does not grow with the
+/// number of records, only with how many overlap there. Look-ups are thread-safe while nothing is added.
 class RecordStore {
  public:
   explicit RecordStore(const InterpolationOptions& options = {}) : options_(options) {}

@@ -5,6 +5,7 @@
 
 #include "lib/render/camera_view.h"
 #include "lib/render/known_light.h"
+#include "lib/scene/moving_objects.h"
 #include "lib/scene/standing.h"
 
 namespace tempolux {
@@ -60,8 +61,8 @@ GatherCounts update_for_cameras(const UpdateInput& input, const RecordCameras& c
   std::vector<float> influences;
   for (const RecordChange& change : cache.changes) influences.push_back(change.influence);
   const InfluenceField field(cache.standing, influences, input.influence);
-  const std::vector<bool> moves = moving_objects(input.tracer.frame());
-  const auto rides = [&](const SeenPoint& seen) { return seen.surface.object < moves.size() && moves[seen.surface.object]; };
+  const MovingObjects moving(input.tracer.frame());
+  const auto rides = [&](const SeenPoint& seen) { return moving.contains(seen.surface.object); };
   // Where E_y counts by the share f < 1, its squared error counts by f^2: f of the rays leave no more of it than all leave where f is 1.
   const RecordSource source{[&](const SeenPoint& seen, std::size_t, GatherCounts& local) {
     const float share = rides(seen) ? 1.0f : field.gathered_share(seen.surface.position, seen.normal);

@@ -21,7 +21,7 @@ std::optional<Rgb> KnownLight::indirect(const SurfacePoint& surface, Vec3 geomet
 std::optional<KnownLight::Told> KnownLight::told(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {
   if (!points) return std::nullopt;
   const PointLookup::Light* light = points->find(hit.position, geometric);
-  if (!light || !points->is_even_indirect(*light) || distance < kNear * light->radius * (0.5f + u)) return std::nullopt;
+  if (!light || !points->is_even_indirect(*light) || PointLookup::is_near(*light, distance, u)) return std::nullopt;
   if (points->is_even(*light)) return Told{light->all};
   const IrradiancePoint& point = points->point(*light);
   return Told{point.indirect + point.caustic, false};
@@ -29,7 +29,7 @@ std::optional<KnownLight::Told> KnownLight::told(const SurfacePoint& hit, Vec3 g
 
 float KnownLight::left(const SurfacePoint& hit, Vec3 geometric, float distance, float u) const {
   const PointLookup::Light* light = bright ? points->find(hit.position, geometric) : nullptr;
-  return light && !(distance < kNear * light->radius * (0.5f + u)) ? bright->left(*light, distance) : 1.0f;
+  return light && !PointLookup::is_near(*light, distance, u) ? bright->left(*light, distance) : 1.0f;
 }
 
 std::optional<SeenPoint> seen_through(const Tracer& tracer, const CameraView& view, const Look& look) {

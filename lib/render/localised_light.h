@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lib/gather/localised.h"
+#include "lib/scene/moving_objects.h"
 #include "lib/scene/surface_point.h"
 
 namespace tempolux {
@@ -17,10 +18,10 @@ namespace tempolux {
 /// Method: docs/methods/dynamic.md. Thread-safe.
 class LocalisedLight {
  public:
-  /// changes[i] of standing[i]. least_cosine: in which records of both count. moves: by object.
+  /// changes[i] of standing[i]. least_cosine: in which records of both count.
   LocalisedLight(std::span<const IrradianceRecord> standing, std::span<const RecordChange> changes,
                  std::span<const IrradianceRecord> gathered, float least_cosine, const InfluenceThresholds& thresholds,
-                 std::vector<bool> moves);
+                 MovingObjects moving);
 
   /// None where a record that is asked for is missing.
   std::optional<Rgb> at(const SurfacePoint& surface, Vec3 shading) const;
@@ -31,11 +32,9 @@ class LocalisedLight {
   const InfluenceThresholds& thresholds() const { return influence_.thresholds(); }
 
  private:
-  bool moves(const SurfacePoint& surface) const { return surface.object < moves_.size() && moves_[surface.object]; }
-
   InfluenceField influence_;
   RecordStore updated_, gathered_;   ///< E_t, E_y
-  std::vector<bool> moves_;
+  MovingObjects moving_;
 };
 
 }  // namespace tempolux

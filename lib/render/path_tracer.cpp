@@ -1,10 +1,12 @@
 #include "lib/render/path_tracer.h"
 
 #include "lib/core/sampling.h"
-#include "lib/gather/medium_event.h"
 #include "lib/material/inside.h"
 #include "lib/render/known_light.h"
 #include "lib/render/shading.h"
+#include "lib/transport/emission.h"
+#include "lib/transport/media.h"
+#include "lib/transport/roulette.h"
 
 namespace tempolux {
 namespace {
@@ -12,25 +14,24 @@ namespace {
 constexpr std::uint32_t kRouletteFrom = 3;     ///< bounces that always survive
 constexpr float kLargestSurvival = 0.998f;     ///< so that paths in a lossless box end, after 500 bounces in the mean
 
-/// The last scattering: what a hit on a light must know to weigh itself against light sampling.
-struct LastScatter {
-  bool weighed = false;                        ///< false: camera ray or delta lobe, light sampling could not find it
-  Vec3 position, normal;                       ///< normal on the side that was scattered to
-  float pdf_solid_angle = 0;
-  float light_share = 1;                       ///< of light samples that were aimed at that side
-  Lights::From from = Lights::From::all;       ///< lights that samples were drawn from there
-};
-
 /// Which of a surface's lobes light is sampled for, and the factors by which their densities are higher than the Bsdf's where
-/// both are followed.
+/// the path forks: both lobes are followed then.
 struct SampledLobes {
   bool diffuse, specular;
   float times_diffuse = 1, times_specular = 1;
   float left = 1;   ///< share of what the Lambert lobe scatters that counts (KnownHere)
+  bool forks = false;
+
+  /// diffuse_probability: with which the Bsdf draws the Lambert lobe, in (0, 1).
+  void fork(float diffuse_probability) {
+    forks = true;
+    times_diffuse = 1 / diffuse_probability;
+    times_specular = 1 / (1 - diffuse_probability);
+  }
 };
 
-/// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)] `draw(normal, light)` draws the sample for the side that
-/// the normal is on; `share`: with which probability it was that side.
+/// Light sampling at x, told apart by the lobe that scatters it. [Veach 1997 (9.14)] `draw(normal, light)` draws the sample for the side
+/// that the normal is on; `share`: with which probability it was that side.
 struct LightAdder {
   const RenderScene& scene;
   const ShadingPoint& x;
@@ -86,39 +87,12 @@ void LightAdder::add(const LightSample& light, bool beyond, float share, Layers&
   if (is_black(diffuse) && is_black(glossy)) return;
   ++shadow_rays;
   const Ray shadow = spawn_shadow_ray(x.surface, light.position, light.position_offset);
-  if (scene.tracer.occluded(shadow)) return;
-  Rgb arriving = throughput * light.radiance * (std::abs(wi.z) / share);
-  if (const Media* const media = scene.frame().media.get()) [[unlikely]]
-    arriving *= media_transmittance(*media, shadow, {random.hashed(), bounce, way_shadow});
+  const float left = transmittance(scene.tracer, shadow, {random.hashed(), bounce, way_shadow});
+  if (!(left > 0)) return;
+  Rgb arriving = throughput * light.radiance * (std::abs(wi.z) / share) * left;
   if (inside.any()) arriving *= inside.transmittance_over(scene.frame().materials, length(light.position - x.surface.position));
   result[path.after(true).layer()] += arriving * diffuse;
   result[path.after(false).layer()] += arriving * glossy;
-}
-
-/// Emission of the surface that was hit, weighed against light sampling from the scattering before.
-/// Textures are read at their finest level where light sampling could have found the light: both read the same.
-void add_emission(const RenderScene& scene, const SurfacePoint& hit, Vec3 wo, const LastScatter& last,
-                  const Rgb& throughput, Layer layer, float width, Layers& result) {
-  const Rgb emitted = scene.lights.emitted(hit, wo, last.weighed ? 0 : width);
-  if (is_black(emitted)) return;
-  const float weight = last.weighed ? mis_power(last.pdf_solid_angle,
-                                                last.light_share *
-                                                scene.lights.pdf_solid_angle(last.position, last.normal, hit.surface,
-                                                                             hit.triangle, hit.position,
-                                                                             hit.normal_geometric, last.from))
-                                    : 1.0f;
-  result[layer] += throughput * emitted * weight;
-}
-
-/// The environment where the ray leaves the scene, weighed likewise.
-void add_environment(const RenderScene& scene, Vec3 direction, const LastScatter& last, const Rgb& throughput,
-                     Layer layer, Layers& result) {
-  const EnvironmentLight::Place place = scene.lights.environment_place(direction);
-  const float weight =
-      last.weighed ? mis_power(last.pdf_solid_angle, last.light_share * scene.lights.pdf_environment(
-                                                                            last.position, last.normal, place, direction, last.from))
-                   : 1.0f;
-  result[layer] += throughput * scene.lights.environment_at(place) * weight;
 }
 
 /// What a path knows of the light beyond its last event D, a Lambert lobe or a collision; and how wide it looks.
@@ -220,10 +194,14 @@ class EyeTracer {
   bool survives(Walk& walk, float most) const;
   void go_on(const Ray& ray, Walk& walk) const;
   void add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const;
+  void arrive(const SurfacePoint& point, Walk& walk) const;
+  bool leave(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, const SampledLobes& lobes, Walk& walk) const;
+  bool step(Walk& walk) const;
   void go_onward(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, float u_lobe, float times, const Walk& walk) const;
   void count(std::uint64_t rays, std::uint64_t& as, const Walk& walk) const {
     as += rays;
-    if (walk.result == &parts_.onward) counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;   // nearest hit, surface, material: twice a shadow ray
+    if (walk.result == &parts_.onward) counts_.onward += &as == &counts_.bounce ? 2 * rays : rays;   // nearest hit, surface, material:
+                                                                                                     // twice a shadow ray
   }
 
   const RenderScene& scene_;
@@ -236,10 +214,7 @@ class EyeTracer {
 /// Roulette; `most`: the largest probability of going on.
 bool EyeTracer::survives(Walk& walk, float most) const {
   if (walk.bounce + 1 < kRouletteFrom) return true;
-  const float survival = std::min(most, max_component(walk.throughput));
-  if (!(walk.random.get1(walk.bounce, Purpose::roulette) < survival)) return false;
-  walk.throughput *= 1 / survival;
-  return true;
+  return tempolux::survives(walk.throughput, most, walk.random.get1(walk.bounce, Purpose::roulette));
 }
 
 void EyeTracer::go_on(const Ray& ray, Walk& walk) const {
@@ -292,7 +267,7 @@ bool EyeTracer::scatter_in_medium(const MediumPoint& point, Walk& walk) const {
   if (is_black(walk.throughput)) return false;
   const WayBits bits{walk.random.hashed(), walk.bounce, way_shadow_of_medium};
   std::uint64_t shadow_rays = 0;
-  (*walk.result)[walk.path.layer()] += walk.throughput * sampled_light(scene_.tracer, scene_.lights, point,
+  (*walk.result)[walk.path.layer()] += walk.throughput * scattered_lamp_light(scene_.tracer, scene_.lights, point,
                                                                        walk.random.get2(walk.bounce, Purpose::light_point), true, bits, shadow_rays);
   count(shadow_rays, counts_.shadow, walk);
   if (!survives(walk, kLargestSurvivalInMedia)) return false;
@@ -319,8 +294,8 @@ EyeTracer::Passed EyeTracer::pass_media(const Media& media, Walk& walk) const {
   return scatter_in_medium(collision, walk) ? Passed::scattered : Passed::ended;
 }
 
-/// At a first matte surface as many samples as asked for, of the part `lit`. The sun stands still: where it is seen its samples agree, so that they
-/// need no more than camera rays do, of whose part they are.
+/// At a first matte surface as many samples as asked for, of the part `lit`. The sun stands still: where it is seen its samples agree, so
+/// that they need no more than camera rays do, of whose part they are.
 void EyeTracer::add_light(const ShadingPoint& x, SampledLobes lobes, bool first_matte, const Walk& walk) const {
   const auto adder = [&](const PixelRandom& random) {
     return LightAdder{scene_, x, lobes, walk.throughput, walk.path, walk.inside, random, walk.bounce};
@@ -349,78 +324,79 @@ void EyeTracer::go_onward(const ShadingPoint& x, const SurfaceMaterial& material
   }
 }
 
-void EyeTracer::follow(Walk walk) const {
+/// What the path meets at a surface: glass on the way absorbs, the surface emits.
+void EyeTracer::arrive(const SurfacePoint& point, Walk& walk) const {
   const SceneFrame& frame = scene_.frame();
-  const Media* const media = frame.media.get();
-  for (;;) {
-    const Ray& ray = walk.ray;
-    const Hit& hit = walk.hit;
-    const EyePath& path = walk.path;
-    const LastScatter& last = walk.last;
-    const std::uint32_t bounce = walk.bounce;
-    const bool forked = walk.forked;
-    Layers& result = *walk.result;
-    if (media) [[unlikely]] {
-      const Passed passed = pass_media(*media, walk);
-      if (passed == Passed::ended) return;
-      if (passed == Passed::scattered) continue;
-    }
-    if (hit.surface == kNone) {
-      if (scene_.lights.has_environment() && walk.beyond.light_counts())
-        add_environment(scene_, ray.direction, last, walk.throughput, path.layer(), result);
-      return;
-    }
-    parts_.own.coverage = 1;
-    SurfacePoint point = scene_.tracer.surface_point(hit);
-    const Vec3 wo = -ray.direction;
-    const bool front = dot(point.normal_geometric, wo) > 0;
-    if (walk.inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
-      walk.throughput *= walk.inside.transmittance_to(frame.materials, point.material, front, hit.t);
-    walk.cone.advance(hit.t);
-    walk.beyond.advance(hit.t);
-    if (walk.beyond.light_counts()) add_emission(scene_, point, wo, last, walk.throughput, path.layer(), walk.cone.width, result);
-    // Only light by events S is missing then, if any.
-    const bool only_specular = walk.beyond.indirect_known;
-    if (only_specular && walk.beyond.caustic_known) return;
+  const Vec3 wo = -walk.ray.direction;
+  const bool front = dot(point.normal_geometric, wo) > 0;
+  if (walk.inside.any() || (!front && is_solid_glass(frame.materials[point.material])))
+    walk.throughput *= walk.inside.transmittance_to(frame.materials, point.material, front, walk.hit.t);
+  walk.cone.advance(walk.hit.t);
+  walk.beyond.advance(walk.hit.t);
+  if (walk.beyond.light_counts())
+    (*walk.result)[walk.path.layer()] += walk.throughput * weighed_emission(scene_.lights, point, wo, walk.last, walk.cone.width);
+}
 
-    const Vec3 smooth = point.normal;
-    const SurfaceMaterial material(frame, point, walk.cone.width);
-    if (material.values().unlit) [[unlikely]] {
-      if (path.sharp()) result[path.layer()] += walk.throughput * material.values().base_color;
-      return;
-    }
-    const ShadingPoint x(point, wo, material);
-    KnownHere here{only_specular, only_specular, only_specular};
-    if (known_ && !only_specular && x.bsdf.has_diffuse())
-      here = add_known_light(*known_, x, smooth, walk.beyond, walk.throughput, path, walk.random.get1(bounce, Purpose::gather),
-                             PathRandom(walk.random.hashed().bits(bounce, Purpose::gather), bounce), result, counts_);
-    SampledLobes lobes{!here.direct, !(walk.beyond.matte && walk.beyond.caustic_known)};
-    lobes.left = here.left;
-    const bool first_matte = path.sharp() && x.bsdf.has_diffuse();
-    float diffuse = 0;
-    const bool forks = known_ && known_->forks() && !forked && path.sharp() && x.bsdf.forks();
-    if (forks) {
-      diffuse = std::clamp(x.bsdf.diffuse_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f);
-      lobes.times_diffuse = 1 / diffuse;
-      lobes.times_specular = 1 / (1 - diffuse);
-    }
-    add_light(x, lobes, first_matte, walk);
-    if (here.direct && !x.bsdf.has_specular()) return;
-
-    float u_lobe = walk.random.get1(bounce, Purpose::lobe), times = 1;
-    if (forks) {
-      Walk beside = walk;
-      beside.forked = walk.forked = true;
-      if (scatter(x, material, here, std::min(kOneMinusEpsilon, diffuse + (1 - diffuse) * u_lobe), lobes.times_specular, beside)) follow(beside);
-      u_lobe *= diffuse;
-      times = lobes.times_diffuse;
-    }
-    if (first_matte && x.bsdf.draws_diffuse(x.eye, u_lobe)) {
-      go_onward(x, material, here, u_lobe, times, walk);
-      return;
-    }
-    if (!scatter(x, material, here, u_lobe, times, walk)) return;
+/// The rays that go on from a surface: one, or one of each lobe where the path forks. False if walk ends.
+bool EyeTracer::leave(const ShadingPoint& x, const SurfaceMaterial& material, const KnownHere& here, const SampledLobes& lobes, Walk& walk) const {
+  const bool first_matte = walk.path.sharp() && x.bsdf.has_diffuse();
+  float u_lobe = walk.random.get1(walk.bounce, Purpose::lobe), times = 1;
+  if (lobes.forks) {
+    const float diffuse = 1 / lobes.times_diffuse;
+    walk.forked = true;
+    Walk beside = walk;
+    if (scatter(x, material, here, std::min(kOneMinusEpsilon, diffuse + (1 - diffuse) * u_lobe), lobes.times_specular, beside)) follow(beside);
+    u_lobe *= diffuse;
+    times = lobes.times_diffuse;
   }
+  if (first_matte && x.bsdf.draws_diffuse(x.eye, u_lobe)) {
+    go_onward(x, material, here, u_lobe, times, walk);
+    return false;
+  }
+  return scatter(x, material, here, u_lobe, times, walk);
+}
+
+/// From one vertex of the path to the next. False if the path ends.
+bool EyeTracer::step(Walk& walk) const {
+  const SceneFrame& frame = scene_.frame();
+  if (const Media* const media = frame.media.get()) [[unlikely]] {
+    const Passed passed = pass_media(*media, walk);
+    if (passed != Passed::through) return passed == Passed::scattered;
+  }
+  Layers& result = *walk.result;
+  if (walk.hit.surface == kNone) {
+    if (scene_.lights.has_environment() && walk.beyond.light_counts())
+      result[walk.path.layer()] += walk.throughput * weighed_environment(scene_.lights, walk.ray.direction, walk.last);
+    return false;
+  }
+  parts_.own.coverage = 1;
+  SurfacePoint point = scene_.tracer.surface_point(walk.hit);
+  arrive(point, walk);
+  // Only light by events S is missing then, if any.
+  const bool only_specular = walk.beyond.indirect_known;
+  if (only_specular && walk.beyond.caustic_known) return false;
+
+  const Vec3 smooth = point.normal;
+  const SurfaceMaterial material(frame, point, walk.cone.width);
+  if (material.values().unlit) [[unlikely]] {
+    if (walk.path.sharp()) result[walk.path.layer()] += walk.throughput * material.values().base_color;
+    return false;
+  }
+  const ShadingPoint x(point, -walk.ray.direction, material);
+  KnownHere here{only_specular, only_specular, only_specular};
+  if (known_ && !only_specular && x.bsdf.has_diffuse())
+    here = add_known_light(*known_, x, smooth, walk.beyond, walk.throughput, walk.path, walk.random.get1(walk.bounce, Purpose::gather),
+                           PathRandom(walk.random.hashed().bits(walk.bounce, Purpose::gather), walk.bounce), result, counts_);
+  SampledLobes lobes{!here.direct, !(walk.beyond.matte && walk.beyond.caustic_known)};
+  lobes.left = here.left;
+  if (known_ && known_->forks() && !walk.forked && walk.path.sharp() && x.bsdf.forks())
+    lobes.fork(std::clamp(x.bsdf.diffuse_probability(x.eye), 0x1p-20f, 1 - 0x1p-20f));
+  add_light(x, lobes, walk.path.sharp() && x.bsdf.has_diffuse(), walk);
+  return !(here.direct && !x.bsdf.has_specular()) && leave(x, material, here, lobes, walk);
+}
+
+void EyeTracer::follow(Walk walk) const {
+  while (step(walk)) {}
 }
 
 }  // namespace

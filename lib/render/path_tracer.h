@@ -119,8 +119,8 @@ struct PathParts {
   }
 };
 
-/// How many samples of each part a path takes at its first matte surfaces, and the numbers of the first of each: they are drawn from the pixel's
-/// sequences of these parts. The parts are the sums of so many samples.
+/// How many samples of each part a path takes at its first matte surfaces, and the numbers of the first of each: they are drawn from the
+/// pixel's sequences of these parts. The parts are the sums of so many samples.
 struct PathEffort {
   std::uint32_t lit = 1, onward = 1;
   std::uint32_t lit_first = 0, onward_first = 0;
@@ -157,8 +157,8 @@ struct RenderScene {
 /// `cone` is the pixel's, for the level of textures (CameraView::cone); the default reads their finest level.
 Layers trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const PixelRandom& random, const KnownLight* known,
                       RayCounts& counts, RayCone cone = {});
-/// The same of a ray whose first hit is known (surface kNone: nothing), by parts. The weights that join light sampling and scattering are those of
-/// one sample of each part, whatever `effort` says: so each part divided by its number is right by itself.
+/// The same of a ray whose first hit is known (surface kNone: nothing), by parts. The weights that join light sampling and scattering are
+/// those of one sample of each part, whatever `effort` says: so each part divided by its number is right by itself.
 PathParts trace_eye_path(const RenderScene& scene, const Ray& camera_ray, const Hit& first, const PixelRandom& random,
                          const KnownLight* known, RayCounts& counts, RayCone cone, const PathEffort& effort);
 

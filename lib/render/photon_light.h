@@ -17,10 +17,10 @@ struct PhotonLightOptions {
   bool caustic_only = false;      ///< indirect light comes from elsewhere: index the caustic photons alone
 };
 
-/// While one of these lives, its thread remembers the caustic light that it looks up: for the samples of one pixel, which see one place as a rule. A
-/// place near a remembered one of the same surface, nearer than light changes there (FootprintDensity::estimate_around), has its light. What a pixel shows is
-/// then the light of a few of its places in place of all: the same in the mean. One at a time in a thread; made anew for each pixel, so that results do not
-/// depend on which pixels a thread has seen before.
+/// While one of these lives, its thread remembers the caustic light that it looks up: for the samples of one pixel, which see one place as
+/// a rule. A place near a remembered one of the same surface, nearer than light changes there (FootprintDensity::estimate_around), has its
+/// light. What a pixel shows is then the light of a few of its places in place of all: the same in the mean. One at a time in a thread;
+/// made anew for each pixel, so that results do not depend on which pixels a thread has seen before.
 class CausticMemory {
  public:
   CausticMemory();
@@ -43,7 +43,8 @@ class PhotonLight {
 
   /// Irradiance [W/m^2] by light of kind caustic, on the lit side of the surface.
   Rgb caustic(Vec3 position, const LitSurface& surface) const;
-  /// The same of kind indirect, on the side of the normal (unit, geometric); only if has_indirect(). Normal maps count by their finest level.
+  /// The same of kind indirect, on the side of the normal (unit, geometric); only if has_indirect(). Normal maps count by their finest
+  /// level.
   Rgb indirect(Vec3 position, Vec3 normal) const;
   bool has_indirect() const { return has_indirect_; }
   std::size_t photon_count() const { return (caustic_ ? caustic_->photon_count() : 0) + indirect_.size(); }

@@ -5,9 +5,11 @@
 namespace tempolux {
 namespace {
 
-constexpr double kBetween = 0.1, kSharp = 0.125;   // of its variance: of two stratified numbers, so more samples take off more than their share
+constexpr double kBetween = 0.1, kSharp = 0.125;   // of its variance: of two stratified numbers, so more samples take off more than their
+                                                   // share
 constexpr double kStratified = 0.875, kTypical = 12;
-/// Costs in shadow rays: of a whole typical sample; of a camera ray with its surface; of a light sample; the least that is said of a ray onward.
+/// Costs in shadow rays: of a whole typical sample; of a camera ray with its surface; of a light sample; the least that is said of a ray
+/// onward.
 constexpr double kWhole = 4, kOwn = 1.2, kLit = 1, kLeastOnward = 1;
 
 /// Each half of a pixel's samples needs one.
@@ -100,8 +102,8 @@ double PixelNoise::own_variance(int x, int y) const {
   return kSharp * (within + (options_.samples == 1 ? 1 : kBetween) * std::max(0.0, between)) + mirrored / n;
 }
 
-/// The parts are judged apart. Light sampling by what stratification leaves of it: the difference of pixels' halves, of single samples the variance
-/// between pixels. Rays onward by the variance of samples: few of them meet what is bright.
+/// The parts are judged apart. Light sampling by what stratification leaves of it: the difference of pixels' halves, of single samples the
+/// variance between pixels. Rays onward by the variance of samples: few of them meet what is bright.
 PartCounts PixelNoise::wanted_at(int x, int y, double times) const {
   const double a = first_half_, b = options_.samples - first_half_;
   double n = 0, level = 0, lit = 0, lit_square = 0, onward = 0, onward_square = 0, within = 0, rays = 0;

@@ -11,13 +11,15 @@ namespace tempolux {
 
 /// Variance of what n, sum and sum of squares are of; 0 of one.
 double sample_variance(double n, double sum, double square);
-/// By what a pixel may err: e = pixel_error sqrt(l picture + (picture / 10)^2), l = min(level, picture); level is the radiance around the pixel, picture the picture's
-/// mean (docs/pixels.md).
+/// By what a pixel may err: e = pixel_error sqrt(l picture + (picture / 10)^2), l = min(level, picture); level is the radiance around the
+/// pixel, picture the picture's mean (docs/pixels.md).
 double allowed_error(double level, double picture, double pixel_error);
-/// Samples of a part of a pixel's light that are to leave the pixel the error e, if sigma is the noise of one and `cost` what it costs in rays (docs/pixels.md); 0 of e = 0.
+/// Samples of a part of a pixel's light that are to leave the pixel the error e, if sigma is the noise of one and `cost` what it costs in
+/// rays (docs/pixels.md); 0 of e = 0.
 double wanted_samples(double sigma, double cost, double error);
 
-/// Samples of the parts lit and onward to a camera ray, at most. Samples of one place miss what differs between the places of a pixel: edges of shadows, folds.
+/// Samples of the parts lit and onward to a camera ray, at most. Samples of one place miss what differs between the places of a pixel:
+/// edges of shadows, folds.
 inline constexpr int kMostLit = 2, kMostOnward = 2;
 
 /// Noise of a picture whose pixels have their first samples, and what more they need: docs/pixels.md derives it.

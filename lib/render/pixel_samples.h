@@ -19,7 +19,8 @@ struct PartCounts {
 /// Sums over one pixel's samples.
 struct PixelSum {
   LayersT<double> own, lit, onward;
-  double seen_square = 0, mirrored_square = 0, onward_square = 0;   ///< of seen(), mirrored() of `own` and value() of `onward`, of single samples
+  double seen_square = 0, mirrored_square = 0, onward_square = 0;   ///< of seen(), mirrored() of `own` and value() of `onward`, of single
+                                                                    ///< samples
   bool for_filter = false;                    ///< FrameOptions::for_filter: noise is of layer specular alone
   void add(const PathParts& sample) {
     add(sample.own, own);
@@ -114,8 +115,8 @@ void for_each_pixel(const CameraView& view, const FrameOptions& options, RayCoun
                 [&](RayCounts& counts) { return [&](std::size_t pixel, int x, int y) { body(pixel, x, y, counts); }; });
 }
 
-/// Deals samples of the parts out to a pixel's camera rays: as evenly as whole numbers allow, each ray with the same probability, as all are moved
-/// by one random number. So a part's mean over its samples is right whatever their number.
+/// Deals samples of the parts out to a pixel's camera rays: as evenly as whole numbers allow, each ray with the same probability, as all
+/// are moved by one random number. So a part's mean over its samples is right whatever their number.
 class Dealt {
  public:
   Dealt(std::uint64_t seed, std::uint64_t pixel, const PartCounts& first, const PartCounts& counts)
@@ -158,28 +159,19 @@ class SampleSequence {
 template <class Add>
 void for_each_sample(const RenderScene& scene, const CameraView& view, const FrameOptions& options,
                      std::size_t pixel, int x, int y, const PartCounts& first, const PartCounts& count, SampleHalves* halves, RayCounts& counts, const Add& add) {
-  constexpr int kTogether = 8, kFewest = 3;   // rays of a pixel go nearly the same way: from three on a packet pays
   const SampleSequence sequence(options, pixel, first, count);
   CausticMemory caustics;
-  for (int done = 0; done < count.own; done += kTogether) {
-    const int n = std::min(kTogether, count.own - done);
-    Ray rays[kTogether];
-    Hit hits[kTogether];
-    for (int i = 0; i < n; ++i) {
-      const Vec2 jitter = sequence.random(done + i).get2(0, Purpose::pixel);
-      rays[i] = view.ray(float(x) + jitter.x, float(y) + jitter.y);
-    }
-    if (n < kFewest)
-      for (int i = 0; i < n; ++i) scene.tracer.intersect(rays[i], hits[i]);
-    else
-      scene.tracer.intersect({rays, std::size_t(n)}, {hits, std::size_t(n)});
-    for (int i = 0; i < n; ++i) {
-      const PathEffort effort = sequence.effort(done + i);
-      caustics.use_half(sequence.half(done + i));
-      const PathParts parts = trace_eye_path(scene, rays[i], hits[i], sequence.random(done + i), options.known, counts, view.cone(), effort);
-      if (halves) halves->add(sequence.half(done + i, *halves), parts, effort);
-      add(done + i, parts);
-    }
+  for (int i = 0; i < count.own; ++i) {
+    const PixelRandom random = sequence.random(i);
+    const PathEffort effort = sequence.effort(i);
+    const Vec2 jitter = random.get2(0, Purpose::pixel);
+    const Ray ray = view.ray(float(x) + jitter.x, float(y) + jitter.y);
+    Hit hit;
+    scene.tracer.intersect(ray, hit);
+    caustics.use_half(sequence.half(i));
+    const PathParts parts = trace_eye_path(scene, ray, hit, random, options.known, counts, view.cone(), effort);
+    if (halves) halves->add(sequence.half(i, *halves), parts, effort);
+    add(i, parts);
   }
 }
 

@@ -112,7 +112,8 @@ void blur(std::vector<double>& image, int width, int height, int r) {
   });
 }
 
-/// Spreads what `excess` names (one level of one layer): w blur(excess / blur(w)), whose sum is that of `excess` for any weights w, here 0 and 1.
+/// Spreads what `excess` names (one level of one layer): w blur(excess / blur(w)), whose sum is that of `excess` for any weights w, here 0
+/// and 1.
 void spread(std::span<const Excess> excess, int width, int height, const std::vector<double>& weight, const std::vector<double>& blurred,
             std::vector<Layers>& pixels) {
   const int r = 1 << excess.front().level;

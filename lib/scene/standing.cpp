@@ -77,16 +77,6 @@ SceneFrame standing_scene(SceneFrame frame) {
   return frame;
 }
 
-std::vector<bool> moving_objects(const SceneFrame& frame) {
-  std::vector<bool> moves;
-  for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s) {
-    const std::size_t object = frame.surfaces[s].object;
-    if (object >= moves.size()) moves.resize(object + 1);
-    moves[object] = true;
-  }
-  return moves;
-}
-
 bool light_moves(const SceneFrame& frame) {
   if (frame.static_count < frame.surfaces.size()) return true;
   for (const PlacedLight& placed : frame.lights)

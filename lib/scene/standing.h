@@ -18,8 +18,6 @@ SceneFrame standing_scene(SceneFrame frame);
 
 /// Does anything move that light meets or comes from?
 bool light_moves(const SceneFrame& frame);
-/// By object: does one of its surfaces move in the segment?
-std::vector<bool> moving_objects(const SceneFrame& frame);
 
 /// Where what moves is: boxes, scene space, m, a little larger than what is in them.
 struct MovingBoxes {

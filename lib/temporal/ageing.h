@@ -14,8 +14,8 @@ enum class AgeWeight { linear, square, oldest };
 /// random integer mapped through the cumulated weights]. Cells of one age are one class, so a draw costs a step a class.
 class AgeDraw {
  public:
-  /// Ages are 1 to formats::kMaxAge; cells of that age are always drawn. `drawn` receives `count` cells, or all if there are fewer, or those of
-  /// that age if there are more. `key`: of the random numbers, another one in each draw.
+  /// Ages are 1 to formats::kMaxAge; cells of that age are always drawn. `drawn` receives `count` cells, or all if there are fewer, or
+  /// those of that age if there are more. `key`: of the random numbers, another one in each draw.
   void draw(std::span<const std::uint16_t> ages, std::size_t count, AgeWeight weight, std::uint64_t key,
             std::vector<std::uint32_t>& drawn);
 

@@ -36,7 +36,8 @@ struct KeptHemispheres {
   std::shared_ptr<SampleShelf> shelf;   ///< for samples that are more than may stay in memory; none: all stay
 };
 
-/// Brings a record's samples here; puts them back, changed; lets go of them, unchanged; gives up their place. Without a shelf they are always here.
+/// Brings a record's samples here; puts them back, changed; lets go of them, unchanged; gives up their place. Without a shelf they are
+/// always here.
 void fetch(const KeptHemispheres& all, KeptHemisphere& kept);
 void put_back(const KeptHemispheres& all, KeptHemisphere& kept);
 void let_go(const KeptHemispheres& all, KeptHemisphere& kept);

@@ -19,7 +19,10 @@ double lamp_power(const SceneFrame& frame) {
     const double emission = double(luminance(frame.materials[s.material].emission));
     if (!(emission > 0)) continue;
     double area = 0;
-    for (const auto& t : s.primitive->triangles) area += 0.5 * double(length(cross(s.position(t[1]) - s.position(t[0]), s.position(t[2]) - s.position(t[0]))));
+    for (const auto& t : s.primitive->triangles) {
+      const Vec3 a = s.position(t[0]), b = s.position(t[1]), c = s.position(t[2]);
+      area += 0.5 * double(length(cross(b - a, c - a)));
+    }
     power += std::numbers::pi * emission * area;
   }
   return power;

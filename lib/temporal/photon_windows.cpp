@@ -60,8 +60,8 @@ void each_step(int reach, const Visit& visit) {
 int tests_of(double rate, const Added& most, int reach) {
   int tests = 0;
   each_step(reach, [&](int from, int to) {
-    const auto within = [](int distance, int side) { return std::min(distance, side); };
-    const int old = 1 + within(from, most.before) + within(from, most.after), added = 1 + within(to, most.before) + within(to, most.after) - old;
+    const auto frames = [&](int distance) { return 1 + std::min(distance, most.before) + std::min(distance, most.after); };
+    const int old = frames(from), added = frames(to) - old;
     tests += added > 0 && std::min(old, added) * rate >= kPhotonsInBlock;
   });
   return tests;
@@ -69,7 +69,8 @@ int tests_of(double rate, const Added& most, int reach) {
 
 class Grower {
  public:
-  Grower(const WindowSeries& series, int at, int frames, const Added& most, const WindowThresholds& thresholds) : series_(series), at_(at) {
+  Grower(const WindowSeries& series, int at, int frames, const Added& most, const WindowThresholds& thresholds)
+      : series_(series), at_(at) {
     int tests = 0;
     for (const HitSeries* region : {series.element, series.kernel, series.ring})
       tests += tests_of(region->block(0, frames - 1).photons / frames, most, thresholds.reach());
@@ -80,7 +81,8 @@ class Grower {
   /// neither does by itself, light passes through an extreme, and neither may.
   Sides sides(const Window& window, const Added& added) const {
     if (added.frames() == 0 || !differs(window, added)) return {true, true};
-    const bool before = added.before > 0 && differs(window, {added.before, 0}), after = added.after > 0 && differs(window, {0, added.after});
+    const bool before = added.before > 0 && differs(window, {added.before, 0});
+    const bool after = added.after > 0 && differs(window, {0, added.after});
     return {after && !before && added.before > 0, before && !after && added.after > 0};
   }
 
@@ -142,7 +144,8 @@ HitTable table_of(std::span<const FrameCounts* const> frames, const std::vector<
       for (const formats::MeshElement& e : frames[f]->elements) {
         const auto found = sides.find(key(e));
         if (found == sides.end()) continue;   // it has no area now
-        if (elements[found->second].cuts != e.cuts) throw std::invalid_argument("collect_windows: a triangle is cut otherwise in frame " + std::to_string(frames[f]->frame));
+        if (elements[found->second].cuts != e.cuts)
+          throw std::invalid_argument("collect_windows: a triangle is cut otherwise in frame " + std::to_string(frames[f]->frame));
         visit(found->second + e.cell, HitTable::Entry{&e, f});
       }
   };
@@ -200,7 +203,9 @@ class Regions {
 /// The regions around each element.
 class Surroundings {
  public:
-  Surroundings(std::span<const FrameCounts* const> frames, const HitTable& table, const std::vector<formats::MeshElement>& elements, double edge)
+  /// `edge` [m]: of the kernels' cubes.
+  Surroundings(std::span<const FrameCounts* const> frames, const HitTable& table, const std::vector<formats::MeshElement>& elements,
+               double edge)
       : kernels_(frames.size(), edge), rings_(frames.size(), 3 * edge), all_(frames.size()), of_(elements.size()) {
     for (std::size_t i = 0; i < elements.size(); ++i) {
       of_[i] = {kernels_.add(elements[i]), rings_.add(elements[i])};
@@ -234,8 +239,17 @@ std::pair<int, int> between_jumps(std::span<const FrameCounts* const> frames, in
   return {first, last};
 }
 
+/// A window, the frame that it is around, and whether the element's size may differ from frame to frame.
+struct PlacedWindow {
+  int now = 0;
+  Window window;
+  bool changes_size = false;
+};
+
 /// Writes the photons of the window into the element. Returns their flux in a frame [unit], for the area that the element has.
-Rgbd put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries, int now, const Window& window, bool changes_size, formats::MeshElement& e) {
+Rgbd put_window(std::span<const FrameCounts* const> frames, std::span<const HitTable::Entry> entries, const PlacedWindow& placed,
+                formats::MeshElement& e) {
+  const auto& [now, window, changes_size] = placed;
   e.before = std::uint8_t(window.before);
   e.after = std::uint8_t(window.after);
   Rgbd flux{0.0};
@@ -302,8 +316,8 @@ Window grow_window(const WindowSeries& series, int at, int frames, const WindowT
   return window;
 }
 
-CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::size_t at, std::uint32_t moving, const WindowOptions& options,
-                               std::vector<formats::MeshElement>& elements) {
+CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::size_t at, std::uint32_t moving,
+                               const WindowOptions& options, std::vector<formats::MeshElement>& elements) {
   const auto [first, last] = between_jumps(frames, int(at));
   frames = frames.subspan(std::size_t(first), std::size_t(last - first + 1));
   const int now = int(at) - first;
@@ -320,9 +334,10 @@ CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::
       for (const HitTable::Entry& entry : table.of(i)) own.at(entry.frame) += hits_of(*entry.counted, unit_of(frames, entry));
       own.sum_up();
       const Window window = grow_window({&own, &kernel, &around.ring(i), &around.all()}, now, int(frames.size()), thresholds);
-      result.flux[i] = put_window(frames, table.of(i), now, window, elements[i].surface >= moving, elements[i]);
+      result.flux[i] = put_window(frames, table.of(i), {now, window, elements[i].surface >= moving}, elements[i]);
       const double photons = kernel.block(now - window.before, now + window.after).photons;
-      result.widths[i] = float(photons > 0 ? std::clamp(kernel_width(around.kernel_area(i), photons, kPhotonsInWindow), options.width, widest) : widest);
+      const double width = photons > 0 ? kernel_width(around.kernel_area(i), photons, kPhotonsInWindow) : widest;
+      result.widths[i] = float(std::clamp(width, options.width, widest));
     }
   });
   return result;

@@ -15,8 +15,8 @@ namespace tempolux {
 struct WindowOptions {
   int reach = 16;                  ///< frames to each side at most
   double false_alarms = 0.005;     ///< share of the windows that close early though light is stationary
-  double width = 1;                ///< m: least deviation of the Gaussian by which irradiance is smoothed afterwards; where photons are few, or
-                                   ///< windows short, it is wider, up to what counts kPhotonsInKernel photons of a single frame
+  double width = 1;                ///< m: least deviation of the Gaussian by which irradiance is smoothed afterwards; where photons
+                                   ///< are few it is wider, up to what counts kPhotonsInKernel photons of a single frame
 };
 
 /// Photons of one frame, counted by element.
@@ -39,8 +39,8 @@ struct HitBlock {
 
 /// Is the light of `added` frames that of `old` ones? Standard deviations by which the flux of the added frames differs from their share
 /// of all photons: each photon of both falls into an added frame with probability p = added / (old + added), so the flux there has
-/// mean p S and variance p (1 - p) Q, S and Q sums over both, and skewness g = (1 - 2 p) / sqrt(p (1 - p)) sqrt(Q) / S, exactly so for photons
-/// of equal power. The deviation z is made that of a Gaussian by z - g (z^2 - 1) / 6 (Cornish and Fisher). 0 if there are no photons.
+/// mean p S and variance p (1 - p) Q, S and Q sums over both, and skewness g = (1 - 2 p) / sqrt(p (1 - p)) sqrt(Q) / S, exactly
+/// so for photons of equal power. The deviation z is made that of a Gaussian by z - g (z^2 - 1) / 6 (Cornish and Fisher). 0 if there are no photons.
 double block_contrast(const HitBlock& old, int old_frames, const HitBlock& added, int added_frames);
 
 /// Deviations beyond which a test rejects, so that all tests of a window together reject stationary light with probability
@@ -95,7 +95,7 @@ struct CollectedLight {
 
 /// Fills photons, sums and windows of `elements` (all_elements() at frames[at]) from `frames`, consecutive ones of a segment; elements of
 /// surfaces from `moving` on may change their size. std::invalid_argument if counts are of other elements.
-CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::size_t at, std::uint32_t moving, const WindowOptions& options,
-                               std::vector<formats::MeshElement>& elements);
+CollectedLight collect_windows(std::span<const FrameCounts* const> frames, std::size_t at, std::uint32_t moving,
+                               const WindowOptions& options, std::vector<formats::MeshElement>& elements);
 
 }  // namespace tempolux

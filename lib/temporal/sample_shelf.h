@@ -13,8 +13,8 @@
 
 namespace tempolux {
 
-/// Keeps the samples of records (12 bytes each with their anchors) in memory up to a limit, the others in a file without a name, gone when the
-/// process ends however it ends. Threads may use different records side by side.
+/// Keeps the samples of records (12 bytes each with their anchors) in memory up to a limit, the others in a file without a name, gone when
+/// the process ends however it ends. Threads may use different records side by side.
 class SampleShelf {
  public:
   /// Where the samples of a record are. Belongs to one record.
@@ -25,8 +25,8 @@ class SampleShelf {
     static constexpr std::int64_t in_memory = -1;
   };
 
-  /// `limit`: bytes of samples that may stay in memory. `folder`: of the file, which is made when it is needed first. ResourceError from any of the others
-  /// if it cannot be made, written or read.
+  /// `limit`: bytes of samples that may stay in memory. `folder`: of the file, which is made when it is needed first. ResourceError from
+  /// any of the others if it cannot be made, written or read.
   SampleShelf(std::string folder, std::uint64_t limit);
   ~SampleShelf();
   SampleShelf(const SampleShelf&) = delete;

@@ -8,12 +8,13 @@
 #include "lib/core/check.h"
 #include "lib/core/parallel.h"
 #include "lib/scene/deform.h"
+#include "lib/scene/moving_objects.h"
 #include "lib/temporal/light_changes.h"
 
 namespace tempolux {
 namespace {
 
-constexpr int kSteps = 27;             ///< of strata: 8 x 9 times the rays, in steps of 2^(1/4), and one
+constexpr int kSteps = 15;             ///< of strata: 9 times the rays, in steps of 2^(1/4), and one
 constexpr int kStepForEvenness = 1;    ///< 2^(1/4): at equal rays noise is 9 % more, worth 19 % of them (docs/methods/temporal.md)
 constexpr int kFadingFrames = 4;
 constexpr float kLeastOfHidden = 1.0f / 64;   ///< of the smallest radius: radii stay above 0
@@ -55,13 +56,9 @@ struct TemporalGather::Marked {
 };
 
 std::size_t anchored_points(const SceneFrame& frame, std::span<const IrradiancePoint> points) {
-  std::vector<bool> moves;
-  for (std::size_t s = frame.static_count; s < frame.surfaces.size(); ++s) {
-    moves.resize(std::max<std::size_t>(moves.size(), frame.surfaces[s].object + 1));
-    moves[frame.surfaces[s].object] = true;
-  }
+  const MovingObjects moving(frame);
   std::size_t count = 0;
-  while (count < points.size() && !(points[count].object < moves.size() && moves[points[count].object])) ++count;
+  while (count < points.size() && !moving.contains(points[count].object)) ++count;
   return count;
 }
 
@@ -137,8 +134,8 @@ void TemporalGather::shoot(const SurfacePoint& place, KeptHemisphere& kept, cons
   }
 }
 
-/// Is the smallest radius, which lets a record cover pixels around it, no longer this record's due: something has come close, and hidden it? Behind a lamp that
-/// glides along a ceiling it is dark; it would darken what is seen beside the lamp.
+/// Is the smallest radius, which lets a record cover pixels around it, no longer this record's due: something has come close, and hidden
+/// it? Behind a lamp that glides along a ceiling it is dark; it would darken what is seen beside the lamp.
 bool TemporalGather::outlived(const SurfacePoint& place, const formats::RadsamplesRecord& before, const IrradianceRecord& made) const {
   const float smallest = placement_.min_radius_px * before.footprint;
   const bool had_its_own = std::abs(before.radius - smallest) > 1e-4f * smallest;

@@ -193,8 +193,9 @@ def rms(values):
 
 
 def equal():
-    frames = options.frames or 8
-    span = f"0-{frames - 1}"
+    frames, first = options.frames or 8, 20      # in the middle of the segment, where windows are whole
+    few = min(3, frames)                         # frames with a reference
+    span, judged = f"{first}-{first + frames - 1}", f"{first}-{first + few - 1}"
     print("| scene | error, windows | one frame of 845 k | one frame of 25 k | flicker, windows / 25 k |\n|---|---:|---:|---:|---:|")
     for name in options.scenes.split(","):
         file, words = scene_of(name)
@@ -202,17 +203,18 @@ def equal():
         folder = f"equal-{name}"
         photons(folder, file, "0-47", "25k", "p.####.photons", *words)
         run(folder, "gather-temporal", "density", file, "--frames", "0-47", "--photons", "p.####.photons", *words, "-o", "windows.####.meshirrad")
-        for count, kind in (("845k", "many"), ("25k", "few"), ("6M", "true")):
+        for count, kind in (("845k", "many"), ("25k", "few"), ("8M", "true")):
             own = "p.####.photons"
             if kind != "few":
                 own = f"{kind}.####.photons"
-                run(folder, "photon-trace", file, "--frames", span if kind == "many" else f"0-{min(2, frames - 1)}", "--photons", count, "--seed", 7, "--kinds", "indirect", "-o", own, *words)
-            run(folder, "st-filter", "mesh", file, "--frames", span if kind != "true" else f"0-{min(2, frames - 1)}", "--photons", own, *words, "-o", f"{kind}.####.meshirrad")
+                run(folder, "photon-trace", file, "--frames", span if kind == "many" else judged, "--photons", count, "--seed", 7, "--kinds", "indirect", "-o", own, *words)
+            width = mesh.read_meshirrad(options.work / folder / "windows.0020.meshirrad").header["filter"].split()[1]   # the same blur for all
+            run(folder, "st-filter", "mesh", file, "--filter-width", width, "--cell", 2 * float(width), "--frames", span if kind != "true" else judged, "--photons", own, *words, "-o", f"{kind}.####.meshirrad")
         shown = {}
         for kind in ("windows", "many", "few", "true"):
-            run(folder, "frame-render", file, "--frames", span if kind != "true" else f"0-{min(2, frames - 1)}", "--size", options.size, "--meshirrad", f"{kind}.####.meshirrad", *words,
+            run(folder, "frame-render", file, "--frames", span if kind != "true" else judged, "--size", options.size, "--meshirrad", f"{kind}.####.meshirrad", *words,
                 "--spp", 4, "--channels", "layers", "-o", f"{kind}.####.exr")
-            shown[kind] = [layer(options.work / folder / f"{kind}.{f:04}.exr") for f in range(frames if kind != "true" else min(3, frames))]
+            shown[kind] = [layer(options.work / folder / f"{kind}.{f:04}.exr") for f in range(first, first + (frames if kind != "true" else few))]
 
         def error_of(kind):
             return rms(rms(a - b for a, b in zip(x, t)) for x, t in zip(shown[kind], shown["true"]))

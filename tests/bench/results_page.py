@@ -175,7 +175,10 @@ def measured(found):
     """What was measured, as it says itself or as the first row of its table does: its name and its last two columns."""
     if found.get("measured"):
         return found["measured"]
-    header, _, row = (line[2:-2].split(" | ") for line in re.findall(r"^\|.*\|$", section("", found, ""), re.M)[:3])
+    lines = [line[2:-2].split(" | ") for line in re.findall(r"^\|.*\|$", section("", found, ""), re.M)]
+    if len(lines) < 3:
+        return ""
+    header, _, row = lines[:3]
     return f"{row[0]}: " + ", ".join(f"{name} {cell}" for name, cell in list(zip(header, row))[1:][-2:])
 
 

@@ -20,9 +20,9 @@ run SCENE=$scene METHOD=preview PHOTONS=10k OUT="$work/preview"
   bad 'not six counts, six windows and no record'
 run SCENE=$scene PHOTONS=100k POINTS='--point-count 1k' CACHE='--rays 50 --error-bound 0.5' OUT="$work/frames"
 "$bin/aqm-compare" "$work/preview/frames/%04d.exr" "$work/frames/frames/%04d.exr" --frames 0-5 --layer indirect --json "$work/c.json" -q > /dev/null
-# Six frames of 10 000 paths: 60 000 under kernels of up to 2500 photons are blurred over a metre, in corners by half of the light; the mean is right within 2 %.
-python3 -c 'import json, sys; t = json.load(open(sys.argv[1]))["total"]; e = t["rmse"] / t["mean_reference"], t["bias"]; print(e); sys.exit(e[0] > 0.3 or abs(e[1]) > 0.05)' "$work/c.json" ||
-  bad 'differs from METHOD=frames by more than 30 %, or its mean by more than 5 %'
+# Six frames of 10 000 paths: 60 000 under kernels of up to 2500 photons are blurred over half a metre: 14 % where it matters; the mean is right within 1.5 %.
+python3 -c 'import json, sys; t = json.load(open(sys.argv[1]))["total"]; e = t["rmse"] / t["mean_reference"], t["bias"]; print(e); sys.exit(e[0] > 0.2 or abs(e[1]) > 0.03)' "$work/c.json" ||
+  bad 'differs from METHOD=frames by more than 20 %, or its mean by more than 3 %'
 digests "$work/preview" > "$work/expected"
 
 run SCENE=$scene METHOD=preview PHOTONS=10k OUT="$work/preview"
@@ -37,5 +37,6 @@ edit $scene "$work/still.glb" still
 edit "$work/still.glb" "$work/walk.glb" camera-from 2
 run SCENE="$work/walk.glb" METHOD=preview PHOTONS=1k OUT="$work/walk"
 [ "$(files "$work/walk" photons photons) $(files "$work/walk" textures meshirrad) $(files "$work/walk" windows meshirrad)" = '1 1 0' ] || bad 'a walk: not one map and one texture'
-grep -q -- '--photons 33000' "$work/walk/plan.mk" || bad 'a walk: not 33 times as many paths'
+paths=$(sed -n 's/.*--photons \([0-9]*\) .*/\1/p' "$work/walk/plan.mk")
+[ "$((paths % 33))" = 0 ] && [ "$paths" -ge 33000 ] || bad "a walk: not 33 times as many paths, $paths"
 exit $failed

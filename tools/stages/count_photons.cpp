@@ -28,11 +28,13 @@ std::string kinds_text(const CountOptions& options) {
 }
 
 formats::PhotonMap read_map(Tool& tool, const std::string& name, const SceneFrame& frame, const CountOptions& options) {
-  formats::PhotonMap map = formats::load_photons(name, [&](const formats::PhotonHeader&, const formats::Photon& photon) { return wants(options, photon.kind); });
+  const auto wanted = [&](const formats::PhotonHeader&, const formats::Photon& photon) { return wants(options, photon.kind); };
+  formats::PhotonMap map = formats::load_photons(name, wanted);
   tool.depends_on(name);
   check_identity(tool, name, map.header.identity, frame);
   if (map.header.map != "global" || !map.header.part.empty())
-    throw InputError(name + ": holds a part of the light (" + (map.header.part.empty() ? map.header.map : map.header.part) + "); name a global map");
+    throw InputError(name + ": holds a part of the light (" + (map.header.part.empty() ? map.header.map : map.header.part) +
+                     "); name a global map");
   for (const std::string& kind : options.kinds)
     if (("," + map.header.kinds + ",").find("," + kind + ",") == std::string::npos)
       throw InputError(name + ": has no photons of kind " + kind + "; trace them with --kinds, or leave the kind out");
@@ -70,7 +72,10 @@ class SegmentFrames {
 /// Of windows: the same in all frames of a segment, so they follow from the paths and not from the photons that were stored.
 MeshOptions widths_of_windows(const CountOptions& options, const SceneFrame& first, std::uint64_t paths) {
   MeshOptions mesh = window_widths(surface_area(first), double(paths) * options.frames);
-  if (options.mesh.filter.width > 0) mesh.filter.width = options.mesh.filter.width, mesh.cell = kCellOfWindows * mesh.filter.width;
+  if (options.mesh.filter.width > 0) {
+    mesh.filter.width = options.mesh.filter.width;
+    mesh.cell = kCellOfWindows * mesh.filter.width;
+  }
   if (options.mesh.cell > 0) mesh.cell = options.mesh.cell;
   return mesh;
 }
@@ -79,14 +84,15 @@ MeshOptions widths_of_windows(const CountOptions& options, const SceneFrame& fir
 
 void add_count_options(CLI::App& app, CountOptions& options) {
   app.add_option("--photons", options.photons, ".photons file of the frame, or a pattern")->type_name("FILE");
-  app.add_option("--kinds", options.kinds, "kinds of light that are counted: direct,caustic,indirect; frame-render takes indirect, or caustic,indirect without a map")
+  app.add_option("--kinds", options.kinds, "kinds of light that are counted: direct,caustic,indirect; frame-render takes indirect, or "
+                                           "caustic,indirect without a map")
       ->delimiter(',')->type_name("NAMES")->default_str("indirect")->check(CLI::IsMember({"direct", "caustic", "indirect"}));
   app.add_option("--cell", options.mesh.cell, "longest edge of an element, m; 0: the filter's width")
       ->capture_default_str()->check(number_between(0));
 }
 
-formats::MeshirradFile count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const SceneFrame& frame, StandingTree& standing,
-                                     MeshOptions& mesh) {
+CountedPhotons count_photons(Tool& tool, SceneInput& input, const CountOptions& options, const SceneFrame& frame,
+                             StandingTree& standing) {
   tool.stats().phase("read photons");
   const std::string name = frame_name(options.photons, frame.frame);
   const formats::PhotonMap map = read_map(tool, name, frame, options);
@@ -94,12 +100,15 @@ formats::MeshirradFile count_photons(Tool& tool, SceneInput& input, const CountO
   const Tracer tracer(frame, standing);
   tool.stats().phase("count", true);
   SegmentFrames segment(input, frame);
-  formats::MeshirradFile file;
+  CountedPhotons counted;
+  auto& [file, mesh] = counted;
   std::vector<const SceneFrame*> measured{&frame};
   if (options.for_windows) measured = segment.measured();
-  mesh = options.for_windows ? widths_of_windows(options, *measured.front(), map.header.emitted_count) : with_widths(options.mesh, frame, map.photons.size());
+  mesh = options.for_windows ? widths_of_windows(options, *measured.front(), map.header.emitted_count)
+                             : with_widths(options.mesh, frame, map.photons.size());
   const auto& o = map.header.origin;
-  MeshSums sums(tracer, MeshCuts(mesh.cell, measured), unit_of(map.totals.emitted_flux[0] + map.totals.emitted_flux[1] + map.totals.emitted_flux[2]));
+  const auto& emitted = map.totals.emitted_flux;
+  MeshSums sums(tracer, MeshCuts(mesh.cell, measured), unit_of(emitted[0] + emitted[1] + emitted[2]));
   sums.add(map.photons, Vec3(Vec3d{o[0], o[1], o[2]} - frame.origin));
   file.elements = all_elements(frame, sums.cuts());
   put_sums(sums, file.elements);
@@ -115,10 +124,11 @@ formats::MeshirradFile count_photons(Tool& tool, SceneInput& input, const CountO
     leave_out_dark(file.elements);
   }
   if (sums.lost() * 100 > map.photons.size())
-    tool.warn(name + ": no surface was found for " + std::to_string(sums.lost()) + " of " + std::to_string(map.photons.size()) + " photons");
+    tool.warn(name + ": no surface was found for " + std::to_string(sums.lost()) + " of " + std::to_string(map.photons.size()) +
+              " photons");
   tool.stats().count("photons", double(map.photons.size()));
   tool.stats().count("lost_photons", double(sums.lost()));
-  return file;
+  return counted;
 }
 
 void write_mesh(Tool& tool, const formats::MeshirradFile& file, Output& output) {

@@ -30,8 +30,7 @@ void make_texture(Tool& tool, SceneInput& input, const Options& options, int num
   Output output(frame_name(options.output, number), tool.common().no_clobber, Output::Kind::binary);
   tool.stats().phase("evaluate");
   const SceneFrame frame = input.at(number);
-  MeshOptions mesh;
-  formats::MeshirradFile file = count_photons(tool, input, options.count, frame, standing, mesh);
+  auto [file, mesh] = count_photons(tool, input, options.count, frame, standing);
   file.header.history += tool.history_line(number);
   if (!options.count.for_windows) {
     tool.stats().phase("filter", true);

@@ -45,10 +45,16 @@ std::string percent(double value, double error) {
   return text;
 }
 
-std::string audit_line(const AuditEntry& of, const std::vector<AuditEntry>& audit) {
+/// An object by the name that its file gives it; other parts as they are called.
+std::string in_words(const AuditEntry& part, const std::vector<std::string>& object_names) {
+  const bool named = part.object < object_names.size() && !object_names[part.object].empty();
+  return named ? part.part + " \"" + object_names[part.object] + "\"" : part.part;
+}
+
+std::string audit_line(const AuditEntry& of, const std::vector<AuditEntry>& audit, const std::vector<std::string>& object_names) {
   std::string line = std::string(kLayerNames[std::size_t(of.layer)]) + " light " + percent(of.of_layer(), of.of_layer_error()) + " (" + percent(of.share(), of.share_error()) + " of the picture)";
   for (const char* kind : {"object", "tile"})
-    if (const AuditEntry* worst = worst_of(audit, of.layer, kind)) line += ", " + worst->part + " " + percent(worst->of_layer(), worst->of_layer_error());
+    if (const AuditEntry* worst = worst_of(audit, of.layer, kind)) line += ", " + in_words(*worst, object_names) + " " + percent(worst->of_layer(), worst->of_layer_error());
   return line;
 }
 
@@ -87,12 +93,13 @@ std::map<std::string, double> account_of(const RenderedFrame& rendered, const st
   return numbers;
 }
 
-void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit, const FrameOptions& asked) {
+void say_account(Tool& tool, const RenderedFrame& rendered, const std::vector<AuditEntry>& audit, const FrameOptions& asked,
+                 const std::vector<std::string>& object_names) {
   for (const auto& [name, value] : account_of(rendered, audit)) tool.stats().set(name, value);
   if (asked.pixel_error > 0) tool.stats().set("at_pixel_limit", rendered.at_limit);
   for (const AuditEntry& entry : audit) {
     if (entry.part != "picture") continue;
-    const std::string line = "audit: " + audit_line(entry, audit);
+    const std::string line = "audit: " + audit_line(entry, audit, object_names);
     tool.say(line);
     if (is_biased(entry) && entry.layer != Layer::direct)
       tool.warn(line + "; more points (irradcache-build --point-count), bright ones apart (photonmap-split, --high), or paths (no files of light) mend it");

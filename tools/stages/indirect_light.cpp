@@ -43,7 +43,7 @@ void IndirectLight::read_points(Tool& tool, const IndirectLightOptions& options,
   known_.points = lookup_.get();
   if (std::ranges::none_of(high_shares, [](float share) { return share > 0; })) return;
   tool.stats().phase("bright points", true);
-  bright_ = std::make_unique<BrightPoints>(tracer, lights, *lookup_, std::move(high_shares), BrightOptions{.seed = seed, .near_factor = KnownLight::kNear});
+  bright_ = std::make_unique<BrightPoints>(tracer, lights, *lookup_, std::move(high_shares), BrightOptions{.seed = seed});
   known_.bright = bright_.get();
   known_.bright_samples = options.high_samples;
   tool.stats().count("bright_points", double(bright_->spot_count()));
@@ -95,6 +95,7 @@ void IndirectLight::read_mesh(Tool& tool, const std::string& name, const SceneFr
   history_ = file.header.history;
   mesh_ = std::make_unique<MeshLight>(file, frame);
   known_.mesh = mesh_.get();
+  known_.mesh_has_caustic = file.header.kinds == "caustic,indirect";
 }
 
 void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneFrame& frame, const InfluenceThresholds& thresholds) {
@@ -105,7 +106,7 @@ void IndirectLight::read_cache(Tool& tool, const std::string& name, const SceneF
     LocalisedRecords records = localised_records(file, frame);
     history_ = records.history;
     localised_ = std::make_unique<LocalisedLight>(records.standing, records.changes, records.gathered, records.least_cosine, thresholds,
-                                                  moving_objects(frame));
+                                                  MovingObjects(frame));
     known_.localised = localised_.get();
     return;
   }

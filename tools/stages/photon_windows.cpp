@@ -32,23 +32,27 @@ struct Counted {
 class Counts {
  public:
   /// `range`: the frames asked for, ascending.
-  Counts(Tool& tool, SceneInput& input, const Options& options, const std::vector<int>& range) : tool_(tool), input_(input), options_(options), range_(range) {
+  Counts(Tool& tool, SceneInput& input, const Options& options, const std::vector<int>& range)
+      : tool_(tool), input_(input), options_(options), range_(range) {
     if (!options.count.photons.empty() || (options.counts.size() == 1 && has_frame_pattern(options.counts[0]))) return;
     for (const std::string& name : options.counts) {
       std::shared_ptr<Counted> counted = read(name);
-      if (!kept_.emplace(counted->counts.frame, counted).second) throw InputError(name + ": counts of frame " + std::to_string(counted->counts.frame) + " are named twice");
+      if (!kept_.emplace(counted->counts.frame, counted).second)
+        throw InputError(name + ": counts of frame " + std::to_string(counted->counts.frame) + " are named twice");
     }
     named_ = true;
   }
   /// Of the frames around one that the range holds; the one itself at `at`.
   std::vector<std::shared_ptr<const Counted>> around(const SceneFrame& frame, std::size_t& at) {
     std::vector<std::shared_ptr<const Counted>> found;
-    const int first = std::max(frame.frame - options_.window.reach, frame.segment.first), last = std::min(frame.frame + options_.window.reach, frame.segment.last);
+    const int first = std::max(frame.frame - options_.window.reach, frame.segment.first);
+    const int last = std::min(frame.frame + options_.window.reach, frame.segment.last);
     std::erase_if(kept_, [&](const auto& kept) { return !named_ && kept.first < first; });
     for (int f = first; f <= last; ++f) {
       const bool here = named_ ? kept_.contains(f) : std::ranges::binary_search(range_, f);
       if (!here && f < frame.frame) found.clear();
-      if (!here && f == frame.frame) throw InputError("frame " + std::to_string(f) + " has no counts; name those that st-filter mesh --counts made of it");
+      if (!here && f == frame.frame)
+        throw InputError("frame " + std::to_string(f) + " has no counts; name those that st-filter mesh --counts made of it");
       if (!here && f > frame.frame) break;
       if (!here) continue;
       if (f == frame.frame) at = found.size();
@@ -64,9 +68,7 @@ class Counts {
   }
   std::shared_ptr<Counted> make(int number) {
     const SceneFrame frame = input_.at(number);
-    MeshOptions mesh;
-    formats::MeshirradFile file = count_photons(tool_, input_, options_.count, frame, standing_, mesh);
-    return keep(std::move(file));
+    return keep(count_photons(tool_, input_, options_.count, frame, standing_).file);
   }
   std::shared_ptr<Counted> read(const std::string& name) {
     tool_.stats().phase("read counts");
@@ -149,8 +151,10 @@ void make_windows(Tool& tool, SceneInput& input, const Options& options, Counts&
 }
 
 void check(const Options& options, const std::vector<int>& frames) {
-  if (options.counts.empty() == options.count.photons.empty()) throw InputError("--photons or --counts: name the photons of the frames, or what st-filter mesh --counts made of them");
-  if (frames.size() > 1 && !has_frame_pattern(options.output)) throw InputError("--output: several frames need a pattern, for example d.####.meshirrad");
+  if (options.counts.empty() == options.count.photons.empty())
+    throw InputError("--photons or --counts: name the photons of the frames, or what st-filter mesh --counts made of them");
+  if (frames.size() > 1 && !has_frame_pattern(options.output))
+    throw InputError("--output: several frames need a pattern, for example d.####.meshirrad");
   if (frames.size() > 1 && !options.count.photons.empty() && !has_frame_pattern(options.count.photons))
     throw InputError("--photons: several frames need a pattern, for example p.####.photons");
 }
@@ -158,20 +162,23 @@ void check(const Options& options, const std::vector<int>& frames) {
 }  // namespace
 
 int photon_windows(int argc, char** argv) {
-  Tool tool("gather-temporal density", "Make light textures from the photons of many frames: each element takes as many as its light stands still.", argc, argv);
+  Tool tool("gather-temporal density",
+            "Make light textures from the photons of many frames: each element takes as many as its light stands still.", argc, argv);
   Options options;
   options.count.for_windows = true;
   CLI::App& app = tool.app();
   app.add_option("scene", options.scene, "glTF 2.0 scene, .gltf or .glb")->required();
   add_count_options(app, options.count);
-  tool.leave_out_of_history(app.add_option("--counts", options.counts, "in place of photons: .meshirrad files of st-filter mesh --counts, of the frame and those around it, or a pattern")
-      ->type_name("FILE..."));
+  tool.leave_out_of_history(app.add_option("--counts", options.counts,
+                                           "in place of photons: .meshirrad files of st-filter mesh --counts, of the frame and those around "
+                                           "it, or a pattern")->type_name("FILE..."));
   app.add_option("--reach", options.window.reach, "frames that a window reaches to each side at most")
       ->capture_default_str()->check(number_between(0, 127));
   app.add_option("--false-alarms", options.window.false_alarms, "share of windows that close early though light stands still")
       ->capture_default_str()->check(number_between(1e-9, 0.5));
   app.add_option("--filter-width", options.count.mesh.filter.width,
-                 "least deviation of the Gaussian by which elements are smoothed, m; it is wider where fewer than 2500 photons count in the mean; 0: half of --cell")
+                 "least deviation of the Gaussian by which elements are smoothed, m; it is wider where fewer than 2500 photons count in the "
+                 "mean; 0: half of --cell")
       ->capture_default_str()->check(number_between(0));
   tool.output_option(options.output, ".meshirrad file, or a pattern")->required();
   tool.common_options(uses_scene | uses_frames);

@@ -146,7 +146,7 @@ TEST(Divide, PartsAddUpToTheLastBit) {
 TEST(EnergyCells, ASpotKeepsItsMultipleOfTheMean) {
   // 20000 photons on 64 m^2 and 20000 more on one of them. Mean irradiance 625, in the spot 20312.
   const PhotonBlock block = floor_with_spot(20000, 20000, 1);
-  const EnergyCells cells = cells_of(block, 0.5, {4, -1});
+  const EnergyCells cells = cells_of(block, 0.5, {4});
   // Each cell's area deviates by less than 10 %, 1 / sqrt(256 cells) of that in the sum.
   EXPECT_NEAR(cells.area(), 64, 64 * 0.02);
   EXPECT_EQ(cells.energy(), 3 * 40000);
@@ -170,12 +170,12 @@ TEST(EnergyCells, OrderAndBlocksDoNotMatter) {
 TEST(EnergyCells, LimitsZeroAndInfinityAreAllAndNothing) {
   const PhotonBlock block = floor_with_spot(2000, 2000, 3);
   constexpr double inf = std::numeric_limits<double>::infinity();
-  for (const EnergyLimit limit : {EnergyLimit{0, -1}, EnergyLimit{4, 0}}) {
+  for (const EnergyLimit limit : {EnergyLimit{0}, EnergyLimit{4, 0}}) {
     const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
     EXPECT_EQ(parts.high.photons, block.photons);
     EXPECT_TRUE(parts.low.photons.empty());
   }
-  for (const EnergyLimit limit : {EnergyLimit{inf, -1}, EnergyLimit{4, 1e12}}) {
+  for (const EnergyLimit limit : {EnergyLimit{inf}, EnergyLimit{4, 1e12}}) {
     const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
     EXPECT_EQ(parts.low.photons, block.photons);
     EXPECT_TRUE(parts.high.photons.empty());
@@ -193,7 +193,7 @@ TEST(EnergyCells, SidesAndObjectsAreCellsOfTheirOwn) {
       cells.add({{x, y, 0}, kUp, 2}, {0.1f, 0.1f, 0.1f});
     }
   }
-  cells.close({4, -1});
+  cells.close({4});
   EXPECT_LT(cells.low_share({{0, 0, 0}, kUp, 1}), 1);
   EXPECT_EQ(cells.low_share({{0, 0, 0}, -kUp, 1}), 1);
   EXPECT_EQ(cells.low_share({{0, 0, 0}, kUp, 2}), 1);
@@ -233,7 +233,7 @@ TEST(EnergyCells, ReflectedShareMakesDarkSurfacesLessBright) {
 TEST(SplitLight, PhotonsKeepTheirSumAndColumns) {
   PhotonBlock block = floor_with_spot(3000, 6000, 6);
   for (std::size_t i = 0; i < block.photons.size(); ++i) block.directions.push_back({std::uint16_t(i), 7});
-  const DividedPhotons parts = divide(block, cells_of(block, 0.5, {2, -1}));
+  const DividedPhotons parts = divide(block, cells_of(block, 0.5, {2}));
   formats::ExactRgbSum whole, divided;
   for (const Photon& p : block.photons) whole.add(p.flux);
   for (const PhotonBlock* part : {&parts.low, &parts.high}) {
@@ -251,7 +251,7 @@ TEST(SplitLight, PartsOfAMapJoinToTheWholeToTheLastBit) {
   block.photons[5].flux = {0, 0, 0};
   block.photons[7] = block.photons[6];   // two photons that differ in nothing
   block.directions[7] = block.directions[6];
-  for (const EnergyLimit& limit : {EnergyLimit{2, -1}, EnergyLimit{0, -1}, EnergyLimit{1e9, -1}}) {
+  for (const EnergyLimit& limit : {EnergyLimit{2}, EnergyLimit{0}, EnergyLimit{1e9}}) {
     const DividedPhotons parts = divide(block, cells_of(block, 0.5, limit));
     formats::PhotonMap low, high;
     low.photons = parts.low.photons, low.directions = parts.low.directions;
@@ -283,7 +283,7 @@ TEST(SplitLight, PointsOfABrightPatchAreDividedInProportion) {
   }
   EnergyCells cells(0.4, 0.01);
   add_energy(points, 0.01, cells);
-  cells.close({4, -1});
+  cells.close({4});
   const double mean = (100 + 16 * 100) / 116.0;
   EXPECT_NEAR(cells.mean_irradiance(), mean, 1e-5 * mean);   // floats of the products
   const DividedPoints parts = divide(points, cells);

@@ -7,6 +7,7 @@
 
 #include "lib/gather/final_gather.h"
 #include "lib/gather/irradiance_points.h"
+#include "tests/support/places.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
@@ -14,18 +15,11 @@ namespace {
 
 using test::HandMadeScene;
 using test::matte;
+using test::place_at;
 
 const Lights& no_lights(const SceneFrame& frame) {
   thread_local std::vector<std::unique_ptr<Lights>> kept;
   return *kept.emplace_back(std::make_unique<Lights>(frame, EmissionTable{}));
-}
-
-SurfacePoint place_at(Vec3 position, Vec3 normal) {
-  SurfacePoint place;
-  place.position = position;
-  place.normal = place.normal_geometric = normal;
-  place.offset = 1e-5f;
-  return place;
 }
 
 /// A square patch of 1 m, which one point stands for (spacing 1 m, R = 0.564 m), at height h over a floor, radiance 1 downwards.

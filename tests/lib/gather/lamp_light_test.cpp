@@ -8,6 +8,7 @@
 #include "lib/gather/bright_points.h"
 #include "lib/gather/final_gather.h"
 #include "lib/gather/irradiance_points.h"
+#include "tests/support/places.h"
 #include "tests/support/scenes.h"
 
 namespace tempolux {
@@ -15,16 +16,9 @@ namespace {
 
 using test::HandMadeScene;
 using test::matte;
+using test::place_at;
 
 constexpr float kReflectance = 0.5f, kSpacing = 0.5f;
-
-SurfacePoint place_at(Vec3 position, Vec3 normal) {
-  SurfacePoint place;
-  place.position = position;
-  place.normal = place.normal_geometric = normal;
-  place.offset = 1e-5f;
-  return place;
-}
 
 /// A ceiling of 40 m at the height 1 m, a point lamp of 1 W/sr a distance d below it, points every half metre around, none of them above the lamp.
 struct Ceiling {

@@ -170,7 +170,7 @@ TEST(KnownLight, PointsAnswerBeyondTheirBlur) {
   const PointLookup::Light* light = chain.lookup.find(seen->first.position, {0, 1, 0});
   ASSERT_TRUE(light);
   ASSERT_TRUE(chain.lookup.is_even(*light));
-  const float limit = KnownLight::kNear * light->radius;
+  const float limit = PointLookup::kNear * light->radius;
   for (const float u : {0.0f, 0.5f, 0.999f}) {
     EXPECT_FALSE(known.told(seen->first, {0, 1, 0}, 0.99f * limit * (0.5f + u), u)) << u;
     ASSERT_TRUE(known.told(seen->first, {0, 1, 0}, 1.01f * limit * (0.5f + u), u)) << u;

@@ -35,21 +35,26 @@ struct Simulated {
     }
     for (HitSeries* s : {&element, &kernel, &ring, &frame}) s->sum_up();
   }
-  Window window(const WindowThresholds& thresholds) const { return grow_window({&element, &kernel, &ring, &frame}, kMiddle, kFrames, thresholds); }
+  Window window(const WindowThresholds& thresholds) const {
+    return grow_window({&element, &kernel, &ring, &frame}, kMiddle, kFrames, thresholds);
+  }
 };
 
 double still(int) { return 1; }
 
 TEST(BlockContrast, IsThatOfPhotonsDealtToBlocksAtRandom) {
-  // 9 photons of 1 in one frame, 27 in two: of 36, 2/3 belong there, 24 with variance 36 x 2/9 = 8 and skewness (1 - 4/3) / sqrt(2/9) / 6.
+  // 9 photons of 1 in one frame, 27 in two: of 36, 2/3 belong there, 24 with variance 36 x 2/9 = 8 and
+  // skewness (1 - 4/3) / sqrt(2/9) / 6.
   EXPECT_NEAR(block_contrast({9, 9, 9}, 1, {27, 27, 27}, 2), 3 / std::sqrt(8.0) + 1 / std::sqrt(2.0) / 6 * (9.0 / 8 - 1) / 6, 1e-12);
   EXPECT_EQ(block_contrast({}, 1, {}, 2), 0);
   // Photons of other power: one of 3 beside three of 1: S = 6, Q = 12.
   EXPECT_NEAR(block_contrast({1, 3, 9}, 1, {3, 3, 3}, 1), 0, 1e-12);
 }
 
-/// Stated: 5 %. 20000 windows, 1000 alarms +- 31: .0015. What is asked for is a fifth, .01; the tests of a window are not quite independent, and their
-/// distributions not quite Gaussian: of 8 photons a frame, where many tests have hardly enough, alarms are a quarter rarer. A full window of 2500 has 76. Seen to fail (.1 to .8) when each frame is compared with the middle one alone, or tests are not counted.
+/// Stated: 5 %. 20000 windows, 1000 alarms +- 31: .0015. What is asked for is a fifth, .01; the tests of a window are not quite
+/// independent, and their distributions not quite Gaussian: of 8 photons a frame, where many tests have hardly enough, alarms are a
+/// quarter rarer. A full window of 2500 has 76. Seen to fail (.1 to .8) when each frame is compared with the middle one alone, or tests
+/// are not counted.
 TEST(GrowWindow, StationaryLightClosesAsManyAsStated) {
   std::mt19937_64 random(5);
   WindowOptions options;
@@ -63,8 +68,9 @@ TEST(GrowWindow, StationaryLightClosesAsManyAsStated) {
   }
 }
 
-/// algorithms.md 2.3: light that changes by 30 % with a period of 60 or 240 frames at 30 photons a frame: windows save 12 and 29 times the photons at best. Asked
-/// for are 10 and 20. 2000 estimates: the ratio of two mean squares has a standard error of sqrt(2 x 2 / 2000) = 4.5 %.
+/// algorithms.md 2.3: light that changes by 30 % with a period of 60 or 240 frames at 30 photons a frame: windows save 12 and 29 times
+/// the photons at best. Asked for are 10 and 20. 2000 estimates: the ratio of two mean squares has a standard error of sqrt(2 x 2 / 2000)
+/// = 4.5 %.
 TEST(GrowWindow, SavesPhotonsWhereLightChangesSlowly) {
   std::mt19937_64 random(6);
   const WindowThresholds thresholds{WindowOptions{}};
@@ -75,7 +81,9 @@ TEST(GrowWindow, SavesPhotonsWhereLightChangesSlowly) {
       const Simulated s(30, light, random);
       const Window w = s.window(thresholds);
       const double truth = 30 * light(kMiddle);
-      const auto error = [&](const Window& v) { return s.kernel.block(kMiddle - v.before, kMiddle + v.after).flux / (v.before + 1 + v.after) / truth - 1; };
+      const auto error = [&](const Window& v) {
+        return s.kernel.block(kMiddle - v.before, kMiddle + v.after).flux / (v.before + 1 + v.after) / truth - 1;
+      };
       single += error({}) * error({});
       window += error(w) * error(w);
     }
@@ -83,8 +91,8 @@ TEST(GrowWindow, SavesPhotonsWhereLightChangesSlowly) {
   }
 }
 
-/// A lamp that doubles four frames on, 100 photons a frame: the step's contrast in one frame on each side is far beyond any threshold (one frame of
-/// 200 beside nine of 100: (200 - 110) / sqrt(1100 x .09) = 9). The other side stays open to its end.
+/// A lamp that doubles four frames on, 100 photons a frame: the step's contrast in one frame on each side is far beyond any threshold
+/// (one frame of 200 beside nine of 100: (200 - 110) / sqrt(1100 x .09) = 9). The other side stays open to its end.
 TEST(GrowWindow, AStepClosesItsSideAlone) {
   std::mt19937_64 random(7);
   const WindowThresholds thresholds{WindowOptions{}};

@@ -1,4 +1,4 @@
-// lib/gather/medium_event.h -- what paths from the eye do in media: collide, gather light from lamps, go on.
+// lib/transport/media.h -- what paths from the eye do in media: collide, gather light from lamps, go on.
 #pragma once
 
 #include "lib/core/random.h"
@@ -23,7 +23,7 @@ float media_transmittance(const Media& media, const Ray& ray, const WayBits& bit
 
 /// The same for a ray between a point and a light; 0 where a surface is in the way. Without media exactly 0 or 1. This is what
 /// shadow rays ask.
-Rgb transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits);
+float transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits);
 
 /// A collision with a medium: where the path is scattered next.
 struct MediumPoint {
@@ -38,7 +38,7 @@ bool collides(const Media& media, const Ray& ray, float end, const PathRandom& r
 /// Light of a sampled lamp scattered at the point towards where the path came from, shadows and transmittance included: radiance
 /// [W/m^2/sr], albedo not. `weigh`: by the power heuristic against scattering, for paths that go on and may hit the lamp.
 /// `u`: chooses lamp and place on it. Counts a shadow ray if one is traced.
-Rgb sampled_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, Vec2 u, bool weigh, const WayBits& bits,
+Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, Vec2 u, bool weigh, const WayBits& bits,
                   std::uint64_t& shadow_rays);
 
 }  // namespace tempolux

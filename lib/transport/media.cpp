@@ -1,4 +1,4 @@
-#include "lib/gather/medium_event.h"
+#include "lib/transport/media.h"
 
 #include "lib/core/sampling.h"
 
@@ -11,10 +11,10 @@ float media_transmittance(const Media& media, const Ray& ray, const WayBits& bit
   return estimate_transmittance(media, ray.origin + ray.direction * ray.t_min, unit, (ray.t_max - ray.t_min) * size, bits);
 }
 
-Rgb transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits) {
-  if (tracer.occluded(ray)) return Rgb(0.0f);
+float transmittance(const Tracer& tracer, const Ray& ray, const WayBits& bits) {
+  if (tracer.occluded(ray)) return 0;
   const Media* const media = tracer.frame().media.get();
-  return media ? Rgb(media_transmittance(*media, ray, bits)) : Rgb(1.0f);
+  return media ? media_transmittance(*media, ray, bits) : 1.0f;
 }
 
 bool collides(const Media& media, const Ray& ray, float end, const PathRandom& random, std::uint32_t bounce, MediumPoint& point) {
@@ -28,7 +28,7 @@ bool collides(const Media& media, const Ray& ray, float end, const PathRandom& r
   return true;
 }
 
-Rgb sampled_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, Vec2 u, bool weigh, const WayBits& bits,
+Rgb scattered_lamp_light(const Tracer& tracer, const Lights& lights, const MediumPoint& point, Vec2 u, bool weigh, const WayBits& bits,
                   std::uint64_t& shadow_rays) {
   LightSample light;
   if (!lights.sample(point.position, {}, u, light)) return Rgb(0.0f);

@@ -1,0 +1,17 @@
+// tests/support/places.h -- surface points that belong to no surface.
+#pragma once
+
+#include "lib/scene/surface_point.h"
+
+namespace tempolux::test {
+
+/// A place with this normal (unit), 10 um off which rays start.
+inline SurfacePoint place_at(Vec3 position, Vec3 normal) {
+  SurfacePoint place;
+  place.position = position;
+  place.normal = place.normal_geometric = normal;
+  place.offset = 1e-5f;
+  return place;
+}
+
+}  // namespace tempolux::test
