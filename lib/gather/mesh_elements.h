@@ -15,6 +15,9 @@
 
 namespace tempolux {
 
+/// Cosine of 30 degrees: elements whose normals differ by more than that do not share their light.
+inline constexpr float kSameWay = 0.866f;
+
 struct MeshFilter {
   enum class Kind : std::uint8_t { none, box, gaussian, bilateral };
   Kind kind = Kind::gaussian;

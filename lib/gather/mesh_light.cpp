@@ -6,11 +6,11 @@
 
 #include "formats/octahedral.h"
 #include "lib/core/random.h"
+#include "lib/gather/mesh_elements.h"
 
 namespace tempolux {
 namespace {
 
-constexpr float kSameWay = 0.866f;           ///< cosine of 30 degrees
 constexpr float kSamePlace = 1e-3f;          ///< of a cell: corners closer than this are one
 
 /// One number for each side: 32 bits of surface, 31 of triangle, one of side.

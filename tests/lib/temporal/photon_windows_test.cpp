@@ -99,7 +99,9 @@ TEST(GrowWindow, AStepClosesItsSideAlone) {
   for (int i = 0; i < 200; ++i) {
     const Simulated s(100, [](int f) { return f < kMiddle + 4 ? 1.0 : 2.0; }, random);
     EXPECT_LE(s.window(thresholds).after, 3);
-    if (i < 100) EXPECT_GE(s.window(thresholds).before, 3);
+    if (i < 100) {
+      EXPECT_GE(s.window(thresholds).before, 3);
+    }
   }
 }
 
