@@ -30,7 +30,7 @@ weigh() {
 say() {
   [ -n "$PROGRESS" ] || return 0   # not begun: an estimate, or rules of stages.mk by hand
   echo "$1" >> "$PROGRESS"
-  n=$(wc -l < "$PROGRESS")
+  n=$(grep -nxF -- "$1" "$PROGRESS" | tail -1 | cut -d: -f1)   # this one, whatever other jobs have added
   [ "$n" -le "$TOTAL" ] || TOTAL=$n   # a walkthrough adds keys as it goes
   passed=$(($(date +%s) - BEGAN))
   left=

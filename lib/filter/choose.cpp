@@ -67,7 +67,8 @@ class Choice {
     for_each_pixel([&](std::size_t p, int x, int y) {
       const float w = share(p, x, y);
       for (std::size_t c = 0; c < 3; ++c) {
-        const float m = (raw_.a[c][p] + raw_.b[c][p]) / 2, f = (best_.a[c][p] + best_.b[c][p]) / 2;
+        const float m = raw_.a[c][p] / 2 + raw_.b[c][p] / 2, f =   // halves first: their sum may not be a number
+                     (best_.a[c][p] + best_.b[c][p]) / 2;
         out[c][p] = counts_[p] ? m + w * (f - m) : std::isfinite(m) ? m : (candidates_.back().a[c][p] + candidates_.back().b[c][p]) / 2;
       }
     });

@@ -339,7 +339,7 @@ bool PhotonTracer::scatter(Path& path, SurfacePoint& point, float distance, cons
   return scatter_at(path, point, distance, bsdfs_[point.material][front], 1, point.normal, draw, batch);
 }
 
-/// Half of the bounces from places outside of the spheres that cameras see lead to the spheres, and carry less: where light of far
+/// Half of the first bounces (events D) from places outside of the spheres that cameras see lead to the spheres, and carry less: where light of far
 /// ground enters a room one photon in thousands would find the way, and carry thousands of times what others do. `travel` is replaced, or kept; returns the cosine's density over that of both
 /// ways together, at most 1 / (1 - kTowards).
 float PhotonTracer::aim(Vec3 position, Vec3 normal, const PathRandom& random, std::uint32_t bounce, Vec3& travel) const {
@@ -384,7 +384,8 @@ bool PhotonTracer::scatter_at(Path& path, const SurfacePoint& point, float dista
   const float u_lobe = bsdf.has_specular() ? random.get1(draw.bounce, Purpose::lobe) : 0;   // else it chooses nothing
   Bsdf::Sample next;
   Vec3 travel;
-  const bool aims = !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(point.position);
+  // Once in a path: factors of many bounces multiplied would leave the mean to paths that are hardly ever met.
+  const bool aims = !path.diffuse_seen && !lights_.aim().empty() && bsdf.has_lambert() && !lights_.aim().holds(point.position);
   float aimed = 1;
   bool beyond = false;   // there are two events to choose from: of either as much as of both, so that each counts twice
   if (bsdf.has_specular() && at.bent()) {

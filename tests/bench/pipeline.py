@@ -108,6 +108,6 @@ def majorants_of(out, first):
 def preset(project, name="final"):
     """Options of QUALITY=final or draft as lib/plan/stages.cpp has them: words by kind."""
     row = re.search(rf"constexpr Preset k{name.capitalize()}\{{(.*)\}};", (project / "lib" / "plan" / "stages.cpp").read_text()).group(1)
-    photons, points, rays, records, error, samples, _ = (part.strip().strip('"') for part in row.split(", "))
+    photons, points, rays, records, error, samples = (part.strip().strip('"') for part in row.split(", "))
     return {"photons": int(photons.replace("'", "")), "points": points.split(), "records": ["--rays", rays, *records.split()],
             "pixels": ["--spp", samples, "--pixel-error", error, "--learn-lights"]}

@@ -17,7 +17,7 @@ for signal in INT TERM; do
     sleep 0.1
   done
   [ -n "$(find temporary -name '*.irradpoints.tmp.*')" ] || bad "$signal: no sample within 10 s: $(find temporary)"
-  kill -$signal -- -$process
+  kill -s $signal -- -$process
   wait $process 2> /dev/null
   for round in $(seq 50); do [ -z "$(ls -A temporary)" ] && break; sleep 0.1; done
   [ -z "$(ls -A temporary)" ] || bad "$signal: left $(find temporary)"
