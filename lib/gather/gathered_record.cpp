@@ -13,7 +13,7 @@ IrradianceRecord record_of_first_rays(const Hemisphere& sky, const Frame& frame,
   record.object = place.object;
   sky.translational_gradient(frame, record);
   record.radius_unclamped = sky.harmonic_distance();
-  record.seen_share = sky.seen_share();
+  record.seen_rays = sky.seen_rays();
   return record;
 }
 

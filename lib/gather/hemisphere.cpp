@@ -149,9 +149,8 @@ float Hemisphere::harmonic_distance() const {
   return sum > 0 ? float(hits / sum) : INFINITY;
 }
 
-float Hemisphere::seen_share() const {
-  const auto hits = std::count_if(inverse_distance.begin(), inverse_distance.end(), [](float inverse) { return inverse > 0; });
-  return float(hits) / float(inverse_distance.size());
+float Hemisphere::seen_rays() const {
+  return float(std::count_if(inverse_distance.begin(), inverse_distance.end(), [](float inverse) { return inverse > 0; }));
 }
 
 }  // namespace tempolux

@@ -47,8 +47,8 @@ class Hemisphere {
 
   /// Harmonic mean of the distances of what is there, m; infinity if there is nothing.
   float harmonic_distance() const;
-  /// Share of the cells in which something is.
-  float seen_share() const;
+  /// Number of cells in which something is, a ray each.
+  float seen_rays() const;
 
  private:
   std::size_t cell(int j, int k) const { return std::size_t(j) * std::size_t(sectors_) + std::size_t(k); }

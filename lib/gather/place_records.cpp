@@ -12,6 +12,8 @@ namespace tempolux {
 namespace {
 
 constexpr int kCoarsest = 16;
+/// Rays that met something, by which R is known to 1 / sqrt(n): to a third, hence not to be relied on; to a sixth.
+constexpr float kFewRays = 8, kEnoughRays = 32;
 
 /// Pixels of the lattice of `stride` that are on no coarser one, row by row.
 std::vector<std::size_t> lattice(int width, int height, int stride) {
@@ -132,8 +134,9 @@ namespace {
 
 /// r before min_radius_px.
 float radius_by_distances(const IrradianceRecord& record, float footprint, const PlacementOptions& options) {
-  const float seen = record.seen_share / (options.error_bound * record.radius_unclamped), unseen = (1 - record.seen_share) / (options.unseen_radius_px * footprint);
-  return 1 / (seen + unseen);
+  const float unseen = options.unseen_radius_px * footprint;
+  const float known = std::clamp((record.seen_rays - kFewRays) / (kEnoughRays - kFewRays), 0.0f, 1.0f);
+  return 1 / (known / (options.error_bound * record.radius_unclamped) + (1 - known) / unseen);
 }
 
 }  // namespace

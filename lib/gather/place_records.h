@@ -54,14 +54,14 @@ inline constexpr std::size_t kPlacedTogether = 256;
 std::size_t place_records(const FinalGather& gather, const PixelView& view, int width, int height, const PlacementOptions& options, RecordStore& store,
                           GatherCounts& counts, const std::function<void(double)>& progress = {}, const RecordSource* source = nullptr);
 
-/// Radius r [m] of a record by R, the harmonic mean distance to what its rays met [Ward, Rubinstein and Clear 1988], and the share s of
-/// its rays that met something:
+/// Radius r [m] of a record by R, the harmonic mean distance to what its rays met, those that met nothing left out [Ward, Rubinstein and
+/// Clear 1988]:
 ///
-///     1 / r = s / (error_bound R) + (1 - s) / (unseen_radius_px footprints)
+///     1 / r = k / (error_bound R) + (1 - k) / (unseen_radius_px footprints),     k = 0 for 8 such rays or fewer, 1 for 32 or more
 ///
-/// but r is at least min_radius_px footprints [Tabellion and Lamorlette 2004]. The radius follows from the distances of all rays alone: a
-/// small bright thing that few rays meet has little say. If it had more, records whose rays missed the thing would reach farther than
-/// those that met it, and the mean would be dark.
+/// but r is at least min_radius_px footprints [Tabellion and Lamorlette 2004]. The radius follows from distances
+/// alone, and a small thing that few rays meet has no say. If it had, records whose rays missed the thing would reach farther than those
+/// that met it, and the mean would be dark.
 float radius_of(const IrradianceRecord& record, float footprint, const PlacementOptions& options);
 
 /// Sets the radius of a gathered record, whose radius_unclamped is R; radius_unclamped keeps r before min_radius_px. The translational

@@ -27,7 +27,7 @@ TEST(Hemisphere, DistanceAndShareOfWhatIsThere) {
   sky.reset(10, 30);
   sky.inverse_distance[7] = sky.inverse_distance[120] = 0.5f;
   EXPECT_FLOAT_EQ(sky.harmonic_distance(), 2);
-  EXPECT_FLOAT_EQ(sky.seen_share(), 2 / 300.0f);
+  EXPECT_EQ(sky.seen_rays(), 2);
 }
 
 /// Light in every cell to the right of a meridian: further rays along its border alone. Beside it three of eight
