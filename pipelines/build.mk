@@ -9,7 +9,7 @@ deps: # Debian: packages that are missing are installed, by root only. Elsewhere
 	test $$(dpkg-query -W -f '$${db:Status-Status}\n' $(PACKAGES) 2> /dev/null | grep -cx installed) -ge $(words $(PACKAGES)) || \
 	if test $$(id -u) = 0; then $(INSTALL); else echo 'packages are missing; as root: $(INSTALL)' >&2; exit 1; fi
 in_top = cd "$$TOP" &&
-configured: deps ; @$(in_top) { test -f build/release/build.ninja || cmake --preset release -DTEMPOLUX_UNITY=ON; }
+configured: deps ; @$(in_top) { test -f build/release/build.ninja || cmake --preset release; }
 build: configured ; @$(in_top) cmake --build --preset release --target tools
 build_all: configured ; @$(in_top) cmake --build --preset release
 check: build_all # all tests; those skipped are counted and named

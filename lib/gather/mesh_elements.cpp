@@ -13,7 +13,7 @@
 namespace tempolux {
 namespace {
 
-constexpr std::size_t kPiece = 1024;         ///< photons, or elements, in a piece of work
+constexpr std::size_t kAtOnce = 1024;         ///< photons, or elements, in a piece of work
 constexpr int kNormalBits = 13;              ///< of 16 that a joined normal leaves out: it keeps 64 directions
 constexpr float kReach = 3;                  ///< of a Gaussian, standard deviations
 
@@ -85,7 +85,7 @@ float weight(const MeshFilter& filter, const Sample& a, const Sample& b) {
 /// neighbours are weighed.
 void smooth(const std::vector<Sample>& samples, const MeshFilter& filter, const Neighbours& neighbours, const std::vector<float>& alike,
             std::vector<Rgbd>& result) {
-  parallel_chunks(samples.size(), kPiece, [&](std::size_t first, std::size_t last) {
+  parallel_chunks(samples.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       if (!(samples[i].width > 0)) continue;
       Rgbd flux{0.0};
@@ -217,7 +217,7 @@ void MeshSums::add(std::span<const formats::Photon> photons, Vec3 offset) {
     std::uint32_t cuts = 0, cell = 0;        ///< cuts 0: not found
   };
   std::vector<Place> places(photons.size());
-  parallel_chunks(photons.size(), kPiece, [&](std::size_t first, std::size_t last) {
+  parallel_chunks(photons.size(), kAtOnce, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const formats::Photon& photon = photons[i];
       const auto decoded = formats::decode_normal(photon.normal);
