@@ -129,7 +129,7 @@ class Choice {
     return shares;
   }
 
-  /// The candidates by their shares, and what it errs by.
+  /// Mixes the candidates by their shares and estimates the squared error of the mixture.
   void take_best() {
     const std::vector<Plane> shares = take_shares();
     for (std::size_t c = 0; c < 3; ++c)

@@ -106,7 +106,8 @@ class PointLookup {
   ///     E_bright - c E_dark > 3 sqrt(E_bright^2 / k + c^2 (E_dark e + e^2)),   c = kContrastOfIndirect
   bool apart(const IrradiancePoint& bright, const IrradiancePoint& dark) const;
 
-  /// Hits nearer than about this many radii of the estimate behind their point do not read the point: the blur of its light would be seen.
+  /// A hit reads its point only if the hit is farther away than about this many radii of the point's density estimate. Nearer hits would
+  /// show the blur of the estimate.
   static constexpr float kNear = 2;
   /// Is a hit at `distance` m along the way from the last Lambert lobe so near? u in [0, 1) moves the limit between half and one and a half
   /// of it, so that it shows no seam.

@@ -23,7 +23,7 @@ class LocalisedLight {
                  std::span<const IrradianceRecord> gathered, float least_cosine, const InfluenceThresholds& thresholds,
                  MovingObjects moving);
 
-  /// None where a record that is asked for is missing.
+  /// Returns nothing where a record is missing that the place needs.
   std::optional<Rgb> at(const SurfacePoint& surface, Vec3 shading) const;
   /// f, in [0, 1].
   float gathered_share(const SurfacePoint& surface, Vec3 shading) const;

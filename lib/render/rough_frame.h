@@ -52,7 +52,7 @@ struct RoughFrame {
   /// Records: how many the picture needs, what a ray of one costs with all that follows, and squared error x rays of what they tell.
   double records = 0, record_ray = 0, record_error = 0;
   MissedLight missed, missed_caustic;   ///< of layers indirect and caustic
-  double map_error = 0;        ///< squared error of caustic light by a density of photons
+  double map_error = 0;        ///< squared error of the caustic light that a density of photons estimates
   double photons_per_path = 0;
 };
 

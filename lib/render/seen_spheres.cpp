@@ -88,7 +88,7 @@ std::vector<Cell> split(std::vector<Cell> cells, double whole, int lowest) {
   return done;
 }
 
-/// What a camera sees, and what that sees. `number` keys the random numbers.
+/// Adds the places that a camera sees, and the places that are seen from these. `number` keys the random numbers.
 void add_seen_places(const Tracer& tracer, const CameraView& view, std::uint64_t number, std::vector<WeighedPlace>& places) {
   const Vec3d origin = tracer.frame().origin;
   const auto add = [&](Vec3 position, double weight, double distance) {
