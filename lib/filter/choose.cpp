@@ -69,7 +69,8 @@ class Choice {
       for (std::size_t c = 0; c < 3; ++c) {
         const float m = raw_.a[c][p] / 2 + raw_.b[c][p] / 2, f =   // halves first: their sum may not be a number
                      (best_.a[c][p] + best_.b[c][p]) / 2;
-        out[c][p] = counts_[p] ? m + w * (f - m) : std::isfinite(m) ? m : (candidates_.back().a[c][p] + candidates_.back().b[c][p]) / 2;
+        const float mixed = m + w * (f - m);   // light is never negative: rounding must not make it so
+        out[c][p] = counts_[p] ? (m >= 0 ? std::max(mixed, 0.0f) : mixed) : std::isfinite(m) ? m : (candidates_.back().a[c][p] + candidates_.back().b[c][p]) / 2;
       }
     });
     return out;
